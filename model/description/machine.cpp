@@ -1,0 +1,117 @@
+#include "volcal/model/description/machine.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <stdexcept>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+class StructureReader {
+ public:
+  StructureReader(const std::string& code, SourcePlace place) : code_(code), place_(std::move(place)) {}
+
+  Structure read() {
+    Structure structure{code_, {}};
+    for (std::size_t i = 0; i < code_.size(); ++i) {
+      const char c = code_[i];
+      if (std::isspace(static_cast<unsigned char>(c))) continue;
+      if (c == '(') {
+        i = skip_spindle(i);
+      } else if (c == '\'') {
+        if (seen_bed_ || structure.joints.empty()) fail("a prime marks an axis between w and b");
+      } else {
+        letter(c, structure);
+      }
+    }
+    if (!seen_tool_) fail("the code must end with t (tool)");
+    if (structure.joints.empty()) fail("the code names no axis");
+    return structure;
+  }
+
+ private:
+  void letter(char c, Structure& structure) {
+    if (seen_tool_) fail("nothing may follow t");
+    if (c == 'w') {
+      if (seen_workpiece_) fail("w appears twice");
+      seen_workpiece_ = true;
+      return;
+    }
+    if (!seen_workpiece_) fail("the code must start with w (workpiece)");
+    if (c == 'b') {
+      if (seen_bed_) fail("b appears twice");
+      seen_bed_ = true;
+    } else if (c == 't') {
+      if (!seen_bed_) fail("b (bed) is missing");
+      seen_tool_ = true;
+    } else {
+      const auto axis = axis_from_letter(c);
+      if (!axis) fail(std::string("'") + c + "' is not one of w b t X Y Z A B C");
+      const auto same = [&](const Joint& joint) { return joint.axis == *axis; };
+      if (std::ranges::any_of(structure.joints, same)) fail(std::string("axis ") + c + " appears twice");
+      structure.joints.push_back({*axis, !seen_bed_});
+    }
+  }
+
+  std::size_t skip_spindle(std::size_t open) {
+    const auto close = code_.find(')', open);
+    if (close == std::string::npos) fail("a bracket is not closed");
+    const std::string inside = code_.substr(open + 1, close - open - 1);
+    if (inside.size() != 1 || !axis_from_letter(inside[0])) fail("brackets hold one spindle axis, as in (C)");
+    return close;
+  }
+
+  [[noreturn]] void fail(const std::string& why) const {
+    throw InputError(place_, "structure \"" + code_ + "\": " + why,
+                     "write it workpiece to tool, as in \"w X' b Y Z t\"");
+  }
+
+  const std::string& code_;
+  SourcePlace place_;
+  bool seen_workpiece_ = false;
+  bool seen_bed_ = false;
+  bool seen_tool_ = false;
+};
+
+}  // namespace
+
+Structure Structure::parse(const std::string& code, const std::string& file, int line) {
+  return StructureReader(code, {file, line}).read();
+}
+
+AxisName Datum::third() const {
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    if (axis != primary && axis != secondary) return axis;
+  }
+  return AxisName::Z;
+}
+
+std::array<LocationSymbol, 3> Datum::squareness() const {
+  const auto rotation_about = [](AxisName axis) { return kAllComponents[3 + index_of(axis)]; };
+  return {{{rotation_about(third()), secondary},
+           {rotation_about(primary), third()},
+           {rotation_about(secondary), third()}}};
+}
+
+const Axis& Machine::axis(AxisName wanted) const {
+  for (const Axis& axis : axes) {
+    if (axis.name == wanted) return axis;
+  }
+  throw std::out_of_range(std::string("machine has no axis ") + letter_of(wanted));
+}
+
+bool Machine::has_axis(AxisName wanted) const {
+  return std::ranges::any_of(axes, [&](const Axis& axis) { return axis.name == wanted; });
+}
+
+std::optional<std::size_t> Machine::tool_index(const std::string& wanted) const {
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    if (tools[i].name == wanted) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace volcal

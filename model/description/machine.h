@@ -1,0 +1,80 @@
+#pragma once
+/// A machine tool as its owner describes it: structure, axes, datum, tools. Plain data, SI units (m, rad, K).
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/symbols.h"
+
+namespace volcal {
+
+/// One joint of the structural code (ISO 10791-6), e.g. `w X' b Y Z t`; order runs from workpiece to tool.
+struct Joint {
+  AxisName axis = AxisName::X;
+  bool workpiece_side = false;  ///< stands between w and b
+};
+
+struct Structure {
+  std::string code;
+  std::vector<Joint> joints;  ///< workpiece to tool; a bracketed spindle such as `(C)` is not a joint
+
+  /// Reads a structural code. Throws InputError naming what is wrong; `place` says where the code stands.
+  static Structure parse(const std::string& code, const std::string& file = {}, int line = 0);
+};
+
+/// Thermal expansion of an axis's scale: reading channel and coefficient with the uncertainty its users
+/// share.
+struct ScaleExpansion {
+  double per_kelvin = 0.0;        ///< 1/K
+  double per_kelvin_sigma = 0.0;  ///< standard uncertainty, 1/K
+  std::string channel;            ///< temperature channel: column T_<channel>_degC
+};
+
+/// Positions are m (linear) or rad (rotary), in machine coordinates.
+struct Axis {
+  AxisName name = AxisName::X;
+  double travel_min = 0.0;
+  double travel_max = 0.0;
+  double home = 0.0;
+  /// Linear: point of the carriage, machine coordinates with all axes at 0, at which EX, EY, EZ are stated.
+  Eigen::Vector3d reference_point = Eigen::Vector3d::Zero();
+  /// Rotary: a point of the nominal axis line, machine coordinates with all axes at 0.
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  std::optional<ScaleExpansion> expansion;
+
+  double travel() const { return travel_max - travel_min; }
+};
+
+struct Tool {
+  std::string name;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< functional point from the spindle reference, m
+  double offset_sigma = 0.0;                         ///< per component, m; 0 = exact
+};
+
+/// Primary axis gives the direction, secondary the plane of the machine frame (ISO/TR 16907, 7.3).
+struct Datum {
+  AxisName primary = AxisName::X;
+  AxisName secondary = AxisName::Y;
+
+  AxisName third() const;
+  /// The three squareness symbols in the order (secondary to primary, third about primary, third about
+  /// secondary): primary X, secondary Y gives EC0Y, EA0Z, EB0Z.
+  std::array<LocationSymbol, 3> squareness() const;
+};
+
+struct Machine {
+  std::string name;
+  std::string file;  ///< where it was read from; empty when made in memory
+  Structure structure;
+  Datum datum;
+  std::vector<Axis> axes;  ///< in the structure's order
+  std::vector<Tool> tools;
+
+  const Axis& axis(AxisName name) const;  ///< throws std::out_of_range
+  bool has_axis(AxisName name) const;
+  std::optional<std::size_t> tool_index(const std::string& name) const;
+};
+
+}  // namespace volcal

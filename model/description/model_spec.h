@@ -1,0 +1,46 @@
+#pragma once
+/// What we assume of a machine: bases of the error functions, effects beyond the rigid body, known values.
+/// Plain data as a model file holds it; SI units.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/schema.h"
+#include "volcal/model/description/symbols.h"
+
+namespace volcal {
+
+enum class KnotChoice { Automatic, IntervalCount, Explicit };
+
+/// Choice of basis for one error motion.
+struct FunctionSpec {
+  std::string basis = "bspline";  ///< a registered basis: bspline, legendre, fourier, zero
+  int degree = 3;                 ///< bspline 1..3; legendre: highest degree; fourier: highest harmonic
+  KnotChoice knots = KnotChoice::Automatic;
+  int intervals = 0;                 ///< for IntervalCount
+  std::vector<double> breakpoints;   ///< for Explicit: m or rad, ascending, ends included
+  std::vector<double> coefficients;  ///< an identified function: m or rad, one per basis function; else empty
+};
+
+struct EffectSpec {
+  std::string kind;
+  int source_line = 0;
+  Options options;  ///< keys of the effect's schema, SI
+};
+
+struct ModelSpec {
+  std::string file;
+  FunctionSpec default_function;
+  std::map<ErrorSymbol, FunctionSpec> functions;  ///< where the user departs from the default
+  std::map<LocationSymbol, double> locations;     ///< known values, rad or m (an identified model)
+  std::vector<LocationSymbol> locations_off;      ///< left out of the model: held at zero
+  std::vector<EffectSpec> effects;
+
+  const FunctionSpec& function(ErrorSymbol symbol) const {
+    const auto found = functions.find(symbol);
+    return found == functions.end() ? default_function : found->second;
+  }
+};
+
+}  // namespace volcal

@@ -1,0 +1,79 @@
+#pragma once
+/// Schemas: what a plug-in (instrument, effect, basis, table format) declares about itself as data.
+/// Reading, help, documentation and fuzzing follow from them; nothing else lists keys or columns.
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace volcal {
+
+enum class KeyType { Number, Text, Boolean, Vector3 };
+
+/// One key of a TOML table. The unit is the suffix of the key; `plausible_*` bounds |value| in that unit.
+struct KeySchema {
+  std::string key;  ///< with unit, as the user writes it: "station_mm"
+  KeyType type = KeyType::Number;
+  bool required = false;
+  std::string help;
+  std::vector<std::string> choices = {};  ///< for Text: allowed values; empty = any
+  double plausible_min = 0.0;             ///< smallest |value| other than 0 that is believed
+  double plausible_max = 1e300;           ///< largest |value| (for Vector3: of a component) that is believed
+};
+
+/// One reading column. Several columns of one instrument are read together (ex, ey, ez).
+struct ColumnSchema {
+  std::string column;  ///< with unit: "length_mm"
+  std::string help;
+  double plausible_max = 1e300;  ///< largest |value| in the column's unit
+};
+
+/// Values of a table's keys after reading: SI, under the key's stem ("station", not "station_mm").
+using OptionValue = std::variant<double, std::string, bool, Eigen::Vector3d>;
+class Options {
+ public:
+  void set(const std::string& stem, OptionValue value) { values_[stem] = std::move(value); }
+  bool has(const std::string& stem) const { return values_.contains(stem); }
+  std::optional<double> number(const std::string& stem) const { return get<double>(stem); }
+  std::optional<std::string> text(const std::string& stem) const { return get<std::string>(stem); }
+  std::optional<bool> boolean(const std::string& stem) const { return get<bool>(stem); }
+  std::optional<Eigen::Vector3d> vector(const std::string& stem) const { return get<Eigen::Vector3d>(stem); }
+  const std::map<std::string, OptionValue>& all() const { return values_; }
+
+ private:
+  template <class T>
+  std::optional<T> get(const std::string& stem) const {
+    const auto found = values_.find(stem);
+    if (found == values_.end()) return std::nullopt;
+    const T* value = std::get_if<T>(&found->second);
+    return value ? std::optional<T>(*value) : std::nullopt;
+  }
+
+  std::map<std::string, OptionValue> values_;
+};
+
+/// What an instrument declares: keys of its `[[setups]]` table beyond the common ones, its reading columns,
+/// keys of its `noise` table.
+struct InstrumentSchema {
+  std::string name;      ///< "laser-tracer"
+  std::string summary;   ///< one sentence for the user
+  std::string equation;  ///< observation equation as printed in help
+  std::string source;
+  std::vector<KeySchema> keys;
+  /// Alternative sets of columns, preferred first; exactly one set must be present in the file.
+  std::vector<std::vector<ColumnSchema>> column_sets;
+  std::vector<KeySchema> noise_keys;
+};
+
+/// What an effect declares: keys of its `[[effects]]` table besides `kind`.
+struct EffectSchema {
+  std::string kind;
+  std::string summary;
+  std::string source;
+  std::vector<KeySchema> keys;
+};
+
+}  // namespace volcal

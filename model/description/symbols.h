@@ -1,0 +1,64 @@
+#pragma once
+/// Axis names and ISO 230-1 error symbols (as quoted in ISO/TR 16907, clause 3 and 7).
+/// `EXY`: direction first, moving axis second. `EC0Y`: location error, component first, axis last.
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace volcal {
+
+enum class AxisName { X, Y, Z, A, B, C };
+inline constexpr std::size_t kAxisCount = 6;
+inline constexpr std::array<AxisName, kAxisCount> kAllAxes = {AxisName::X, AxisName::Y, AxisName::Z,
+                                                              AxisName::A, AxisName::B, AxisName::C};
+
+constexpr std::size_t index_of(AxisName axis) { return static_cast<std::size_t>(axis); }
+constexpr bool is_rotary(AxisName axis) { return index_of(axis) >= 3; }
+/// Coordinate direction 0..2 along which (linear) or about which (rotary) the axis moves.
+constexpr int direction_of(AxisName axis) { return static_cast<int>(index_of(axis) % 3); }
+char letter_of(AxisName axis);
+std::optional<AxisName> axis_from_letter(char letter);
+
+/// Component of an error: EX EY EZ are displacements (m), EA EB EC rotations (rad) about x, y, z.
+enum class Component { X, Y, Z, A, B, C };
+inline constexpr std::array<Component, 6> kAllComponents = {Component::X, Component::Y, Component::Z,
+                                                            Component::A, Component::B, Component::C};
+constexpr std::size_t index_of(Component component) { return static_cast<std::size_t>(component); }
+constexpr bool is_rotation(Component component) { return index_of(component) >= 3; }
+constexpr int direction_of(Component component) { return static_cast<int>(index_of(component) % 3); }
+
+/// One of the six error motions of an axis, e.g. {A, X} = EAX.
+struct ErrorSymbol {
+  Component component = Component::X;
+  AxisName axis = AxisName::X;
+
+  std::string name() const;
+  /// Positioning error: EXX, EYY, EZZ, EAA, EBB, ECC.
+  bool is_positioning() const { return index_of(component) == index_of(axis); }
+  /// Straightness of a linear axis: displacement component other than its own.
+  bool is_straightness() const { return !is_rotary(axis) && !is_rotation(component) && !is_positioning(); }
+  static std::optional<ErrorSymbol> parse(std::string_view name);
+  friend bool operator==(const ErrorSymbol&, const ErrorSymbol&) = default;
+  friend auto operator<=>(const ErrorSymbol&, const ErrorSymbol&) = default;
+};
+
+/// A location (position-independent) error, e.g. {C, Y} = EC0Y: squareness for linear axes, location and
+/// orientation of the axis average line for rotary ones.
+struct LocationSymbol {
+  Component component = Component::A;
+  AxisName axis = AxisName::X;
+
+  std::string name() const;
+  static std::optional<LocationSymbol> parse(std::string_view name);
+  friend bool operator==(const LocationSymbol&, const LocationSymbol&) = default;
+  friend auto operator<=>(const LocationSymbol&, const LocationSymbol&) = default;
+};
+
+/// Unit in which a component is printed: "um" or "urad".
+std::string_view edge_unit(Component component);
+
+}  // namespace volcal

@@ -1,0 +1,47 @@
+#include "volcal/model/description/units.h"
+
+#include <array>
+
+namespace volcal {
+namespace {
+
+// Longest suffix first, so that "um_per_m_K" is not taken for "K".
+constexpr std::array<Unit, 15> kUnits = {{
+    {"um_per_m_K", 1e-6},
+    {"um_per_metre", 1e-6},
+    {"um_per_m", 1e-6},
+    {"mm_min", 1e-3 / 60.0},
+    {"degC", 1.0},
+    {"urad", kRadianPerMicroradian},
+    {"mrad", 1e-3},
+    {"ppm", 1e-6},
+    {"deg", kRadianPerDegree},
+    {"rad", 1.0},
+    {"mm", kMetrePerMillimetre},
+    {"um", kMetrePerMicrometre},
+    {"m", 1.0},
+    {"s", 1.0},
+    {"K", 1.0},
+}};
+
+bool ends_in_unit(std::string_view key, std::string_view suffix) {
+  return key.size() > suffix.size() + 1 && key.ends_with(suffix) &&
+         key[key.size() - suffix.size() - 1] == '_';
+}
+
+}  // namespace
+
+Unit unit_of_key(std::string_view key) {
+  for (const Unit& unit : kUnits) {
+    if (ends_in_unit(key, unit.suffix)) return unit;
+  }
+  return {"", 1.0};
+}
+
+std::string_view stem_of_key(std::string_view key) {
+  const Unit unit = unit_of_key(key);
+  if (unit.suffix.empty()) return key;
+  return key.substr(0, key.size() - unit.suffix.size() - 1);
+}
+
+}  // namespace volcal

@@ -1,0 +1,23 @@
+#pragma once
+/// Units at the edge. Every key and column name ends in its unit; inside the program everything is SI.
+
+#include <string_view>
+
+namespace volcal {
+
+struct Unit {
+  std::string_view suffix;  ///< as written at the end of a key: "mm", "um_per_m_K"; empty = dimensionless
+  double si_per_unit;       ///< factor from the edge to SI
+};
+
+/// Unit of a key or column by its longest known suffix after an underscore; dimensionless when none fits.
+Unit unit_of_key(std::string_view key);
+/// Key without its unit: "station_mm" gives "station".
+std::string_view stem_of_key(std::string_view key);
+
+inline constexpr double kMetrePerMillimetre = 1e-3;
+inline constexpr double kMetrePerMicrometre = 1e-6;
+inline constexpr double kRadianPerMicroradian = 1e-6;
+inline constexpr double kRadianPerDegree = 3.14159265358979323846 / 180.0;
+
+}  // namespace volcal

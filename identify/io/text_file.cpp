@@ -1,0 +1,99 @@
+#include "volcal/identify/io/text_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <vector>
+
+#include "volcal/identify/io/nearest_name.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string near_file(const fs::path& path) {
+  std::error_code error;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) return "the folder " + folder.string() + " does not exist either";
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  std::ranges::sort(names);
+  if (const auto near = nearest_name(path.filename().string(), names)) {
+    return "did you mean \"" + *near + "\"?";
+  }
+  return "paths inside a file are relative to that file";
+}
+
+std::string read_all(const std::string& path, const SourcePlace& place) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) {
+    throw InputError(place, "cannot open " + path + ": " + std::strerror(errno),
+                     "check the permissions of the file");
+  }
+  std::error_code error;
+  const auto expected = fs::file_size(path, error);
+  std::string text;
+  text.resize(error ? 0 : expected);
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  std::vector<char> rest(1 << 16);
+  while (const std::size_t count = std::fread(rest.data(), 1, rest.size(), file.get())) {
+    text.append(rest.data(), count);
+  }
+  if (std::ferror(file.get())) throw InputError(place, "reading " + path + " failed", "check the disk");
+  return text;
+}
+
+}  // namespace
+
+void require_text(const std::string& text, const std::string& file) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw InputError({file, 1}, "the file is UTF-16 text", "save it again as UTF-8 or plain CSV");
+  }
+  if (const auto zero = text.find('\0'); zero != std::string::npos) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+    throw InputError({file, static_cast<int>(line)}, "the file is binary (it holds NUL bytes)",
+                     "give the text file that the instrument exports");
+  }
+}
+
+std::string read_text_file(const std::string& path, const SourcePlace& named_at) {
+  const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(place, "file does not exist: " + printable(path), near_file(path));
+  if (fs::is_directory(status)) {
+    throw InputError(place, path + " is a directory, a file is expected", "name the file inside it");
+  }
+  std::string text = read_all(path, place);
+  require_text(text, path);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw InputError({path, 0}, "the file is empty", "export it again or name another file");
+  }
+  return text;
+}
+
+std::string resolve_path(const std::string& from, const std::string& file) {
+  const fs::path path(file);
+  if (path.is_absolute()) return path.lexically_normal().string();
+  return (fs::path(from).parent_path() / path).lexically_normal().string();
+}
+
+std::string printable(const std::string& text) {
+  constexpr std::size_t kLongest = 60;
+  std::string shown;
+  for (const char c : text.substr(0, kLongest)) {
+    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  }
+  if (text.size() > kLongest) shown += "...";
+  return shown;
+}
+
+}  // namespace volcal

@@ -1,0 +1,25 @@
+#pragma once
+/// Whole text files, with the errors a user can mend: missing, a directory, empty, binary, UTF-16.
+
+#include <string>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+
+/// Content of a text file without its UTF-8 byte order mark. `named_at` is the line that names the file (a
+/// campaign's `data` key); errors about a missing file are reported there, or at the file itself when empty.
+/// Throws InputError.
+std::string read_text_file(const std::string& path, const SourcePlace& named_at = {});
+
+/// Throws InputError when `text` cannot be a text file (NUL bytes, UTF-16); `file` names it in the message.
+void require_text(const std::string& text, const std::string& file);
+
+/// Path that `file` names in a line of `from`: relative paths count from the folder of `from`.
+std::string resolve_path(const std::string& from, const std::string& file);
+
+/// A name or a value from a file as it may appear in a message: one line, printable, not longer than 60
+/// characters.
+std::string printable(const std::string& text);
+
+}  // namespace volcal

@@ -1,0 +1,123 @@
+#pragma once
+/// What an identification returns: the identified machine with its covariance, every residual, and what the
+/// data could and could not determine. Plain data, SI; written to files by identify/io, drawn by identify/report.
+
+#include <Eigen/Core>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/model/description/model_spec.h"
+#include "volcal/model/observation/parameters.h"
+
+namespace volcal {
+
+enum class FitStatus { Ok, LackOfFit, RankDeficient, NotConverged };
+std::string_view to_string(FitStatus status);
+
+/// One observation (one channel of one reading) with its fit. SI; standardised values are dimensionless.
+struct ResidualRecord {
+  std::size_t setup = 0;         ///< index into FitResult::setups
+  std::size_t row = 0;           ///< index into the setup's readings
+  int channel = 0;
+  std::int64_t source_line = 0;  ///< 1-based line of the file
+  double reading = 0.0;
+  double predicted = 0.0;
+  double sigma = 0.0;            ///< standard deviation used in the last adjustment (after variance components)
+  double redundancy = 0.0;       ///< Baarda's redundancy number, 0..1
+  double w = 0.0;                ///< Baarda's w = residual / (sigma sqrt(redundancy)); 0 when redundancy is 0
+  bool flagged = false;          ///< |w| above the critical value
+  bool removed = false;          ///< taken out of the adjustment
+
+  double residual() const { return reading - predicted; }
+};
+
+/// Fit of one setup.
+struct SetupSummary {
+  std::string name;
+  std::string instrument;
+  std::string tool;
+  std::string reading_unit;   ///< edge unit of the residuals: "um" or "urad"
+  std::size_t observations = 0;
+  double chi2 = 0.0;          ///< with the stated sigma
+  double redundancy = 0.0;    ///< sum of redundancy numbers
+  double rms_residual = 0.0;  ///< SI
+  double max_residual = 0.0;  ///< SI
+};
+
+/// Variance component of one instrument: the stated sigma must be multiplied by `scale` (1 = as stated).
+struct VarianceComponent {
+  std::string instrument;
+  double scale = 1.0;
+  double scale_u = 0.0;        ///< standard uncertainty of the scale
+  double redundancy = 0.0;
+  std::size_t observations = 0;
+};
+
+/// How well one error (function, squareness) is seen.
+struct Observability {
+  std::string symbol;
+  bool visible = true;
+  double visible_fraction = 0.0;  ///< share of the error's signal that no other parameter can imitate, 0..1
+  double u_rms = 0.0;             ///< root mean square standard uncertainty over the measured travel, SI
+  double effective_parameters = 0.0;
+  std::string reason;             ///< when not visible: why, in the user's words
+  std::string remedy;             ///< when not visible: what to measure
+};
+
+/// What the data cannot determine.
+struct RankReport {
+  int parameters = 0;                     ///< after the datum
+  int rank = 0;
+  std::vector<std::string> invisible;     ///< one sentence per invisible combination of errors
+  std::vector<std::string> held_by_prior; ///< nuisance parameters held at their guess by a weak default prior
+  std::vector<Observability> errors;
+};
+
+/// Resolution chosen for one function.
+struct FunctionSummary {
+  ErrorSymbol symbol;
+  int intervals = 0;
+  bool smoothed = false;              ///< smoothing prior in force (knots = "auto")
+  double effective_parameters = 0.0;
+  double measured_min = 0.0;          ///< range of positions with readings, m or rad
+  double measured_max = 0.0;
+};
+
+struct Timing {
+  std::string stage;
+  double seconds = 0.0;
+};
+
+struct FitResult {
+  FitStatus status = FitStatus::Ok;
+  std::vector<std::string> messages;  ///< warnings and explanations for the user, one per line
+
+  Machine machine;
+  ModelSpec identified;               ///< model with breakpoints, coefficients and squareness; can be loaded again
+  ParameterLayout layout;
+  Eigen::VectorXd parameters;         ///< SI
+  Eigen::MatrixXd covariance;         ///< of `parameters`, SI; singular by the datum
+  double reference_temperature_degC = 20.0;
+  bool temperature_is_campaign_mean = false;
+
+  double sigma0 = 0.0;                ///< sqrt(chi2 / dof) with the stated sigma
+  double chi2 = 0.0;
+  double dof = 0.0;
+  double coverage_factor = 1.96;      ///< U95 = coverage_factor u
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  double outlier_critical_value = 0.0;
+
+  std::vector<SetupSummary> setups;
+  std::vector<VarianceComponent> variance_components;
+  std::vector<FunctionSummary> functions;
+  RankReport rank;
+  std::vector<ResidualRecord> residuals;
+  std::vector<Timing> timings;
+};
+
+}  // namespace volcal

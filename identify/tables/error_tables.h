@@ -1,0 +1,46 @@
+#pragma once
+/// Tables of an identified machine: error functions with uncertainty at every position, squareness, volumetric
+/// errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR 16907, 8.2 and 9).
+
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+/// One row of error_tables.csv, SI inside.
+struct ErrorTableRow {
+  std::string symbol;
+  std::optional<AxisName> axis;   ///< empty for squareness
+  double position = 0.0;          ///< m or rad
+  int direction = 0;              ///< 0 mean of both; +1, -1 with reversal
+  double value = 0.0;             ///< m or rad
+  double u = 0.0;                 ///< standard uncertainty
+  double U95 = 0.0;               ///< expanded uncertainty, 95 %
+  bool rotation = false;          ///< value in rad
+  bool extrapolated = false;      ///< outside the measured positions
+};
+
+struct ErrorTableOptions {
+  int positions = 0;         ///< per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows
+  bool zero_plus = false;    ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
+};
+
+std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options = {});
+
+/// Volumetric error of one tool at one commanded position with standard uncertainties; m and rad.
+struct VolumetricError {
+  AxisPosition position{};
+  std::string tool;
+  Eigen::Matrix<double, 6, 1> value;  ///< ex ey ez ea eb ec
+  Eigen::Matrix<double, 6, 1> u;
+  bool extrapolated = false;
+};
+
+VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool);
+/// Grid over the travel, `per_axis` positions each, for every tool.
+std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis);
+
+}  // namespace volcal

@@ -1,28 +1,66 @@
-# One library per layer; which layer may include which is checked by scripts/check-layers.
+# One library per layer. Which layer may include which: docs/layers.md, enforced by scripts/check-layers.
 
 function(volcal_compile_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                         -fno-math-errno -ffp-contract=off)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-restrict)  # false alarms on std::string, GCC bug 105651
+  endif()
   if(VOLCAL_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
 endfunction()
 
-# volcal_add_library(NAME DIR...): every .cpp below the directories, so that a plug-in needs no edit here.
-function(volcal_add_library name)
+# Sources named *_avx2.cpp and *_avx512.cpp are compiled for these instruction sets (x86-64 only); the
+# program chooses between them at run time. Everything else runs on any processor of the architecture.
+# Such a file holds plain loops or intrinsics and includes no header with inline code that others share:
+# the linker keeps one copy of an inline function, and it might keep the wrong one.
+function(volcal_instruction_sets)
+  foreach(source IN LISTS ARGN)
+    if(source MATCHES "_avx2\\.cpp$")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma")
+    elseif(source MATCHES "_avx512\\.cpp$")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mfma")
+    endif()
+  endforeach()
+endfunction()
+
+# volcal_find_sources(OUT DIR...): every .cpp below the directories, so that a plug-in needs no edit here.
+# Variants for x86-64 instruction sets are left out on other processors.
+function(volcal_find_sources out)
   set(sources)
   foreach(directory IN LISTS ARGN)
     file(GLOB_RECURSE found CONFIGURE_DEPENDS ${directory}/*.cpp)
     list(APPEND sources ${found})
   endforeach()
-  if(NOT sources)
-    add_library(volcal_${name} INTERFACE)
-    return()
+  list(FILTER sources EXCLUDE REGEX "/node_modules/")
+  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
+    list(FILTER sources EXCLUDE REGEX "_avx(2|512)\\.cpp$")
   endif()
-  add_library(volcal_${name} STATIC ${sources})
-  add_library(volcal::${name} ALIAS volcal_${name})
-  set_target_properties(volcal_${name} PROPERTIES EXPORT_NAME ${name})
-  target_compile_features(volcal_${name} PUBLIC cxx_std_20)
-  target_include_directories(volcal_${name} PUBLIC
+  set(${out} ${sources} PARENT_SCOPE)
+endfunction()
+
+# volcal_add_library(NAME SOURCES DIR... [PUBLIC LIB...] [PRIVATE LIB...]): the layer's library
+# volcal::NAME. A layer that has no source yet is an interface library with the same links.
+function(volcal_add_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 layer "" "" "SOURCES;PUBLIC;PRIVATE")
+  set(target volcal_${name})
+  volcal_find_sources(sources ${layer_SOURCES})
+  if(sources)
+    add_library(${target} STATIC ${sources})
+    volcal_instruction_sets(${sources})
+    volcal_compile_options(${target})
+    target_link_libraries(${target} PUBLIC ${layer_PUBLIC} PRIVATE ${layer_PRIVATE})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    set(scope PUBLIC)
+  else()
+    add_library(${target} INTERFACE)
+    target_link_libraries(${target} INTERFACE ${layer_PUBLIC})
+    set(scope INTERFACE)
+  endif()
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  volcal_compile_options(volcal_${name})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  add_library(volcal::${name} ALIAS ${target})
 endfunction()

@@ -23,8 +23,8 @@ double edit_distance(std::string_view a, std::string_view b) {
   for (std::size_t i = 1; i <= a.size(); ++i) {
     current[0] = static_cast<double>(i);
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      current[j] = std::min({previous[j] + 1.0, current[j - 1] + 1.0,
-                             previous[j - 1] + replace_cost(a[i - 1], b[j - 1])});
+      current[j] = std::min(
+          {previous[j] + 1.0, current[j - 1] + 1.0, previous[j - 1] + replace_cost(a[i - 1], b[j - 1])});
       const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
       if (swapped) current[j] = std::min(current[j], before[j - 2] + 1.0);
     }

@@ -67,9 +67,13 @@ std::string read_text_file(const std::string& path, const SourcePlace& named_at)
   const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(place, "file does not exist: " + printable(path), near_file(path));
+  if (!fs::exists(status))
+    throw InputError(place, "file does not exist: " + printable(path), near_file(path));
   if (fs::is_directory(status)) {
     throw InputError(place, path + " is a directory, a file is expected", "name the file inside it");
+  }
+  if (!fs::is_regular_file(status) && !fs::is_fifo(status)) {
+    throw InputError(place, path + " is a device, a file is expected", "name a file");
   }
   std::string text = read_all(path, place);
   require_text(text, path);

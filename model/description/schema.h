@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -31,28 +32,33 @@ struct ColumnSchema {
   double plausible_max = 1e300;  ///< largest |value| in the column's unit
 };
 
-/// Values of a table's keys after reading: SI, under the key's stem ("station", not "station_mm").
+/// Values of a table's keys after reading: SI, under the key's stem ("station", not "station_mm"). Values of
+/// different type under one stem stand beside each other: `station = "P1"` and `station_mm = [...]`.
 using OptionValue = std::variant<double, std::string, bool, Eigen::Vector3d>;
 class Options {
  public:
-  void set(const std::string& stem, OptionValue value) { values_[stem] = std::move(value); }
-  bool has(const std::string& stem) const { return values_.contains(stem); }
+  using Key = std::pair<std::string, std::size_t>;  ///< stem and index of the value's type
+
+  void set(const std::string& stem, OptionValue value) { values_[{stem, value.index()}] = std::move(value); }
+  bool has(const std::string& stem) const {
+    const auto found = values_.lower_bound({stem, 0});
+    return found != values_.end() && found->first.first == stem;
+  }
   std::optional<double> number(const std::string& stem) const { return get<double>(stem); }
   std::optional<std::string> text(const std::string& stem) const { return get<std::string>(stem); }
   std::optional<bool> boolean(const std::string& stem) const { return get<bool>(stem); }
   std::optional<Eigen::Vector3d> vector(const std::string& stem) const { return get<Eigen::Vector3d>(stem); }
-  const std::map<std::string, OptionValue>& all() const { return values_; }
+  const std::map<Key, OptionValue>& all() const { return values_; }
 
  private:
   template <class T>
   std::optional<T> get(const std::string& stem) const {
-    const auto found = values_.find(stem);
+    const auto found = values_.find({stem, OptionValue(T{}).index()});
     if (found == values_.end()) return std::nullopt;
-    const T* value = std::get_if<T>(&found->second);
-    return value ? std::optional<T>(*value) : std::nullopt;
+    return std::get<T>(found->second);
   }
 
-  std::map<std::string, OptionValue> values_;
+  std::map<Key, OptionValue> values_;
 };
 
 /// What an instrument declares: keys of its `[[setups]]` table beyond the common ones, its reading columns,

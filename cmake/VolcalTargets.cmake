@@ -1,5 +1,13 @@
 # One library per layer. Which layer may include which: docs/layers.md, enforced by scripts/check-layers.
 
+# Compiles through ccache where it is installed and no other launcher was asked for.
+function(volcal_use_ccache)
+  find_program(VOLCAL_CCACHE ccache DOC "Compiler cache, optional")
+  if(PROJECT_IS_TOP_LEVEL AND VOLCAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${VOLCAL_CCACHE} PARENT_SCOPE)
+  endif()
+endfunction()
+
 function(volcal_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                          -fno-math-errno -ffp-contract=off)
@@ -51,7 +59,6 @@ function(volcal_add_library name)
     volcal_instruction_sets(${sources})
     volcal_compile_options(${target})
     target_link_libraries(${target} PUBLIC ${layer_PUBLIC} PRIVATE ${layer_PRIVATE})
-    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)

@@ -1,0 +1,26 @@
+# Installs the libraries, their headers under include/volcal/{model,identify,sim}, the program, and a package
+# for find_package(volcal), which defines volcal::volcal and one target per layer.
+
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/volcal)
+
+install(TARGETS volcal_description volcal_model volcal_identify volcal_sim volcal_io volcal_volcal
+        EXPORT volcal_targets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT volcal_targets NAMESPACE volcal:: FILE volcal-targets.cmake DESTINATION ${package_dir})
+if(TARGET volcal_program)
+  install(TARGETS volcal_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+
+foreach(folder model identify sim)
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/volcal
+          FILES_MATCHING PATTERN "*.h" PATTERN web EXCLUDE PATTERN cli EXCLUDE)
+endforeach()
+install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+configure_package_config_file(cmake/volcal-config.cmake.in ${PROJECT_BINARY_DIR}/volcal-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/volcal-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/volcal-config.cmake ${PROJECT_BINARY_DIR}/volcal-config-version.cmake
+        DESTINATION ${package_dir})

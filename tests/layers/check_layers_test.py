@@ -1,0 +1,102 @@
+"""check-layers must accept the real tree and reject each kind of wrong include."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCRIPT = ROOT / "scripts" / "check-layers"
+
+
+def check(root):
+    return subprocess.run([sys.executable, SCRIPT, root], capture_output=True, text=True, check=False)
+
+
+class RealTree(unittest.TestCase):
+    def test_passes(self):
+        done = check(ROOT)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+class MadeUpTree(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name)
+        (self.root / "docs").mkdir()
+        shutil.copy(ROOT / "docs" / "layers.md", self.root / "docs")
+
+    def write(self, path, *lines):
+        file = self.root / path
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def assert_accepted(self, path, *lines):
+        self.write(path, *lines)
+        done = check(self.root)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def assert_rejected(self, path, line, *words):
+        self.write(path, "#pragma once", line)
+        done = check(self.root)
+        self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+        first = done.stdout.splitlines()[0]
+        self.assertTrue(first.startswith(f"{path}:2: "), first)
+        for word in words:
+            self.assertIn(word, first)
+
+    def test_downward_arrows_are_accepted(self):
+        self.assert_accepted("model/kinematics/a.h", '#include "volcal/model/description/machine.h"',
+                             '#include "volcal/model/functions/basis.h"', "#include <ceres/jet.h>")
+        self.assert_accepted("identify/solve/a.cpp", '#include "volcal/model/kinematics/chain.h"',
+                             "#include <ceres/ceres.h>")
+        self.assert_accepted("identify/io/a.cpp", '#include "volcal/sim/study.h"', "#include <fstream>")
+        self.assert_accepted("identify/cli/a.cpp", '#include "volcal/sim/truth.h"', "#include <CLI/CLI.hpp>")
+        self.assert_accepted("tests/model/a_test.cpp", '#include "volcal/identify/solve/fit.h"', '#include "near.h"')
+
+    def test_physics_in_plain_data(self):
+        self.assert_rejected("model/description/a.h", '#include "volcal/model/kinematics/chain.h"',
+                             "description may not include model")
+
+    def test_solver_in_physics(self):
+        self.assert_rejected("model/effects/a.h", '#include "volcal/identify/solve/fit.h"',
+                             "model may not include identify")
+        self.assert_rejected("model/effects/a.h", "#include <ceres/ceres.h>", "<ceres/ceres.h>")
+
+    def test_spaces_do_not_hide_an_include(self):
+        self.assert_rejected("model/effects/a.h", '  #  include  "volcal/sim/truth.h"', "may not include sim")
+
+    def test_physics_in_sim(self):
+        self.assert_rejected("sim/a.cpp", '#include "volcal/model/kinematics/chain.h"', "sim may not include model")
+        self.assert_rejected("sim/a.cpp", '#include "volcal/identify/io/text_file.h"', "sim may not include io")
+        self.assert_rejected("sim/a.cpp", "#include <ceres/jet.h>", "<ceres/jet.h>")
+
+    def test_sim_in_identify(self):
+        self.assert_rejected("identify/stats/a.cpp", '#include "volcal/sim/study.h"', "identify may not include sim")
+
+    def test_only_the_study_in_io(self):
+        self.assert_rejected("identify/io/a.cpp", '#include "volcal/sim/truth.h"', "io may not include sim")
+
+    def test_files_in_physics(self):
+        for header in ("fstream", "filesystem"):
+            self.assert_rejected("model/instruments/a.cpp", f"#include <{header}>", f"<{header}>")
+
+    def test_include_by_relative_path(self):
+        self.assert_rejected("model/functions/a.cpp", '#include "../kinematics/chain.h"', "volcal/<folder>/chain.h")
+
+    def test_folder_without_a_layer(self):
+        self.write("model/elsewhere/a.h", "#pragma once")
+        done = check(self.root)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("model/elsewhere/a.h:1: the folder is in no layer", done.stdout)
+
+    def test_unreadable_page(self):
+        (self.root / "docs" / "layers.md").write_text("# Layers\n", encoding="utf-8")
+        self.assertEqual(check(self.root).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -15,10 +15,11 @@ namespace volcal {
 
 /// One unknown amplitude: adds amplitude x driver to the error motion `target`.
 struct EffectAmplitude {
-  std::string label;   ///< "reversal EXX"
+  std::string label;  ///< "reversal EXX"
   ErrorSymbol target;
-  std::string unit;    ///< edge unit of the amplitude: "um", "urad", "um/m/K"
+  std::string unit;  ///< edge unit of the amplitude: "um", "urad", "um/m/K"
   double si_per_unit = 1.0;
+  double guess = 0.0;        ///< SI; the value of an identified model, else 0
   double prior_mean = 0.0;   ///< SI
   double prior_sigma = 0.0;  ///< SI; 0 = no prior
 };
@@ -42,7 +43,8 @@ class EffectKind {
   /// Throws InputError naming file and line of the effect in the model file.
   virtual std::unique_ptr<BoundEffect> bind(const EffectSpec& spec, const std::string& model_file,
                                             const Machine& machine) const = 0;
-  /// Throws InputError when the campaign lacks a column that the effect needs; false when nothing varies.
+  /// Whether the driver varies in the campaign; without variation the amplitude cannot be told from a
+  /// constant. Throws InputError when the campaign lacks a column without which the effect makes no sense.
   virtual bool visible_in(const EffectSpec& spec, const Campaign& campaign) const = 0;
 };
 

@@ -7,6 +7,9 @@
 
 namespace volcal {
 
+/// Upper bound of Basis::support(): size of a buffer that any basis can write its values to.
+inline constexpr int kMaxBasisSupport = 64;
+
 /// A linear space of functions of one axis position. Thread-safe after construction.
 class Basis {
  public:
@@ -16,8 +19,8 @@ class Basis {
   virtual int size() const = 0;
   /// Largest number of basis functions that differ from zero at one position.
   virtual int support() const = 0;
-  /// Writes the `support()` values (or `order`-th derivatives) of the active functions at q; returns the index
-  /// of the first one. Outside the travel the end pieces are continued.
+  /// Writes the `support()` values (or `order`-th derivatives) of the active functions at q; returns the
+  /// index of the first one. Outside the travel the end pieces are continued.
   virtual int evaluate(double q, int order, double* values) const = 0;
   int evaluate(double q, double* values) const { return evaluate(q, 0, values); }
   /// Ends of the pieces on which the functions are smooth, ascending; first and last are the travel.
@@ -33,7 +36,8 @@ class Basis {
   Eigen::VectorXd row(double q, int order = 0) const;
 };
 
-/// Moments over [travel_min, travel_max]: integrals of B_j(q) and of q B_j(q), exact for piecewise polynomials.
+/// Moments over [travel_min, travel_max]: integrals of B_j(q) and of q B_j(q), exact for piecewise
+/// polynomials.
 struct BasisMoments {
   Eigen::VectorXd zeroth;
   Eigen::VectorXd first;

@@ -22,7 +22,8 @@ struct BasisKind {
   bool linear_axes;
   bool rotary_axes;
   bool uses_knots;
-  /// `spec` must be resolved: with `uses_knots`, `breakpoints` holds the pieces. Throws std::invalid_argument.
+  /// `spec` must be resolved: with `uses_knots`, `breakpoints` holds the pieces. Throws
+  /// std::invalid_argument.
   std::unique_ptr<Basis> (*make)(const FunctionSpec& spec, const Axis& axis);
 };
 

@@ -7,9 +7,9 @@
 ///   linear, workpiece side   D = T(r) E T(-r) T(q u)
 ///   rotary, tool side        D = T(c + dc) R_o E Rot(q') T(-c)
 ///   rotary, workpiece side   D = T(c) Rot(q') E R_o^-1 T(-(c + dc))
-/// First order (Zhao, Li and Tang 2011, error twists): dP_w = sum_i R_(w<-i) [d_i + e_i x arm_i + q_i (u_i - e_i)].
-/// The two differ by second order: |difference| <= sum of products of pairs of the angular errors (squareness
-/// included) times the largest arm, plus pairs angle x displacement; tested for random chains.
+/// First order (Zhao, Li and Tang 2011, error twists): dP_w = sum_i R_(w<-i) [d_i + e_i x arm_i + q_i (u_i -
+/// e_i)]. The two differ by second order: |difference| <= sum of products of pairs of the angular errors
+/// (squareness included) times the largest arm, plus pairs angle x displacement; tested for random chains.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -32,8 +32,9 @@ struct PoseErrors {
   std::array<std::array<T, 6>, kAxisCount> location{};
 };
 
-/// Sensitivity of the tool's pose to one joint's errors: displacement d at the arm's foot and rotation e, both
-/// in the joint's stator frame s, move the functional point by R_ws (d + e x arm_s) and turn the tool by R_ws e.
+/// Sensitivity of the tool's pose to one joint's errors: displacement d at the arm's foot and rotation e,
+/// both in the joint's stator frame s, move the functional point by R_ws (d + e x arm_s) and turn the tool by
+/// R_ws e.
 struct JointLever {
   AxisName axis = AxisName::X;
   bool workpiece_side = false;
@@ -78,7 +79,8 @@ class KinematicChain {
   Eigen::Vector3d nominal_point_w(const AxisPosition& position, const Eigen::Vector3d& tool_offset) const;
   /// Nominal rotation from tool to workpiece coordinates.
   Eigen::Matrix3d nominal_rotation_wt(const AxisPosition& position) const;
-  /// One lever per joint, workpiece to tool; `levers` must have joint_count() entries. Returns the nominal point.
+  /// One lever per joint, workpiece to tool; `levers` must have joint_count() entries. Returns the nominal
+  /// point.
   Eigen::Vector3d levers(const AxisPosition& position, const Eigen::Vector3d& tool_offset,
                          JointLever* levers) const;
   /// First-order pose error from given errors.
@@ -97,6 +99,8 @@ class KinematicChain {
 
   /// Displacement of the functional point per unit of one error: column of the first-order model.
   static Eigen::Vector3d motion_lever_w(const JointLever& lever, Component component);
+  /// Rotation of the tool per unit of one error motion; zero for displacements.
+  static Eigen::Vector3d motion_rotation_w(const JointLever& lever, Component component);
   /// Same for a location error of the lever's axis (squareness q e_k x e_axis, rotary location errors).
   static Eigen::Vector3d location_lever_w(const JointLever& lever, Component component);
   /// Rotation of the tool per unit of a location error; zero for squareness, which turns nothing.

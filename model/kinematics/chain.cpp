@@ -1,0 +1,127 @@
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Sign of a rotary location error in the tool's motion relative to the workpiece: it is stated for the
+/// physical axis line in the machine frame, and a table's axis line moves with the workpiece.
+double location_sign(const JointLever& lever, Component component) {
+  const bool zero_position = is_rotation(component) && direction_of(component) == direction_of(lever.axis);
+  return lever.workpiece_side && !zero_position ? -1.0 : 1.0;
+}
+
+}  // namespace
+
+KinematicChain::KinematicChain(const Machine& machine) {
+  joints_.reserve(machine.structure.joints.size());
+  for (const Joint& joint : machine.structure.joints) {
+    const Axis& axis = machine.axis(joint.axis);
+    joints_.push_back({joint.axis, joint.workpiece_side, axis.reference_point, axis.centre});
+  }
+}
+
+Vector3d KinematicChain::nominal_point_w(const AxisPosition& position, const Vector3d& tool_offset) const {
+  Vector3d point = tool_offset;
+  for (auto joint = joints_.rbegin(); joint != joints_.rend(); ++joint) {
+    const double q = position[index_of(joint->axis)];
+    const int direction = direction_of(joint->axis);
+    if (is_rotary(joint->axis)) {
+      point = (rotation_about(direction, q) * (point - joint->centre) + joint->centre).eval();
+    } else {
+      point[direction] += q;
+    }
+  }
+  return point;
+}
+
+Matrix3d KinematicChain::nominal_rotation_wt(const AxisPosition& position) const {
+  Matrix3d rotation = Matrix3d::Identity();
+  for (const ChainJoint& joint : joints_) {
+    if (!is_rotary(joint.axis)) continue;
+    rotation = (rotation * rotation_about(direction_of(joint.axis), position[index_of(joint.axis)])).eval();
+  }
+  return rotation;
+}
+
+Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& tool_offset,
+                                JointLever* levers) const {
+  // Tool to workpiece: `point` is the nominal functional point in the coordinates right of the joint.
+  Vector3d point = tool_offset;
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    const ChainJoint& joint = joints_[i];
+    JointLever& lever = levers[i];
+    lever.axis = joint.axis;
+    lever.workpiece_side = joint.workpiece_side;
+    lever.position = position[index_of(joint.axis)];
+    const int direction = direction_of(joint.axis);
+    if (is_rotary(joint.axis)) {
+      const Vector3d radius = point - joint.centre;
+      const Vector3d turned = rotation_about(direction, lever.position) * radius;
+      lever.arm_s = joint.workpiece_side ? radius : turned;
+      point = turned + joint.centre;
+    } else {
+      const Vector3d before = point - joint.reference_point;
+      point[direction] += lever.position;
+      lever.arm_s = joint.workpiece_side ? Vector3d(point - joint.reference_point) : before;
+    }
+  }
+  // Workpiece to tool: rotation of the rotary joints nearer the workpiece.
+  Matrix3d rotation = Matrix3d::Identity();
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    JointLever& lever = levers[i];
+    lever.rotation_ws = rotation;
+    if (!is_rotary(lever.axis)) continue;
+    rotation = (rotation * rotation_about(direction_of(lever.axis), lever.position)).eval();
+    if (lever.workpiece_side) lever.rotation_ws = rotation;
+  }
+  return point;
+}
+
+ToolTwist KinematicChain::first_order(const AxisPosition& position, const Vector3d& tool_offset,
+                                      const PoseErrors<double>& errors) const {
+  std::vector<JointLever> joint_levers(joints_.size());
+  levers(position, tool_offset, joint_levers.data());
+  ToolTwist twist;
+  for (const JointLever& lever : joint_levers) {
+    const auto& motion = errors.motion[index_of(lever.axis)];
+    const auto& location = errors.location[index_of(lever.axis)];
+    Vector3d& rotation_w =
+        lever.workpiece_side ? twist.rotation_workpiece_side_w : twist.rotation_tool_side_w;
+    for (const Component component : kAllComponents) {
+      const std::size_t k = index_of(component);
+      twist.displacement_w += motion_lever_w(lever, component) * motion[k];
+      twist.displacement_w += location_lever_w(lever, component) * location[k];
+      rotation_w += motion_rotation_w(lever, component) * motion[k];
+      rotation_w += location_rotation_w(lever, component) * location[k];
+    }
+  }
+  return twist;
+}
+
+Vector3d KinematicChain::motion_lever_w(const JointLever& lever, Component component) {
+  const Vector3d unit = Vector3d::Unit(direction_of(component));
+  if (!is_rotation(component)) return lever.rotation_ws * unit;
+  return lever.rotation_ws * unit.cross(lever.arm_s);
+}
+
+Vector3d KinematicChain::motion_rotation_w(const JointLever& lever, Component component) {
+  if (!is_rotation(component)) return Vector3d::Zero();
+  return lever.rotation_ws.col(direction_of(component));
+}
+
+Vector3d KinematicChain::location_lever_w(const JointLever& lever, Component component) {
+  if (is_rotary(lever.axis)) return location_sign(lever, component) * motion_lever_w(lever, component);
+  if (!is_rotation(component)) return Vector3d::Zero();
+  const Vector3d unit = Vector3d::Unit(direction_of(component));
+  return lever.rotation_ws * unit.cross(Vector3d::Unit(direction_of(lever.axis))) * lever.position;
+}
+
+Vector3d KinematicChain::location_rotation_w(const JointLever& lever, Component component) {
+  if (!is_rotary(lever.axis)) return Vector3d::Zero();
+  return location_sign(lever, component) * motion_rotation_w(lever, component);
+}
+
+}  // namespace volcal

@@ -1,0 +1,44 @@
+#include "volcal/model/observation/parameters.h"
+
+#include <algorithm>
+
+namespace volcal {
+
+std::optional<ParameterLayout::FunctionPlace> ParameterLayout::find(ErrorSymbol symbol) const {
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    const auto& members = groups[group].symbols;
+    const auto found = std::ranges::find(members, symbol);
+    if (found == members.end()) continue;
+    return FunctionPlace{static_cast<int>(group), static_cast<int>(found - members.begin())};
+  }
+  return std::nullopt;
+}
+
+const ParameterBlock* ParameterLayout::find_block(const std::string& name) const {
+  const auto found = std::ranges::find(blocks, name, &ParameterBlock::name);
+  return found == blocks.end() ? nullptr : &*found;
+}
+
+const ParameterBlock* ParameterLayout::find_location(LocationSymbol symbol) const {
+  const auto found = std::ranges::find(blocks, std::optional(symbol), &ParameterBlock::location);
+  return found == blocks.end() ? nullptr : &*found;
+}
+
+Eigen::VectorXd ParameterLayout::coefficients(ErrorSymbol symbol, const Eigen::VectorXd& parameters) const {
+  const auto place = find(symbol);
+  if (!place) return {};
+  const FunctionGroup& group = groups[static_cast<std::size_t>(place->group)];
+  Eigen::VectorXd result(group.basis->size());
+  for (int j = 0; j < group.basis->size(); ++j) result[j] = parameters[group.index(j, place->slot)];
+  return result;
+}
+
+std::vector<ErrorSymbol> ParameterLayout::symbols() const {
+  std::vector<ErrorSymbol> all;
+  for (const FunctionGroup& group : groups) {
+    all.insert(all.end(), group.symbols.begin(), group.symbols.end());
+  }
+  return all;
+}
+
+}  // namespace volcal

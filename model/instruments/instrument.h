@@ -38,8 +38,8 @@ struct NuisanceBlock {
   std::vector<bool> is_angle;       ///< unit rad (or dimensionless) instead of m
   Eigen::VectorXd guess;
   Eigen::VectorXd prior_mean;
-  Eigen::VectorXd prior_sigma;     ///< 0 = no prior
-  bool weak_default_prior = false; ///< the prior is ours, not the user's: stated in the result
+  Eigen::VectorXd prior_sigma;      ///< 0 = no prior
+  bool weak_default_prior = false;  ///< the prior is ours, not the user's: stated in the result
 
   int size() const { return static_cast<int>(guess.size()); }
 };
@@ -56,7 +56,10 @@ struct Linearization {
 struct SetupContext {
   const Setup& setup;
   const Machine& machine;
+  std::string campaign_file;                     ///< for messages
   std::vector<Eigen::Vector3d> nominal_point_w;  ///< per row, m
+
+  [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const;
 };
 
 /// An instrument applied to one setup. Thread-safe after construction.

@@ -19,16 +19,16 @@ namespace volcal {
 inline constexpr int kMaxGroups = 36;
 inline constexpr int kMaxSupport = 64;
 
-/// Derivatives of one row (all channels of one reading). Function part: coefficient j of slot s in group g has
-/// derivative basis_value[g][j - start] * weight[channel][g-th group's first weight + s].
+/// Derivatives of one row (all channels of one reading). Function part: coefficient j of slot s in group g
+/// has derivative basis_value[g][j - start] * weight[channel][g-th group's first weight + s].
 struct RowJacobian {
   int channels = 0;
   double predicted[kMaxChannels];
-  std::vector<int> start;                          ///< per group: first active basis function
-  std::vector<double> basis_value;                 ///< concatenated supports of the groups
-  std::vector<double> weight[kMaxChannels];        ///< concatenated slots of the groups
-  std::vector<int> tail_index;                     ///< parameters outside the functions
-  std::vector<double> tail_value[kMaxChannels];    ///< their derivatives
+  std::vector<int> start;                        ///< per group: first active basis function
+  std::vector<double> basis_value;               ///< concatenated supports of the groups
+  std::vector<double> weight[kMaxChannels];      ///< concatenated slots of the groups
+  std::vector<int> tail_index;                   ///< parameters outside the functions
+  std::vector<double> tail_value[kMaxChannels];  ///< their derivatives
 };
 
 class MeasurementModel {
@@ -48,9 +48,11 @@ class MeasurementModel {
   /// Parameters to start from: guesses, and the model file's coefficients where it has them.
   Eigen::VectorXd initial_parameters() const;
   /// Prediction of one reading, `channels` values, SI.
-  void predict(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, double* predicted) const;
+  void predict(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+               double* predicted) const;
   /// Prediction and derivatives; `out` is reused between calls.
-  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowJacobian& out) const;
+  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                 RowJacobian& out) const;
 
   /// Fixes the second-order remainder (exact minus first-order functional point) at these parameters; it is
   /// added to every later prediction. Without it predictions are first order.

@@ -1,0 +1,98 @@
+#pragma once
+/// A machine whose errors are known: any functions of position and state, assembled by exact homogeneous
+/// transforms. Workpiece coordinates `w`, machine coordinates at all axes zero; m, rad, degC, s.
+///
+///     p_w = D_1 D_2 ... D_n tool
+///     linear, tool side        D = T(q u) T(r) E T(-r)
+///     linear, workpiece side   D = T(r) E T(-r) T(q u)
+///     rotary, tool side        D = T(c + dc) R_o E Rot(q') T(-c)
+///     rotary, workpiece side   D = T(c) Rot(q') E R_o^-1 T(-(c + dc))
+///
+/// E = [Rz(EC) Ry(EB) Rx(EA) | (EX, EY, EZ)], 3-2-1 and exact (Bhattacharyya et al., eq. 6-8); u is the
+/// nominal direction turned by squareness; q' = q + zero-position error; R_o is the 3-2-1 rotation of the two
+/// tilts. Every error is actual minus nominal, tool relative to workpiece (ISO/TR 16907:2015, 3.14 and 7.1);
+/// a location error of a rotary axis is that of its physical axis line in the machine frame.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/model/description/symbols.h"
+
+namespace volcal::sim {
+
+/// What the machine is told and what surrounds it at one reading.
+struct MachineState {
+  std::array<double, kAxisCount> position{};        ///< commanded, m or rad
+  std::array<std::int8_t, kAxisCount> direction{};  ///< of approach: -1, 0 (neither), +1
+  double time = 0.0;                                ///< s, campaign clock
+  std::map<std::string, double> temperature;        ///< degC by channel
+};
+
+using ErrorFunction = std::function<double(double position)>;         ///< m or rad
+using StateError = std::function<double(const MachineState& state)>;  ///< m or rad
+
+inline constexpr double kReferenceTemperature = 20.0;  ///< degC, ISO 1
+
+class TruthMachine {
+ public:
+  /// A perfect machine. Throws std::invalid_argument when an axis of the structure is not described.
+  explicit TruthMachine(Machine machine);
+
+  const Machine& machine() const { return machine_; }
+
+  void set_error(ErrorSymbol symbol, ErrorFunction function);
+  /// Squareness (a symbol of the machine's datum) or location error of a rotary axis, its own rotation being
+  /// the zero position. Throws std::invalid_argument for any other symbol.
+  void set_location(LocationSymbol symbol, double value);
+  /// Adds +-reversal/2 by direction of approach of the moving axis; nothing where it is unknown.
+  void set_reversal(ErrorSymbol symbol, double reversal);
+  /// Positioning grows by per_kelvin (T - 20 degC) (q - home). Evaluating it without the channel throws
+  /// std::invalid_argument.
+  void set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel);
+  /// Anything else that an error motion depends on.
+  void add_state_error(ErrorSymbol symbol, StateError error);
+
+  /// The error function alone, without reversal, expansion and state errors.
+  double function_value(ErrorSymbol symbol, double position) const;
+  double location(LocationSymbol symbol) const;
+  /// Full reversal; 0 where none is set.
+  double reversal(ErrorSymbol symbol) const;
+  /// All contributions at a state.
+  double error(ErrorSymbol symbol, const MachineState& state) const;
+
+  /// Tool in workpiece coordinates; `tool_offset` is the functional point from the spindle reference.
+  Eigen::Matrix4d pose(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
+  Eigen::Matrix4d nominal_pose(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
+  Eigen::Vector3d point(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
+  Eigen::Vector3d nominal_point(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
+  /// Actual minus nominal functional point.
+  Eigen::Vector3d point_error(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
+
+  /// Rotation vector, actual relative to nominal orientation: tool in workpiece coordinates,
+  Eigen::Vector3d relative_rotation(const MachineState& state) const;
+  /// tool in bed coordinates,
+  Eigen::Vector3d tool_rotation(const MachineState& state) const;
+  /// table (workpiece) in bed coordinates.
+  Eigen::Vector3d table_rotation(const MachineState& state) const;
+
+ private:
+  enum class Side { Workpiece, Tool, Both };
+  Eigen::Matrix4d joint_transform(const Joint& joint, const MachineState& state) const;
+  Eigen::Matrix4d nominal_joint_transform(const Joint& joint, const MachineState& state) const;
+  Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& state) const;
+  Eigen::Vector3d direction_of_travel(AxisName axis) const;
+
+  Machine machine_;
+  std::map<ErrorSymbol, ErrorFunction> functions_;
+  std::map<ErrorSymbol, double> reversals_;
+  std::map<ErrorSymbol, std::vector<StateError>> state_errors_;
+  std::map<LocationSymbol, double> locations_;
+};
+
+}  // namespace volcal::sim

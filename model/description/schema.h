@@ -53,9 +53,11 @@ class Options {
  private:
   template <class T>
   std::optional<T> get(const std::string& stem) const {
-    const auto found = values_.find({stem, OptionValue(T{}).index()});
-    if (found == values_.end()) return std::nullopt;
-    return std::get<T>(found->second);
+    for (auto found = values_.lower_bound({stem, 0}); found != values_.end() && found->first.first == stem;
+         ++found) {
+      if (const T* value = std::get_if<T>(&found->second)) return *value;
+    }
+    return std::nullopt;
   }
 
   std::map<Key, OptionValue> values_;

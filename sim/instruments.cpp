@@ -17,6 +17,7 @@ constexpr int kMaxChannels = 3;
 struct SetupGeometry {
   Eigen::Vector3d first_w = Eigen::Vector3d::Zero();
   Eigen::Vector3d line_w = Eigen::Vector3d::Zero();  ///< unit; zero when all points coincide
+  Eigen::Vector3d centroid_w = Eigen::Vector3d::Zero();
 };
 
 /// One reading about to be taken.
@@ -103,7 +104,8 @@ int read_volumetric_points(const Sighting& sighting, Channels& value) {
   const RigidMotion& alignment = sighting.plan.truth.alignment;
   const Eigen::Vector3d error = sighting.point_w - sighting.nominal_w + alignment.translation +
                                 alignment.rotation.cross(sighting.nominal_w);
-  for (int k = 0; k < 3; ++k) value[static_cast<std::size_t>(k)] = error[k] + sighting.noise(0.0);
+  const double arm = (sighting.nominal_w - sighting.geometry.centroid_w).norm();
+  for (int k = 0; k < 3; ++k) value[static_cast<std::size_t>(k)] = error[k] + sighting.noise(arm);
   return 3;
 }
 
@@ -142,13 +144,16 @@ SetupGeometry geometry_of(const SetupPlan& plan, const MeasuringConditions& cond
   };
   SetupGeometry geometry;
   geometry.first_w = nominal(plan.points.front());
-  Eigen::Vector3d path = nominal(plan.points.back()) - geometry.first_w;
-  if (path.norm() < 1e-9) {
-    for (const CommandedPoint& point : plan.points) {
-      const Eigen::Vector3d other = nominal(point) - geometry.first_w;
-      if (other.norm() > path.norm()) path = other;
-    }
+  Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
+  for (const CommandedPoint& point : plan.points) {
+    const Eigen::Vector3d path = nominal(point) - geometry.first_w;
+    if (path.norm() > farthest.norm()) farthest = path;
+    geometry.centroid_w += path / static_cast<double>(plan.points.size());
   }
+  geometry.centroid_w += geometry.first_w;
+  constexpr double kSamePoint = 1e-9;
+  Eigen::Vector3d path = nominal(plan.points.back()) - geometry.first_w;
+  if (path.norm() < kSamePoint) path = farthest;
   geometry.line_w = path.norm() > 0.0 ? path.normalized() : path;
   return geometry;
 }

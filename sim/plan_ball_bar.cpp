@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "volcal/sim/paths.h"
+#include "volcal/sim/plan_tools.h"
+#include "volcal/sim/truth_machine.h"
+
+namespace volcal::sim {
+namespace {
+
+constexpr double kUsualRadius = 0.15;
+constexpr double kLargestShareOfTravel = 0.45;
+
+double radius_of(const BallBarCircles& settings, const Machine& machine) {
+  if (settings.radius > 0.0) return settings.radius;
+  double radius = kUsualRadius;
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) radius = std::min(radius, kLargestShareOfTravel * axis.travel());
+  }
+  return radius;
+}
+
+}  // namespace
+
+std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context) {
+  context.require_at_least(settings.points_per_turn, 8, "points_per_turn");
+  const double radius = radius_of(settings, context.machine);
+  const CommandedPoint centre = at_fraction(context.machine, settings.at);
+  const std::size_t tool = context.tool(settings.tool);
+  const Eigen::Vector3d centre_w =
+      TruthMachine(context.machine)
+          .nominal_point({centre.position, centre.direction, 0.0, {}}, context.machine.tools[tool].offset);
+  std::vector<SetupPlan> plans;
+  for (const std::string& plane_name : settings.planes) {
+    const Plane plane = parse_plane(plane_name, context);
+    for (const AxisName name : {plane.first, plane.second}) {
+      const Axis& axis = context.machine.axis(name);
+      const double q = centre.position[index_of(name)];
+      if (q - radius < axis.travel_min || q + radius > axis.travel_max) {
+        context.fail("the circle in " + plane_name + " leaves the travel of " + letter_of(name),
+                     "choose a smaller radius or another centre");
+      }
+    }
+    SetupPlan plan;
+    plan.name = context.prefix + "ballbar_" + plane_name;
+    plan.instrument = "ball-bar";
+    plan.tool = tool;
+    plan.points = circular_path(centre, plane.first, plane.second, radius, settings.points_per_turn);
+    plan.noise = settings.noise;
+    plan.seconds_per_reading = settings.seconds_per_reading;
+    RandomStream random(context.seed, "setup " + plan.name);
+    plan.truth.centre = centre_w;
+    plan.options.set("centre", Eigen::Vector3d(centre_w + settings.centre_error * random.normal_vector()));
+    const double length_error = settings.length_sigma.value_or(settings.length_error) * random.normal();
+    plan.truth.length_error = length_error;
+    if (settings.length_sigma) plan.options.set("length_sigma", *settings.length_sigma);
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace volcal::sim

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/sim/instruments.h"
+#include "volcal/sim/paths.h"
+#include "volcal/sim/random.h"
+#include "volcal/sim/study.h"
+
+namespace volcal::sim {
+namespace {
+
+std::vector<Eigen::Vector3d> true_tool_offsets(const Study& study) {
+  std::vector<Eigen::Vector3d> offsets;
+  for (const Tool& tool : study.machine.tools) {
+    RandomStream random(study.seed, "tool " + tool.name);
+    offsets.push_back(tool.offset + tool.offset_sigma * random.normal_vector());
+  }
+  return offsets;
+}
+
+void set_expansions(const Study& study, TruthMachine& truth) {
+  for (const Axis& axis : study.machine.axes) {
+    const auto exact = study.truth.expansions.find(axis.name);
+    if (exact != study.truth.expansions.end()) {
+      truth.set_scale_expansion(axis.name, exact->second.per_kelvin, exact->second.channel);
+    } else if (axis.expansion) {
+      RandomStream random(study.seed, std::string("expansion ") + letter_of(axis.name));
+      truth.set_scale_expansion(
+          axis.name, axis.expansion->per_kelvin + axis.expansion->per_kelvin_sigma * random.normal(),
+          axis.expansion->channel);
+    }
+  }
+}
+
+void check_channels(const Study& study) {
+  const auto check = [&](AxisName axis, const ScaleExpansion& expansion) {
+    const auto& channels = study.environment.channels;
+    if (std::ranges::find(channels, expansion.channel, &TemperatureChannel::name) != channels.end()) return;
+    throw InputError({study.file, 0},
+                     std::string("axis ") + letter_of(axis) + " expands with the temperature \"" +
+                         expansion.channel + "\", which the study does not simulate",
+                     "add a [[temperatures]] table with channel = \"" + expansion.channel + "\"");
+  };
+  for (const auto& [axis, expansion] : study.truth.expansions) check(axis, expansion);
+  for (const Axis& axis : study.machine.axes) {
+    if (axis.expansion && !study.truth.expansions.contains(axis.name)) check(axis.name, *axis.expansion);
+  }
+}
+
+std::vector<SetupPlan> all_plans(const Study& study) {
+  std::vector<SetupPlan> plans;
+  std::set<std::string> names;
+  for (const Measurement& measurement : study.measurements) {
+    for (SetupPlan& plan : plan_setups(measurement, study.machine, study.seed)) {
+      if (!names.insert(plan.name).second) {
+        throw InputError(measurement.place, "two setups would be called " + plan.name,
+                         "give the measurements different names");
+      }
+      plans.push_back(std::move(plan));
+    }
+  }
+  return plans;
+}
+
+Campaign validation_campaign(const Study& study, const TruthMachine& truth) {
+  Campaign campaign;
+  campaign.machine = study.machine;
+  std::vector<std::string> tools = study.validation.tools;
+  if (tools.empty()) tools.push_back(study.machine.tools.front().name);
+  std::vector<Eigen::Vector3d> nominal_offsets;
+  for (const Tool& tool : study.machine.tools) nominal_offsets.push_back(tool.offset);
+  const MeasuringConditions conditions{truth, study.environment, nominal_offsets, study.seed, true};
+  for (const std::string& tool : tools) {
+    const auto index = study.machine.tool_index(tool);
+    if (!index) {
+      throw InputError({study.file, 0}, "validation names the tool \"" + tool + "\", which does not exist",
+                       "use a tool of the machine file");
+    }
+    SetupPlan plan;
+    plan.name = "truth_" + tool;
+    plan.instrument = "volumetric-points";
+    plan.tool = *index;
+    RandomStream random(study.seed, "validation points " + tool);
+    plan.points = random_points(study.machine, study.validation.points, random);
+    Setup setup = measure(plan, conditions, 0.0);
+    setup.noise.set("constant", study.validation.stated_noise);
+    campaign.setups.push_back(std::move(setup));
+  }
+  return campaign;
+}
+
+}  // namespace
+
+TruthMachine true_machine(const Study& study) {
+  TruthMachine truth = study.truth.perfect ? TruthMachine(study.machine)
+                                           : random_truth(study.machine, study.seed, study.truth.random);
+  for (const auto& [symbol, value] : study.truth.locations) truth.set_location(symbol, value);
+  for (const auto& [symbol, value] : study.truth.reversals) truth.set_reversal(symbol, value);
+  set_expansions(study, truth);
+  if (study.truth.alter) study.truth.alter(truth);
+  return truth;
+}
+
+SimulatedCampaign simulate(const Study& study) {
+  if (study.machine.tools.empty()) {
+    throw InputError({study.file, 0}, "the machine has no tool", "add a [tools.NAME] table to its file");
+  }
+  check_channels(study);
+  SimulatedCampaign simulated{{}, {}, true_machine(study), true_tool_offsets(study), all_plans(study)};
+  simulated.campaign.machine = study.machine;
+  const MeasuringConditions conditions{simulated.truth, study.environment, simulated.tool_offsets,
+                                       study.seed};
+  double time = 0.0;
+  for (const SetupPlan& plan : simulated.plans) {
+    simulated.campaign.setups.push_back(measure(plan, conditions, time));
+    time += plan.seconds_per_reading * static_cast<double>(plan.points.size()) + study.pause_between_setups;
+  }
+  simulated.validation = validation_campaign(study, simulated.truth);
+  return simulated;
+}
+
+}  // namespace volcal::sim

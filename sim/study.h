@@ -1,0 +1,60 @@
+#pragma once
+/// A study: a machine, its hidden truth, surroundings and measurements; and the campaign that comes of it.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/campaign.h"
+#include "volcal/sim/environment.h"
+#include "volcal/sim/measurements.h"
+#include "volcal/sim/random_truth.h"
+#include "volcal/sim/truth_machine.h"
+
+namespace volcal::sim {
+
+struct TruthSettings {
+  bool perfect = false;  ///< no errors but those listed below
+  RandomTruthOptions random;
+  std::map<LocationSymbol, double> locations;      ///< in place of the random ones, rad or m
+  std::map<ErrorSymbol, double> reversals;         ///< in place of the random ones, rad or m
+  std::map<AxisName, ScaleExpansion> expansions;   ///< exact, in place of the machine file's
+  std::function<void(TruthMachine& truth)> alter;  ///< anything else, applied last
+};
+
+/// Noise-free error vectors at random points, temperatures 20 degC, direction unknown.
+struct ValidationSettings {
+  int points = 400;
+  std::vector<std::string> tools;  ///< empty = the first tool only; one setup per tool
+  double stated_noise = 0.1e-6;    ///< m, what the campaign file says
+};
+
+struct Study {
+  std::string file;  ///< where it was read from; empty when made in memory
+  Machine machine;
+  std::uint64_t seed = 1;
+  TruthSettings truth;
+  Environment environment;
+  std::vector<Measurement> measurements;
+  ValidationSettings validation;
+  double pause_between_setups = 600.0;  ///< s
+};
+
+struct SimulatedCampaign {
+  Campaign campaign;
+  Campaign validation;
+  TruthMachine truth;
+  std::vector<Eigen::Vector3d> tool_offsets;  ///< true ones, by index into Machine::tools, m
+  std::vector<SetupPlan> plans;               ///< of the campaign's setups, true nuisance values included
+};
+
+/// The truth of a study alone: the random machine with expansions (true coefficients drawn from the stated
+/// uncertainty) and what the study sets.
+TruthMachine true_machine(const Study& study);
+
+/// Repeatable to the bit for a given study and seed. Throws InputError for a study that makes no sense.
+SimulatedCampaign simulate(const Study& study);
+
+}  // namespace volcal::sim

@@ -9,7 +9,7 @@ namespace volcal {
 #define VOLCAL_EFFECTS(EFFECT) EFFECT(reversal_effect)
 
 #define VOLCAL_DECLARE(name) const EffectKind& name();
-#define VOLCAL_ADDRESS(name) &name(),
+#define VOLCAL_ADDRESS(name) &(name)(),
 VOLCAL_EFFECTS(VOLCAL_DECLARE)
 
 std::span<const EffectKind* const> effect_kinds() {

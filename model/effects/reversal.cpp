@@ -39,7 +39,7 @@ ErrorSymbol checked_symbol(const EffectSpec& spec, const std::string& model_file
   const auto symbol = ErrorSymbol::parse(*text);
   if (!symbol) {
     throw InputError(place, "\"" + *text + "\" is no error motion",
-                     "write E, the component X Y Z A B C, the moving axis, as in \"EXX\" or \"ECX\"");
+                     "write E, the component X Y Z A B C, the moving axis, as in EXX or ECX");
   }
   return *symbol;
 }

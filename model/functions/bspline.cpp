@@ -149,7 +149,7 @@ std::unique_ptr<Basis> make_bspline(const FunctionSpec& spec, const Axis& axis) 
 
 }  // namespace
 
-extern const BasisKind bspline_basis = {
+extern const BasisKind kBSplineBasis = {
     .name = "bspline",
     .summary = "clamped B-spline of degree 1 to 3; degrees 1 and 2 are the linear and quadratic 1-D elements",
     .source = "C. de Boor, A Practical Guide to Splines, 1978, ch. IX-X",

@@ -25,6 +25,7 @@ class Fourier final : public Basis {
     const double longest = std::numbers::pi / (2.0 * harmonics_);
     const int count = static_cast<int>(std::ceil((travel_max_ - travel_min_) / longest));
     std::vector<double> ends;
+    ends.reserve(static_cast<std::size_t>(count) + 1);
     for (int i = 0; i < count; ++i) ends.push_back(travel_min_ + (travel_max_ - travel_min_) * i / count);
     ends.push_back(travel_max_);
     return ends;
@@ -33,6 +34,7 @@ class Fourier final : public Basis {
 
   int evaluate(double q, int order, double* values) const override {
     values[0] = order == 0 ? 1.0 : 0.0;
+    double* pair = values + 1;
     const double c1 = std::cos(q);
     const double s1 = std::sin(q);
     double c = 1.0;
@@ -41,7 +43,8 @@ class Fourier final : public Basis {
       const double next = c * c1 - s * s1;
       s = s * c1 + c * s1;
       c = next;
-      write_derivative(k, c, s, order, values + 2 * k - 1);
+      write_derivative(k, c, s, order, pair);
+      pair += 2;
     }
     return 0;
   }
@@ -73,7 +76,7 @@ std::unique_ptr<Basis> make_fourier(const FunctionSpec& spec, const Axis& axis) 
 
 }  // namespace
 
-extern const BasisKind fourier_basis = {
+extern const BasisKind kFourierBasis = {
     .name = "fourier",
     .summary = "1, cos kq, sin kq for k = 1 to `degree`, for rotary axes",
     .source = "M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 1964, ch. 4",

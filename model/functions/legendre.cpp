@@ -61,7 +61,7 @@ std::unique_ptr<Basis> make_legendre(const FunctionSpec& spec, const Axis& axis)
 
 }  // namespace
 
-extern const BasisKind legendre_basis = {
+extern const BasisKind kLegendreBasis = {
     .name = "legendre",
     .summary = "Legendre polynomials of degree 0 to `degree`, scaled to the travel",
     .source = "M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 1964, ch. 22",

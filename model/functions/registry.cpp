@@ -8,13 +8,13 @@ namespace volcal {
 
 // One line per basis.
 #define VOLCAL_BASES(BASIS) \
-  BASIS(bspline_basis)      \
-  BASIS(legendre_basis)     \
-  BASIS(fourier_basis)      \
-  BASIS(zero_basis)
+  BASIS(kBSplineBasis)      \
+  BASIS(kLegendreBasis)     \
+  BASIS(kFourierBasis)      \
+  BASIS(kZeroBasis)
 
 #define VOLCAL_DECLARE(name) extern const BasisKind name;
-#define VOLCAL_ADDRESS(name) &name,
+#define VOLCAL_ADDRESS(name) &(name),
 VOLCAL_BASES(VOLCAL_DECLARE)
 
 std::span<const BasisKind* const> basis_kinds() {

@@ -26,7 +26,7 @@ std::unique_ptr<Basis> make_zero(const FunctionSpec&, const Axis& axis) {
 
 }  // namespace
 
-extern const BasisKind zero_basis = {
+extern const BasisKind kZeroBasis = {
     .name = "zero",
     .summary = "the function is switched off: left out of the model",
     .source = "reduced models such as the 12-error model of a three-axis machining centre",

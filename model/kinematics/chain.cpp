@@ -25,11 +25,12 @@ KinematicChain::KinematicChain(const Machine& machine) {
 
 Vector3d KinematicChain::nominal_point_w(const AxisPosition& position, const Vector3d& tool_offset) const {
   Vector3d point = tool_offset;
-  for (auto joint = joints_.rbegin(); joint != joints_.rend(); ++joint) {
-    const double q = position[index_of(joint->axis)];
-    const int direction = direction_of(joint->axis);
-    if (is_rotary(joint->axis)) {
-      point = (rotation_about(direction, q) * (point - joint->centre) + joint->centre).eval();
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    const ChainJoint& joint = joints_[i];
+    const double q = position[index_of(joint.axis)];
+    const int direction = direction_of(joint.axis);
+    if (is_rotary(joint.axis)) {
+      point = (rotation_about(direction, q) * (point - joint.centre) + joint.centre).eval();
     } else {
       point[direction] += q;
     }

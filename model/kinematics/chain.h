@@ -124,22 +124,23 @@ KinematicChain::Pose<T> KinematicChain::exact_pose(const AxisPosition& position,
   using Matrix = Eigen::Matrix<T, 3, 3>;
   Pose<T> pose;
   pose.point_w = tool_offset;
-  for (auto joint = joints_.rbegin(); joint != joints_.rend(); ++joint) {
-    const auto& motion = errors.motion[index_of(joint->axis)];
-    const auto& location = errors.location[index_of(joint->axis)];
-    const T q(position[index_of(joint->axis)]);
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    const ChainJoint& joint = joints_[i];
+    const auto& motion = errors.motion[index_of(joint.axis)];
+    const auto& location = errors.location[index_of(joint.axis)];
+    const T q(position[index_of(joint.axis)]);
     const Vector shift(motion[0], motion[1], motion[2]);
     const Matrix turn = rotation_321<T>(motion[3], motion[4], motion[5]);
-    const int direction = direction_of(joint->axis);
+    const int direction = direction_of(joint.axis);
     Vector& p = pose.point_w;
-    if (!is_rotary(joint->axis)) {
+    if (!is_rotary(joint.axis)) {
       const Vector axis = Vector::Unit(direction);
       const Vector alpha(location[3], location[4], location[5]);
       const Vector travel = (axis + alpha.cross(axis)).normalized() * q;
-      const Vector r = joint->reference_point.template cast<T>();
-      if (joint->workpiece_side) p += travel;
+      const Vector r = joint.reference_point.template cast<T>();
+      if (joint.workpiece_side) p += travel;
       p = (turn * (p - r) + r + shift).eval();
-      if (!joint->workpiece_side) p += travel;
+      if (!joint.workpiece_side) p += travel;
       pose.rotation_wt = (turn * pose.rotation_wt).eval();
       continue;
     }
@@ -147,9 +148,9 @@ KinematicChain::Pose<T> KinematicChain::exact_pose(const AxisPosition& position,
     const Matrix about_axis = rotation_about<T>(direction, q + tilt[direction]);
     tilt[direction] = T(0.0);
     const Matrix orientation = rotation_321<T>(tilt[0], tilt[1], tilt[2]);
-    const Vector c = joint->centre.template cast<T>();
+    const Vector c = joint.centre.template cast<T>();
     const Vector c_actual = c + Vector(location[0], location[1], location[2]);
-    if (joint->workpiece_side) {
+    if (joint.workpiece_side) {
       const Matrix stator = (turn * orientation.transpose()).eval();
       p = (about_axis * (stator * (p - c_actual) + shift) + c).eval();
       pose.rotation_wt = (about_axis * stator * pose.rotation_wt).eval();

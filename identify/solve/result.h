@@ -1,6 +1,7 @@
 #pragma once
 /// What an identification returns: the identified machine with its covariance, every residual, and what the
-/// data could and could not determine. Plain data, SI; written to files by identify/io, drawn by identify/report.
+/// data could and could not determine. Plain data, SI; written to files by identify/io, drawn by
+/// identify/report.
 
 #include <Eigen/Core>
 #include <map>
@@ -19,17 +20,17 @@ std::string_view to_string(FitStatus status);
 
 /// One observation (one channel of one reading) with its fit. SI; standardised values are dimensionless.
 struct ResidualRecord {
-  std::size_t setup = 0;         ///< index into FitResult::setups
-  std::size_t row = 0;           ///< index into the setup's readings
+  std::size_t setup = 0;  ///< index into FitResult::setups
+  std::size_t row = 0;    ///< index into the setup's readings
   int channel = 0;
   std::int64_t source_line = 0;  ///< 1-based line of the file
   double reading = 0.0;
   double predicted = 0.0;
-  double sigma = 0.0;            ///< standard deviation used in the last adjustment (after variance components)
-  double redundancy = 0.0;       ///< Baarda's redundancy number, 0..1
-  double w = 0.0;                ///< Baarda's w = residual / (sigma sqrt(redundancy)); 0 when redundancy is 0
-  bool flagged = false;          ///< |w| above the critical value
-  bool removed = false;          ///< taken out of the adjustment
+  double sigma = 0.0;       ///< standard deviation used in the last adjustment (after variance components)
+  double redundancy = 0.0;  ///< Baarda's redundancy number, 0..1
+  double w = 0.0;           ///< Baarda's w = residual / (sigma sqrt(redundancy)); 0 when redundancy is 0
+  bool flagged = false;     ///< |w| above the critical value
+  bool removed = false;     ///< taken out of the adjustment
 
   double residual() const { return reading - predicted; }
 };
@@ -39,7 +40,7 @@ struct SetupSummary {
   std::string name;
   std::string instrument;
   std::string tool;
-  std::string reading_unit;   ///< edge unit of the residuals: "um" or "urad"
+  std::string reading_unit;  ///< edge unit of the residuals: "um" or "urad"
   std::size_t observations = 0;
   double chi2 = 0.0;          ///< with the stated sigma
   double redundancy = 0.0;    ///< sum of redundancy numbers
@@ -51,7 +52,7 @@ struct SetupSummary {
 struct VarianceComponent {
   std::string instrument;
   double scale = 1.0;
-  double scale_u = 0.0;        ///< standard uncertainty of the scale
+  double scale_u = 0.0;  ///< standard uncertainty of the scale
   double redundancy = 0.0;
   std::size_t observations = 0;
 };
@@ -63,16 +64,17 @@ struct Observability {
   double visible_fraction = 0.0;  ///< share of the error's signal that no other parameter can imitate, 0..1
   double u_rms = 0.0;             ///< root mean square standard uncertainty over the measured travel, SI
   double effective_parameters = 0.0;
-  std::string reason;             ///< when not visible: why, in the user's words
-  std::string remedy;             ///< when not visible: what to measure
+  std::string reason;  ///< when not visible: why, in the user's words
+  std::string remedy;  ///< when not visible: what to measure
 };
 
 /// What the data cannot determine.
 struct RankReport {
-  int parameters = 0;                     ///< after the datum
+  int parameters = 0;  ///< after the datum
   int rank = 0;
-  std::vector<std::string> invisible;     ///< one sentence per invisible combination of errors
-  std::vector<std::string> held_by_prior; ///< nuisance parameters held at their guess by a weak default prior
+  std::vector<std::string> invisible;  ///< one sentence per invisible combination of errors
+  std::vector<std::string>
+      held_by_prior;  ///< nuisance parameters held at their guess by a weak default prior
   std::vector<Observability> errors;
 };
 
@@ -80,9 +82,9 @@ struct RankReport {
 struct FunctionSummary {
   ErrorSymbol symbol;
   int intervals = 0;
-  bool smoothed = false;              ///< smoothing prior in force (knots = "auto")
+  bool smoothed = false;  ///< smoothing prior in force (knots = "auto")
   double effective_parameters = 0.0;
-  double measured_min = 0.0;          ///< range of positions with readings, m or rad
+  double measured_min = 0.0;  ///< range of positions with readings, m or rad
   double measured_max = 0.0;
 };
 
@@ -96,17 +98,17 @@ struct FitResult {
   std::vector<std::string> messages;  ///< warnings and explanations for the user, one per line
 
   Machine machine;
-  ModelSpec identified;               ///< model with breakpoints, coefficients and squareness; can be loaded again
+  ModelSpec identified;  ///< model with breakpoints, coefficients and squareness; can be loaded again
   ParameterLayout layout;
-  Eigen::VectorXd parameters;         ///< SI
-  Eigen::MatrixXd covariance;         ///< of `parameters`, SI; singular by the datum
+  Eigen::VectorXd parameters;  ///< SI
+  Eigen::MatrixXd covariance;  ///< of `parameters`, SI; singular by the datum
   double reference_temperature_degC = 20.0;
   bool temperature_is_campaign_mean = false;
 
-  double sigma0 = 0.0;                ///< sqrt(chi2 / dof) with the stated sigma
+  double sigma0 = 0.0;  ///< sqrt(chi2 / dof) with the stated sigma
   double chi2 = 0.0;
   double dof = 0.0;
-  double coverage_factor = 1.96;      ///< U95 = coverage_factor u
+  double coverage_factor = 1.96;  ///< U95 = coverage_factor u
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;

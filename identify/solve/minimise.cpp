@@ -1,0 +1,294 @@
+#include "volcal/identify/solve/minimise.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "volcal/identify/solve/dense.h"
+
+namespace volcal {
+
+GaussianPrior GaussianPrior::none(int size) {
+  return {Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
+}
+
+double GaussianPrior::cost(const Eigen::VectorXd& z) const {
+  const Eigen::VectorXd d = z - mean;
+  return 0.5 * d.dot(precision * d);
+}
+
+namespace {
+
+std::unique_ptr<ceres::LossFunction> make_loss(const MinimiseOptions& options) {
+  switch (options.loss) {
+    case RobustLoss::Huber:
+      return std::make_unique<ceres::HuberLoss>(options.loss_width);
+    case RobustLoss::Cauchy:
+      return std::make_unique<ceres::CauchyLoss>(options.loss_width);
+    case RobustLoss::None:
+      break;
+  }
+  return nullptr;
+}
+
+/// Root R and vector v with R^T R = matrix and R^T v = gradient; falls back on the visible eigenspace.
+void square_root(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient, Eigen::MatrixXd& root,
+                 Eigen::VectorXd& vector) {
+  if (const auto lower = cholesky_lower(matrix)) {
+    root = lower->transpose();
+    vector = lower->triangularView<Eigen::Lower>().solve(gradient);
+    return;
+  }
+  const SymmetricEigen eigen = eigen_decomposition(matrix);
+  const double floor = 1e-14 * std::max(eigen.values.maxCoeff(), 0.0);
+  root = Eigen::MatrixXd::Zero(matrix.rows(), matrix.cols());
+  vector = Eigen::VectorXd::Zero(matrix.rows());
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    if (eigen.values[i] <= floor) continue;
+    const double s = std::sqrt(eigen.values[i]);
+    root.row(i) = s * eigen.vectors.col(i).transpose();
+    vector[i] = eigen.vectors.col(i).dot(gradient) / s;
+  }
+}
+
+class CompressedCost final : public ceres::CostFunction {
+ public:
+  CompressedCost(const NormalAccumulator& accumulator, const DatumSpace& datum, const GaussianPrior& prior)
+      : accumulator_(accumulator), datum_(datum), prior_(prior) {
+    mutable_parameter_block_sizes()->push_back(datum.size());
+    set_num_residuals(datum.size() + 1);
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    const int n = datum_.size();
+    const Eigen::Map<const Eigen::VectorXd> z(parameters[0], n);
+    refresh(z);
+    if (!std::isfinite(cost_)) return false;
+    Eigen::Map<Eigen::VectorXd> out(residuals, n + 1);
+    out.setZero();
+    if (jacobians == nullptr || jacobians[0] == nullptr) {
+      out[n] = std::sqrt(2.0 * cost_);
+      return true;
+    }
+    Eigen::MatrixXd root;
+    Eigen::VectorXd vector;
+    square_root(matrix_, gradient_, root, vector);
+    out.head(n) = vector;
+    out[n] = std::sqrt(std::max(0.0, 2.0 * cost_ - vector.squaredNorm()));
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor> jacobian(jacobians[0], n + 1, n);
+    jacobian.topRows(n) = root;
+    jacobian.row(n).setZero();
+    return true;
+  }
+
+ private:
+  /// Ceres asks for the cost of a step first and, when it is taken, for the Jacobian at the same point.
+  void refresh(const Eigen::Map<const Eigen::VectorXd>& z) const {
+    if (z_.size() == z.size() && z_ == z) return;
+    z_ = z;
+    const NormalEquations sums = accumulator_.accumulate(datum_.raw(z_));
+    matrix_ = datum_.reduce_matrix(sums.matrix) + prior_.precision;
+    gradient_ = datum_.reduce_gradient(sums.gradient) + prior_.gradient(z_);
+    cost_ = sums.cost + prior_.cost(z_);
+  }
+
+  const NormalAccumulator& accumulator_;
+  const DatumSpace& datum_;
+  const GaussianPrior& prior_;
+  mutable Eigen::VectorXd z_;
+  mutable Eigen::MatrixXd matrix_;
+  mutable Eigen::VectorXd gradient_;
+  mutable double cost_ = 0.0;
+};
+
+ceres::Solver::Options solver_options(const MinimiseOptions& options) {
+  ceres::Solver::Options ceres_options;
+  ceres_options.minimizer_type = ceres::TRUST_REGION;
+  ceres_options.trust_region_strategy_type = ceres::LEVENBERG_MARQUARDT;
+  ceres_options.initial_trust_region_radius = 1e8;
+  ceres_options.max_num_iterations = options.max_iterations;
+  ceres_options.function_tolerance = options.function_tolerance;
+  ceres_options.gradient_tolerance = 1e-14;
+  ceres_options.parameter_tolerance = 1e-12;
+  ceres_options.num_threads = options.threads;
+  ceres_options.logging_type = ceres::SILENT;
+  return ceres_options;
+}
+
+MinimiseSummary summarise(const ceres::Solver::Summary& ceres_summary) {
+  return {ceres_summary.termination_type == ceres::CONVERGENCE,
+          static_cast<int>(ceres_summary.iterations.size()) - 1, ceres_summary.initial_cost,
+          ceres_summary.final_cost, ceres_summary.message};
+}
+
+MinimiseSummary minimise_compressed(const ReadingIndex& index, const std::vector<double>& weight,
+                                    const DatumSpace& datum, const GaussianPrior& prior,
+                                    const MinimiseOptions& options, Eigen::VectorXd& z) {
+  const auto loss = make_loss(options);
+  const NormalAccumulator accumulator(index, weight, loss.get(), options.threads);
+  ceres::Problem problem;
+  problem.AddResidualBlock(new CompressedCost(accumulator, datum, prior), nullptr, z.data());
+  ceres::Solver::Options ceres_options = solver_options(options);
+  ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  ceres_options.dense_linear_algebra_library_type = ceres::LAPACK;
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, &problem, &summary);
+  return summarise(summary);
+}
+
+/// The plain problem's parameter blocks: one per function and per block, in reduced coordinates.
+struct ReducedBlocks {
+  explicit ReducedBlocks(const DatumSpace& datum) {
+    for (const auto& function : datum.functions()) add(function.offset, function.size());
+    for (const auto& block : datum.blocks()) add(block.offset, block.size);
+  }
+  void add(int offset, int size) {
+    if (size > 0) blocks.push_back({offset, size});
+  }
+  std::vector<std::pair<int, int>> blocks;  ///< offset, size
+};
+
+/// Whitened "predicted minus observed" of one reading.
+class ReadingCost final : public ceres::CostFunction {
+ public:
+  ReadingCost(const MeasurementModel& model, const DatumSpace& datum, std::vector<std::pair<int, int>> blocks,
+              std::size_t setup, std::size_t row, int channel, double weight)
+      : model_(model),
+        datum_(datum),
+        blocks_(std::move(blocks)),
+        setup_(setup),
+        row_(row),
+        channel_(channel),
+        scale_(std::sqrt(weight)) {
+    for (const auto& [offset, size] : blocks_) mutable_parameter_block_sizes()->push_back(size);
+    set_num_residuals(1);
+  }
+
+  void set_all(const Eigen::VectorXd* z) { all_ = z; }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::VectorXd z = *all_;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      z.segment(blocks_[b].first, blocks_[b].second) =
+          Eigen::Map<const Eigen::VectorXd>(parameters[b], blocks_[b].second);
+    }
+    RowJacobian row;
+    model_.linearize(setup_, row_, datum_.raw(z), row);
+    const auto& value = model_.campaign().setups[setup_].readings.value;
+    residuals[0] = scale_ * (row.predicted[channel_] - value[static_cast<std::size_t>(channel_)][row_]);
+    if (jacobians == nullptr) return true;
+    const Eigen::VectorXd gradient = datum_.reduce_gradient(dense_row(model_.layout(), row, channel_));
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (jacobians[b] == nullptr) continue;
+      Eigen::Map<Eigen::VectorXd>(jacobians[b], blocks_[b].second) =
+          scale_ * gradient.segment(blocks_[b].first, blocks_[b].second);
+    }
+    return true;
+  }
+
+ private:
+  const MeasurementModel& model_;
+  const DatumSpace& datum_;
+  std::vector<std::pair<int, int>> blocks_;
+  std::size_t setup_;
+  std::size_t row_;
+  int channel_;
+  double scale_;
+  const Eigen::VectorXd* all_ = nullptr;
+};
+
+/// Prior as root (z - mean) over all blocks.
+class PriorCost final : public ceres::CostFunction {
+ public:
+  PriorCost(const GaussianPrior& prior, std::vector<std::pair<int, int>> blocks)
+      : mean_(prior.mean), blocks_(std::move(blocks)) {
+    Eigen::VectorXd unused;
+    square_root(prior.precision, Eigen::VectorXd::Zero(mean_.size()), root_, unused);
+    for (const auto& [offset, size] : blocks_) mutable_parameter_block_sizes()->push_back(size);
+    set_num_residuals(static_cast<int>(root_.rows()));
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+    Eigen::VectorXd z = mean_;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      z.segment(blocks_[b].first, blocks_[b].second) =
+          Eigen::Map<const Eigen::VectorXd>(parameters[b], blocks_[b].second);
+    }
+    Eigen::Map<Eigen::VectorXd>(residuals, root_.rows()) = root_ * (z - mean_);
+    if (jacobians == nullptr) return true;
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      if (jacobians[b] == nullptr) continue;
+      Eigen::Map<RowMajor>(jacobians[b], root_.rows(), blocks_[b].second) =
+          root_.middleCols(blocks_[b].first, blocks_[b].second);
+    }
+    return true;
+  }
+
+ private:
+  Eigen::VectorXd mean_;
+  std::vector<std::pair<int, int>> blocks_;
+  Eigen::MatrixXd root_;
+};
+
+MinimiseSummary minimise_per_reading(const ReadingIndex& index, const std::vector<double>& weight,
+                                     const DatumSpace& datum, const GaussianPrior& prior,
+                                     const MinimiseOptions& options, Eigen::VectorXd& z) {
+  const MeasurementModel& model = index.model();
+  const ReducedBlocks all(datum);
+  const Eigen::VectorXd start = z;
+  std::vector<int> block_at(static_cast<std::size_t>(datum.size()));
+  for (std::size_t b = 0; b < all.blocks.size(); ++b) {
+    for (int k = 0; k < all.blocks[b].second; ++k)
+      block_at[static_cast<std::size_t>(all.blocks[b].first + k)] = static_cast<int>(b);
+  }
+  ceres::Problem problem;
+  for (std::size_t setup = 0; setup < model.campaign().setups.size(); ++setup) {
+    RowJacobian row;
+    for (std::size_t reading = 0; reading < model.campaign().setups[setup].readings.size(); ++reading) {
+      model.linearize(setup, reading, datum.raw(start), row);
+      for (int channel = 0; channel < row.channels; ++channel) {
+        const double w = weight[index.first_observation(setup, reading) + static_cast<std::size_t>(channel)];
+        if (w == 0.0) continue;
+        const auto touched = touched_parameters(model.layout(), row);
+        const std::vector<bool> active = datum.touched(touched);
+        std::vector<std::pair<int, int>> blocks;
+        std::vector<double*> pointers;
+        for (const auto& block : all.blocks) {
+          if (!active[static_cast<std::size_t>(block.first)]) continue;
+          blocks.push_back(block);
+          pointers.push_back(z.data() + block.first);
+        }
+        auto* cost = new ReadingCost(model, datum, blocks, setup, reading, channel, w);
+        cost->set_all(&start);
+        problem.AddResidualBlock(cost, make_loss(options).release(), pointers);
+      }
+    }
+  }
+  std::vector<double*> pointers;
+  for (const auto& block : all.blocks) pointers.push_back(z.data() + block.first);
+  problem.AddResidualBlock(new PriorCost(prior, all.blocks), nullptr, pointers);
+  ceres::Solver::Options ceres_options = solver_options(options);
+  ceres_options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  ceres_options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  ceres::Solver::Summary summary;
+  ceres::Solve(ceres_options, &problem, &summary);
+  return summarise(summary);
+}
+
+}  // namespace
+
+MinimiseSummary minimise(const ReadingIndex& index, const std::vector<double>& weight,
+                         const DatumSpace& datum, const GaussianPrior& prior, const MinimiseOptions& options,
+                         Eigen::VectorXd& z) {
+  if (datum.size() == 0) return {true, 0, 0.0, 0.0, "nothing to estimate"};
+  return options.solver == SolverKind::Compressed
+             ? minimise_compressed(index, weight, datum, prior, options, z)
+             : minimise_per_reading(index, weight, datum, prior, options, z);
+}
+
+}  // namespace volcal

@@ -1,0 +1,78 @@
+#pragma once
+/// Weighted normal equations of a campaign, accumulated reading by reading without storing a Jacobian.
+/// Readings are visited by knot cell, so that the active coefficients of a batch are the same and its outer
+/// products are one dense matrix product. Sums run over chunks fixed by the number of readings: results do
+/// not depend on the number of threads.
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "volcal/model/observation/measurement_model.h"
+
+namespace ceres {
+class LossFunction;
+}
+
+namespace volcal {
+
+/// M = J^T W J (upper triangle filled until symmetrised), g = J^T W e with e = predicted - reading,
+/// cost = 1/2 sum rho(w e^2).
+struct NormalEquations {
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd gradient;
+  double cost = 0.0;
+  double squares = 0.0;  ///< sum of w e^2, loss not applied
+  std::size_t observations = 0;
+};
+
+/// Observation numbering: setup by setup, row by row, channel by channel.
+class ReadingIndex {
+ public:
+  explicit ReadingIndex(const MeasurementModel& model);
+
+  struct Reading {
+    std::uint32_t setup;
+    std::uint32_t row;
+  };
+  std::size_t observations() const { return observations_; }
+  std::size_t first_observation(std::size_t setup, std::size_t row) const {
+    return first_[setup] + row * static_cast<std::size_t>(model_.bound(setup).channels());
+  }
+  /// Readings sorted by knot cell, then setup; `cell_ends[i]` is one past the last reading of batch i.
+  const std::vector<Reading>& sorted() const { return sorted_; }
+  const std::vector<std::uint32_t>& batch_ends() const { return batch_ends_; }
+  const MeasurementModel& model() const { return model_; }
+
+ private:
+  const MeasurementModel& model_;
+  std::vector<std::size_t> first_;
+  std::size_t observations_ = 0;
+  std::vector<Reading> sorted_;
+  std::vector<std::uint32_t> batch_ends_;
+};
+
+class NormalAccumulator {
+ public:
+  /// `weight`: 1/sigma^2 per observation, 0 = left out. `loss` may be null (least squares).
+  NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
+                    const ceres::LossFunction* loss, int threads);
+
+  /// All readings, or only those of setups for which `include[setup]`.
+  NormalEquations accumulate(const Eigen::VectorXd& parameters,
+                             const std::vector<bool>* include = nullptr) const;
+  double cost(const Eigen::VectorXd& parameters) const;
+
+ private:
+  struct Chunk;
+  template <class Work>
+  void for_each_chunk(const Work& work) const;
+
+  const ReadingIndex& index_;
+  const std::vector<double>& weight_;
+  const ceres::LossFunction* loss_;
+  int threads_;
+  std::vector<std::size_t> chunk_ends_;  ///< batch index one past the end of each chunk
+};
+
+}  // namespace volcal

@@ -1,0 +1,302 @@
+#include "volcal/identify/solve/rank.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/solve/resolution.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kWideDisplacement = 1e-3;
+constexpr double kWideRotation = 1e-3;
+constexpr double kWideSquareness = 10e-3;
+constexpr double kWideNuisance = 1.0;
+constexpr double kCurvatureShare =
+    1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
+constexpr double kGainOfVisible = 100.0;  // variance, prior to posterior
+constexpr double kWeakPartner = 0.02;
+constexpr int kPositions = 33;
+
+double wide_sigma(ErrorSymbol symbol) {
+  return is_rotation(symbol.component) ? kWideRotation : kWideDisplacement;
+}
+
+double wide_sigma(const ParameterBlock& block) {
+  if (block.location) return is_rotation(block.location->component) ? kWideSquareness : kWideDisplacement;
+  if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return 1e-3;
+  return kWideNuisance;
+}
+
+const Basis& basis_of(const ParameterLayout& layout, ErrorSymbol symbol) {
+  return *layout.groups[static_cast<std::size_t>(layout.find(symbol)->group)].basis;
+}
+
+/// Values of a function over the measured positions, one row each, in its reduced coordinates.
+Eigen::MatrixXd value_rows(const MeasurementModel& model, const DatumSpace::FunctionCoordinates& function) {
+  const MeasuredRange range = measured_range(model.campaign(), function.symbol.axis);
+  const Basis& basis = basis_of(model.layout(), function.symbol);
+  Eigen::MatrixXd rows(kPositions, basis.size());
+  for (int i = 0; i < kPositions; ++i) {
+    const double share = static_cast<double>(i) / (kPositions - 1);
+    rows.row(i) = basis.row(range.min + share * (range.max - range.min)).transpose();
+  }
+  return rows * function.basis;
+}
+
+/// An error (function or squareness) as a stretch of the reduced vector.
+struct ErrorStretch {
+  std::string name;
+  int offset;
+  int size;
+  Eigen::MatrixXd rows;  ///< its values, for mean variances
+  const DatumSpace::FunctionCoordinates* function;
+};
+
+std::vector<ErrorStretch> error_stretches(const MeasurementModel& model, const DatumSpace& datum) {
+  std::vector<ErrorStretch> stretches;
+  for (const auto& function : datum.functions()) {
+    if (function.size() == 0) continue;
+    stretches.push_back(
+        {function.symbol.name(), function.offset, function.size(), value_rows(model, function), &function});
+  }
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = model.layout().blocks[block.block];
+    if (!source.location && source.kind != ParameterKind::Effect) continue;
+    stretches.push_back(
+        {source.name, block.offset, block.size, Eigen::MatrixXd::Identity(block.size, block.size), nullptr});
+  }
+  return stretches;
+}
+
+double mean_variance(const ErrorStretch& stretch, const Eigen::MatrixXd& covariance) {
+  return (stretch.rows * covariance * stretch.rows.transpose()).trace() /
+         static_cast<double>(stretch.rows.rows());
+}
+
+double mean_variance_in(const ErrorStretch& stretch, const Eigen::MatrixXd& full_covariance) {
+  return mean_variance(stretch,
+                       full_covariance.block(stretch.offset, stretch.offset, stretch.size, stretch.size));
+}
+
+/// Words for why one error is not seen even when everything else is known.
+struct Explanation {
+  std::string reason;
+  std::string remedy;
+};
+
+std::string joined(const std::vector<std::string>& words) {
+  std::ostringstream text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    text << (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") << words[i];
+  }
+  return text.str();
+}
+
+bool axis_moves(const Campaign& campaign, AxisName axis) {
+  const MeasuredRange range = measured_range(campaign, axis);
+  return range.max - range.min > 1e-3 * campaign.machine.axis(axis).travel();
+}
+
+/// Tools in use, as offsets across direction `k`.
+double largest_sideways_offset(const Campaign& campaign, int k) {
+  double largest = 0.0;
+  for (const Setup& setup : campaign.setups) {
+    Eigen::Vector3d offset = campaign.machine.tools[setup.tool].offset;
+    offset[k] = 0.0;
+    largest = std::max(largest, offset.norm());
+  }
+  return largest;
+}
+
+Explanation explain_unseen(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  if (symbol && !axis_moves(campaign, symbol->axis)) {
+    const std::string axis(1, letter_of(symbol->axis));
+    return {"axis " + axis + " does not move in this campaign", "measure along axis " + axis};
+  }
+  if (symbol && is_rotation(symbol->component)) {
+    const int k = direction_of(symbol->component);
+    const std::string about(1, "XYZ"[k]);
+    if (largest_sideways_offset(campaign, k) < 1e-3) {
+      return {"every tool offset lies on " + about,
+              "add setups with a tool offset sideways to " + about + " (100 mm or more)"};
+    }
+    return {"no reading has a lever arm about " + about,
+            "add setups with another tool offset, or an angle instrument about " + about};
+  }
+  return {"no reading changes when it changes",
+          "add readings that are sensitive to it, or switch it off in the model"};
+}
+
+std::set<std::string> stations(const ParameterLayout& layout) {
+  std::set<std::string> names;
+  for (const ParameterBlock& block : layout.blocks) {
+    if (block.name.starts_with("station ")) names.insert(block.name);
+  }
+  return names;
+}
+
+std::size_t tools_in_use(const Campaign& campaign) {
+  std::set<std::size_t> tools;
+  for (const Setup& setup : campaign.setups) tools.insert(setup.tool);
+  return tools.size();
+}
+
+std::string remedy_for_mixture(const MeasurementModel& model, const std::vector<std::string>& partners) {
+  const auto is_nuisance = [&](const std::string& name) {
+    const ParameterBlock* block = model.layout().find_block(name);
+    return block != nullptr && !block->location && block->kind != ParameterKind::Effect;
+  };
+  const std::size_t station_count = stations(model.layout()).size();
+  std::vector<std::string> remedies;
+  if (station_count > 0 && station_count < 3)
+    remedies.emplace_back("measure from more stations (four, well apart)");
+  if (tools_in_use(model.campaign()) < 2)
+    remedies.emplace_back("repeat with a second tool offset, sideways and of another length");
+  if (station_count == 0 && std::ranges::any_of(partners, is_nuisance)) {
+    remedies.emplace_back(
+        "add an instrument that holds position or direction over the whole travel (tracer, straightness, "
+        "square)");
+  }
+  if (remedies.empty())
+    remedies.emplace_back("add lines at other offsets, straightness or angle readings that tell them apart");
+  return joined(remedies);
+}
+
+}  // namespace
+
+GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z) {
+  GaussianPrior prior = GaussianPrior::none(datum.size());
+  prior.mean = z;
+  for (const auto& function : datum.functions()) {
+    if (function.size() == 0) continue;
+    const Basis& basis = basis_of(model.layout(), function.symbol);
+    const double travel = model.campaign().machine.axis(function.symbol.axis).travel();
+    Eigen::MatrixXd roughness = gram(basis, 0) / travel;
+    if (basis.roughness_order() > 0) {
+      roughness += kCurvatureShare * std::pow(travel, 2 * basis.roughness_order() - 1) *
+                   gram(basis, basis.roughness_order());
+    }
+    prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
+        function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma(function.symbol), 2);
+    prior.mean.segment(function.offset, function.size()).setZero();
+  }
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = model.layout().blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma(source), 2);
+    }
+    if (source.location || source.kind == ParameterKind::Effect)
+      prior.mean.segment(block.offset, block.size).setZero();
+  }
+  return prior;
+}
+
+RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
+                          const GaussianPrior& wide) {
+  RankAnalysis analysis;
+  const int n = datum.size();
+  analysis.report.parameters = n;
+  if (n == 0) return analysis;
+  const auto root = cholesky_lower(wide.precision);
+  if (!root) throw std::runtime_error("analyse_rank: the wide prior is not positive definite");
+  const auto lower = root->triangularView<Eigen::Lower>();
+  Eigen::MatrixXd gain = lower.solve(data);
+  gain = lower.solve(gain.transpose()).eval();
+  gain = 0.5 * (gain + gain.transpose()).eval();
+  const SymmetricEigen eigen = eigen_decomposition(gain);
+  analysis.report.rank = static_cast<int>((eigen.values.array() > kGainOfVisible).count());
+
+  const auto factor = cholesky_lower(data + wide.precision);
+  if (!factor)
+    throw std::runtime_error("analyse_rank: the readings' normal matrix holds values that are not finite");
+  const Eigen::MatrixXd posterior = inverse_from_cholesky(*factor);
+  const Eigen::MatrixXd prior_covariance = inverse_from_cholesky(*root);
+  const auto stretches = error_stretches(model, datum);
+  // Directions that hide, in parameter space: columns of R^-T v, scaled so that the prior standard deviation
+  // is 1.
+  for (const ErrorStretch& stretch : stretches) {
+    const Eigen::MatrixXd alone_precision =
+        (data + wide.precision).block(stretch.offset, stretch.offset, stretch.size, stretch.size);
+    const Eigen::MatrixXd alone =
+        alone_precision.llt().solve(Eigen::MatrixXd::Identity(stretch.size, stretch.size));
+    const double prior_variance = mean_variance_in(stretch, prior_covariance);
+    const double variance = mean_variance_in(stretch, posterior);
+    const double variance_alone = mean_variance(stretch, alone);
+    Observability figure;
+    figure.symbol = stretch.name;
+    figure.visible_fraction = std::sqrt(std::min(1.0, variance_alone / variance));
+    figure.u_rms = std::sqrt(variance);
+    figure.visible = variance * kGainOfVisible < prior_variance;
+    if (!figure.visible) {
+      analysis.deficient = true;
+      if (stretch.function != nullptr) analysis.invisible_functions.push_back(stretch.function->symbol);
+      if (variance_alone * kGainOfVisible >= prior_variance) {
+        const Explanation words = explain_unseen(model.campaign(), stretch.name);
+        figure.reason = words.reason;
+        figure.remedy = words.remedy;
+        figure.visible_fraction = 0.0;
+      } else {
+        std::map<std::string, double> share;
+        const Eigen::MatrixXd mine =
+            posterior.middleCols(stretch.offset, stretch.size) * stretch.rows.transpose();
+        const double worst = mine.middleRows(stretch.offset, stretch.size).squaredNorm();
+        for (const ErrorStretch& other : stretches) {
+          if (other.name == stretch.name) continue;
+          const Eigen::MatrixXd shared = other.rows * mine.middleRows(other.offset, other.size);
+          const double correlation = shared.squaredNorm() /
+                                     static_cast<double>(other.rows.rows() * stretch.rows.rows()) /
+                                     (variance * mean_variance_in(other, posterior));
+          share[other.name] = correlation;
+        }
+        for (const auto& block : datum.blocks()) {
+          const ParameterBlock& source = model.layout().blocks[block.block];
+          if (share.contains(source.name)) continue;
+          for (int k = 0; k < block.size; ++k) {
+            const double correlation = mine.row(block.offset + k).squaredNorm() /
+                                       static_cast<double>(stretch.rows.rows()) /
+                                       (variance * posterior(block.offset + k, block.offset + k));
+            share[source.name] = std::max(share[source.name], correlation);
+          }
+        }
+        static_cast<void>(worst);
+        std::vector<std::pair<double, std::string>> ranked;
+        for (const auto& [name, value] : share) {
+          if (value > kWeakPartner) ranked.emplace_back(value, name);
+        }
+        std::ranges::sort(ranked, std::greater<>());
+        std::vector<std::string> partners;
+        for (std::size_t i = 0; i < ranked.size() && i < 5; ++i) partners.push_back(ranked[i].second);
+        figure.reason = partners.empty() ? "its readings are few and far between"
+                                         : "a change of it can be exchanged with " + joined(partners) +
+                                               " without changing any reading";
+        figure.remedy = remedy_for_mixture(model, partners);
+      }
+      analysis.report.invisible.push_back(figure.symbol + ": not visible, " + figure.reason + "; " +
+                                          figure.remedy);
+    }
+    analysis.report.errors.push_back(std::move(figure));
+  }
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = model.layout().blocks[block.block];
+    if (!source.weak_default_prior) continue;
+    for (int k = 0; k < block.size; ++k) {
+      const double prior_variance = std::pow(source.prior_sigma[k], 2);
+      if (posterior(block.offset + k, block.offset + k) < 0.25 * prior_variance) continue;
+      std::ostringstream text;
+      text << source.name << " " << source.labels[static_cast<std::size_t>(k)] << ": held at its guess +- "
+           << source.prior_sigma[k] / source.si_per_unit[static_cast<std::size_t>(k)] << " "
+           << source.units[static_cast<std::size_t>(k)];
+      analysis.report.held_by_prior.push_back(text.str());
+    }
+  }
+  return analysis;
+}
+
+}  // namespace volcal

@@ -1,0 +1,149 @@
+#include "volcal/identify/solve/residuals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "volcal/identify/stats/normal.h"
+
+namespace volcal {
+namespace {
+
+/// Indices and values of one observation's derivatives.
+struct SparseRow {
+  std::vector<int> index;
+  Eigen::VectorXd value;
+};
+
+void gather(const ParameterLayout& layout, const RowJacobian& row, int channel, SparseRow& out) {
+  out.index.clear();
+  std::vector<double> values;
+  const double* basis = row.basis_value.data();
+  const double* weight = row.weight[channel].data();
+  for (std::size_t g = 0; g < layout.groups.size(); ++g) {
+    const FunctionGroup& group = layout.groups[g];
+    for (int j = 0; j < group.basis->support(); ++j) {
+      for (int slot = 0; slot < group.count(); ++slot) {
+        out.index.push_back(group.index(row.start[g] + j, slot));
+        values.push_back(basis[j] * weight[slot]);
+      }
+    }
+    basis += group.basis->support();
+    weight += group.count();
+  }
+  out.index.insert(out.index.end(), row.tail_index.begin(), row.tail_index.end());
+  values.insert(values.end(), row.tail_value[channel].begin(), row.tail_value[channel].end());
+  out.value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+/// a^T C a over the active parameters only.
+double variance_of(const SparseRow& row, const Eigen::MatrixXd& covariance) {
+  double sum = 0.0;
+  const auto n = static_cast<Eigen::Index>(row.index.size());
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double* column = &covariance(0, row.index[static_cast<std::size_t>(j)]);
+    double part = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i)
+      part += column[row.index[static_cast<std::size_t>(i)]] * row.value[i];
+    sum += part * row.value[j];
+  }
+  return sum;
+}
+
+std::string residual_unit(const Campaign& campaign, std::size_t setup) {
+  return campaign.setups[setup].instrument == "angle" ? "urad" : "um";
+}
+
+}  // namespace
+
+double outlier_critical_value(std::size_t observations, double risk) {
+  const double single =
+      1.0 - std::pow(1.0 - risk, 1.0 / static_cast<double>(std::max<std::size_t>(observations, 1)));
+  return normal_quantile(1.0 - 0.5 * single);
+}
+
+std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const std::vector<double>& sigma,
+                                             const std::vector<double>& weight,
+                                             const Eigen::VectorXd& parameters,
+                                             const Eigen::MatrixXd& covariance, double critical_value,
+                                             int threads) {
+  const MeasurementModel& model = index.model();
+  const auto& setups = model.campaign().setups;
+  std::vector<ResidualRecord> records(index.observations());
+  const auto work = [&](std::size_t begin, std::size_t end) {
+    RowJacobian row;
+    SparseRow sparse;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [setup, reading] = index.sorted()[i];
+      const Readings& readings = setups[setup].readings;
+      model.linearize(setup, reading, parameters, row);
+      for (int channel = 0; channel < row.channels; ++channel) {
+        const std::size_t observation =
+            index.first_observation(setup, reading) + static_cast<std::size_t>(channel);
+        ResidualRecord& record = records[observation];
+        record.setup = setup;
+        record.row = reading;
+        record.channel = channel;
+        record.source_line = readings.source_line[reading];
+        record.reading = readings.value[static_cast<std::size_t>(channel)][reading];
+        record.predicted = row.predicted[channel];
+        record.sigma = sigma[observation];
+        record.removed = weight[observation] == 0.0;
+        record.redundancy = 1.0;
+        if (covariance.size() > 0) {
+          gather(model.layout(), row, channel, sparse);
+          const double share = variance_of(sparse, covariance) / (record.sigma * record.sigma);
+          // A removed reading is judged by a fit that did not see it: variances add instead of subtract.
+          record.redundancy = record.removed ? 1.0 + share : std::clamp(1.0 - share, 0.0, 1.0);
+        }
+        if (record.redundancy > 1e-6)
+          record.w = record.residual() / (record.sigma * std::sqrt(record.redundancy));
+        record.flagged = std::abs(record.w) > critical_value;
+      }
+    }
+  };
+  const std::size_t readings = index.sorted().size();
+  const auto count = static_cast<std::size_t>(std::max(1, threads));
+  std::vector<std::thread> workers;
+  for (std::size_t t = 1; t < count; ++t)
+    workers.emplace_back(work, readings * t / count, readings * (t + 1) / count);
+  work(0, readings / count);
+  for (std::thread& worker : workers) worker.join();
+  return records;
+}
+
+std::vector<SetupSummary> setup_summaries(const Campaign& campaign,
+                                          const std::vector<ResidualRecord>& records,
+                                          const std::vector<double>& stated_sigma) {
+  std::vector<SetupSummary> summaries(campaign.setups.size());
+  for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+    const Setup& setup = campaign.setups[i];
+    summaries[i].name = setup.name;
+    summaries[i].instrument = setup.instrument;
+    summaries[i].tool = campaign.machine.tools[setup.tool].name;
+    summaries[i].reading_unit = residual_unit(campaign, i);
+  }
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const ResidualRecord& record = records[i];
+    if (record.removed) continue;
+    SetupSummary& summary = summaries[record.setup];
+    const double residual = record.residual();
+    ++summary.observations;
+    summary.chi2 += residual * residual / (stated_sigma[i] * stated_sigma[i]);
+    summary.redundancy += record.redundancy;
+    // An angle channel of a tracker has no place in a mean of lengths.
+    if (record.channel > 0 && campaign.setups[record.setup].instrument == "laser-tracker") continue;
+    summary.rms_residual += residual * residual;
+    summary.max_residual = std::max(summary.max_residual, std::abs(residual));
+  }
+  for (SetupSummary& summary : summaries) {
+    if (summary.observations == 0) continue;
+    const double lengths = summary.instrument == "laser-tracker"
+                               ? static_cast<double>(summary.observations) / 3.0
+                               : static_cast<double>(summary.observations);
+    summary.rms_residual = std::sqrt(summary.rms_residual / lengths);
+  }
+  return summaries;
+}
+
+}  // namespace volcal

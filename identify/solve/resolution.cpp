@@ -1,0 +1,61 @@
+#include "volcal/identify/solve/resolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "volcal/model/functions/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kDistinctShareOfTravel = 1.0 / 200.0;
+
+FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign& campaign) {
+  const BasisKind* kind = find_basis(function.basis);
+  if (kind == nullptr || !kind->uses_knots || function.knots == KnotChoice::Explicit) return function;
+  const Axis& axis = campaign.machine.axis(symbol.axis);
+  const int intervals = function.knots == KnotChoice::IntervalCount
+                            ? function.intervals
+                            : automatic_intervals(campaign, symbol.axis);
+  function.breakpoints = uniform_breakpoints(axis, intervals);
+  return function;
+}
+
+}  // namespace
+
+int automatic_intervals(const Campaign& campaign, AxisName axis) {
+  const double resolution = campaign.machine.axis(axis).travel() * kDistinctShareOfTravel;
+  std::set<long> distinct;
+  for (const Setup& setup : campaign.setups) {
+    for (const double q : setup.readings.position[index_of(axis)])
+      distinct.insert(std::lround(q / resolution));
+  }
+  return std::clamp(static_cast<int>(distinct.size()) - 1, 1, kMaxAutomaticIntervals);
+}
+
+ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
+  ModelSpec result = spec;
+  for (const Axis& axis : campaign.machine.axes) {
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      if (is_rotary(axis.name) && !spec.functions.contains(symbol)) continue;
+      result.functions[symbol] = resolved(spec.function(symbol), symbol, campaign);
+    }
+  }
+  return result;
+}
+
+MeasuredRange measured_range(const Campaign& campaign, AxisName axis) {
+  MeasuredRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Setup& setup : campaign.setups) {
+    for (const double q : setup.readings.position[index_of(axis)]) {
+      range.min = std::min(range.min, q);
+      range.max = std::max(range.max, q);
+    }
+  }
+  return range;
+}
+
+}  // namespace volcal

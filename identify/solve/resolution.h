@@ -1,0 +1,28 @@
+#pragma once
+/// Resolution of error functions with `knots = "auto"`: as many pieces as the measured positions can tell
+/// apart, with the smoothing prior of smoothing.h deciding by evidence how much of that resolution the data
+/// support.
+
+#include "volcal/model/description/campaign.h"
+#include "volcal/model/description/model_spec.h"
+
+namespace volcal {
+
+inline constexpr int kMaxAutomaticIntervals = 24;
+
+/// Pieces for one axis: measured positions that differ by more than 1/200 of the travel, less one, at most
+/// kMaxAutomaticIntervals, at least 1.
+int automatic_intervals(const Campaign& campaign, AxisName axis);
+
+/// The spec with breakpoints for every function that uses knots. `smoothed` functions keep
+/// KnotChoice::Automatic.
+ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign);
+
+/// Range of commanded positions of an axis in the campaign, m or rad.
+struct MeasuredRange {
+  double min = 0.0;
+  double max = 0.0;
+};
+MeasuredRange measured_range(const Campaign& campaign, AxisName axis);
+
+}  // namespace volcal

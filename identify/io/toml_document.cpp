@@ -193,6 +193,12 @@ std::optional<double> TomlTable::number(std::string_view key, NumberLimits limit
   return finite(*found, key, limits) * unit_of_key(key).si_per_unit;
 }
 
+std::optional<double> TomlTable::raw_number(std::string_view key) const {
+  const TomlNode* found = find(key);
+  if (!found) return std::nullopt;
+  return finite(*found, key, {});
+}
+
 std::optional<std::int64_t> TomlTable::integer(std::string_view key, std::int64_t min,
                                                std::int64_t max) const {
   const TomlNode* found = find(key);
@@ -352,7 +358,7 @@ Options TomlTable::options(const std::vector<KeySchema>& schema) const {
     }
     switch (key.type) {
       case KeyType::Number: {
-        const double value = *number(key.key);
+        const double value = *number(key.key, stem.ends_with("sigma") ? kNotNegative : NumberLimits{});
         check_plausible(key, value / factor);
         read.set(stem, value);
         break;

@@ -54,6 +54,7 @@ class TomlTable {
 
   // Absent keys give nothing; a wrong type is an error.
   std::optional<double> number(std::string_view key, NumberLimits limits = {}) const;  ///< SI
+  std::optional<double> raw_number(std::string_view key) const;  ///< as written, whatever the key's unit
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t min, std::int64_t max) const;
   std::optional<std::string> text(std::string_view key) const;
   std::optional<bool> boolean(std::string_view key) const;

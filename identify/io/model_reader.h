@@ -1,0 +1,35 @@
+#pragma once
+/// model.toml: bases of the error functions, known or switched-off errors, effects beyond the rigid body.
+///
+/// Functions: `basis`, `degree`, `knots = "auto"` or a number of intervals, or `knots_mm` / `knots_deg`
+/// (breakpoints, ends included); an identified function also has `coefficients_um` / `coefficients_urad`. A
+/// function is left out with basis = "zero". `[locations]`: `EC0Y_urad = 12.3` (known), `EC0Y = "zero"` (left
+/// out).
+
+#include <string>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/machine.h"
+#include "volcal/model/description/model_spec.h"
+
+namespace volcal {
+
+inline constexpr const char* kModelFormat = "volcal-model-1";
+
+/// Reads a model for `machine`. Throws InputError; also when the file names another machine, one that differs
+/// from `machine` in structure, datum or axes.
+ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at = {});
+ModelSpec parse_model(const std::string& text, const std::string& file, const Machine& machine);
+
+/// A model together with the machine that its `machine` key names.
+struct ModelFile {
+  Machine machine;
+  ModelSpec spec;
+};
+ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at = {});
+
+/// First difference between two machines that makes the errors of one meaningless for the other, in words;
+/// empty when there is none. Names and tools may differ.
+std::string machine_difference(const Machine& a, const Machine& b);
+
+}  // namespace volcal

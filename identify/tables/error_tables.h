@@ -1,6 +1,7 @@
 #pragma once
-/// Tables of an identified machine: error functions with uncertainty at every position, squareness, volumetric
-/// errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR 16907, 8.2 and 9).
+/// Tables of an identified machine: error functions with uncertainty at every position, squareness,
+/// volumetric errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR 16907, 8.2
+/// and 9).
 
 #include <string>
 #include <vector>
@@ -13,19 +14,19 @@ namespace volcal {
 /// One row of error_tables.csv, SI inside.
 struct ErrorTableRow {
   std::string symbol;
-  std::optional<AxisName> axis;   ///< empty for squareness
-  double position = 0.0;          ///< m or rad
-  int direction = 0;              ///< 0 mean of both; +1, -1 with reversal
-  double value = 0.0;             ///< m or rad
-  double u = 0.0;                 ///< standard uncertainty
-  double U95 = 0.0;               ///< expanded uncertainty, 95 %
-  bool rotation = false;          ///< value in rad
-  bool extrapolated = false;      ///< outside the measured positions
+  std::optional<AxisName> axis;  ///< empty for squareness
+  double position = 0.0;         ///< m or rad
+  int direction = 0;             ///< 0 mean of both; +1, -1 with reversal
+  double value = 0.0;            ///< m or rad
+  double u = 0.0;                ///< standard uncertainty
+  double U95 = 0.0;              ///< expanded uncertainty, 95 %
+  bool rotation = false;         ///< value in rad
+  bool extrapolated = false;     ///< outside the measured positions
 };
 
 struct ErrorTableOptions {
-  int positions = 0;         ///< per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows
-  bool zero_plus = false;    ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
+  int positions = 0;       ///< per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows
+  bool zero_plus = false;  ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
 };
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options = {});

@@ -1,0 +1,228 @@
+#include "volcal/identify/solve/evaluate.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/solve/minimise.h"
+#include "volcal/identify/solve/residuals.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kUnheldNuisance = 1.0;  // m or rad: far wider than anything a setup can be wrong by
+
+int thread_count(int threads) {
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+bool is_frozen_with_the_model(const ParameterBlock& block) {
+  return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect;
+}
+
+/// Model parameters' place in both the fit's and the evaluation's vectors (the same model gives the same
+/// order).
+std::vector<std::pair<int, int>> shared_parameters(const ParameterLayout& fitted,
+                                                   const ParameterLayout& here) {
+  std::vector<std::pair<int, int>> shared;
+  for (const FunctionGroup& group : here.groups) {
+    for (int slot = 0; slot < group.count(); ++slot) {
+      const auto place = fitted.find(group.symbols[static_cast<std::size_t>(slot)]);
+      if (!place) continue;
+      const FunctionGroup& source = fitted.groups[static_cast<std::size_t>(place->group)];
+      for (int j = 0; j < group.basis->size(); ++j) {
+        shared.emplace_back(source.index(j, place->slot), group.index(j, slot));
+      }
+    }
+  }
+  for (const ParameterBlock& block : here.blocks) {
+    const ParameterBlock* source = fitted.find_block(block.name);
+    if (source == nullptr || !is_frozen_with_the_model(block)) continue;
+    for (int k = 0; k < block.size(); ++k) shared.emplace_back(source->offset + k, block.offset + k);
+  }
+  return shared;
+}
+
+/// u of every prediction: the model's covariance, less what the re-estimated nuisance parameters absorb.
+std::vector<double> prediction_uncertainty(const ReadingIndex& index, const DatumSpace& datum,
+                                           const NormalEquations& sums, const GaussianPrior& prior,
+                                           const Eigen::VectorXd& parameters, const FitResult& identified) {
+  const MeasurementModel& model = index.model();
+  const auto shared = shared_parameters(identified.layout, model.layout());
+  std::vector<int> fitted, here;
+  for (const auto& [source, target] : shared) {
+    fitted.push_back(source);
+    here.push_back(target);
+  }
+  const Eigen::MatrixXd covariance = identified.covariance(fitted, fitted);
+  const Eigen::MatrixXd nuisance = datum.reduce_matrix(sums.matrix) + prior.precision;
+  const Eigen::MatrixXd coupling = datum.reduce_rows(sums.matrix(here, Eigen::all)).transpose();
+  const Eigen::MatrixXd absorbed = nuisance.llt().solve(coupling);  // d nuisance / d model, sign taken below
+  std::vector<double> u(index.observations());
+  RowJacobian row;
+  for (const auto& [setup, reading] : index.sorted()) {
+    model.linearize(setup, reading, parameters, row);
+    for (int channel = 0; channel < row.channels; ++channel) {
+      const Eigen::VectorXd dense = dense_row(model.layout(), row, channel);
+      Eigen::VectorXd effective = dense(here);
+      effective -= absorbed.transpose() * datum.reduce_gradient(dense);
+      u[index.first_observation(setup, reading) + static_cast<std::size_t>(channel)] =
+          std::sqrt(std::max(0.0, effective.dot(covariance * effective)));
+    }
+  }
+  return u;
+}
+
+}  // namespace
+
+ModelSpec nominal_model() {
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  return model;
+}
+
+ModelSpec frozen_model(const ModelSpec& model) {
+  ModelSpec frozen = model;
+  frozen.default_function = {};
+  frozen.default_function.basis = "zero";
+  std::erase_if(frozen.functions, [](const auto& entry) { return entry.second.coefficients.empty(); });
+  return frozen;
+}
+
+Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec, const FitResult* identified,
+                          int threads) {
+  use_single_threaded_blas();
+  threads = thread_count(threads);
+  MeasurementModel model(campaign, frozen_model(model_spec));
+  const ReadingIndex index(model);
+  Eigen::VectorXd parameters = model.initial_parameters();
+  std::vector<double> sigma(index.observations());
+  std::vector<double> weight(index.observations());
+  for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
+    for (std::size_t row = 0; row < campaign.setups[setup].readings.size(); ++row) {
+      for (int channel = 0; channel < model.bound(setup).channels(); ++channel) {
+        const std::size_t i = index.first_observation(setup, row) + static_cast<std::size_t>(channel);
+        sigma[i] = model.sigma(setup, row, channel, parameters);
+        if (!(sigma[i] > 0.0)) {
+          throw InputError(
+              {campaign.file, campaign.setups[setup].source_line},
+              "setup \"" + campaign.setups[setup].name + "\": the standard deviation of its readings is zero",
+              "give noise = { constant_um = ... } or a sigma_um column");
+        }
+        weight[i] = 1.0 / (sigma[i] * sigma[i]);
+      }
+    }
+  }
+  const DatumSpace datum(
+      model.layout(), campaign.machine, parameters, [](ErrorSymbol) { return false; },
+      [](const ParameterBlock& block) { return !is_frozen_with_the_model(block); });
+  GaussianPrior prior = GaussianPrior::none(datum.size());
+  Eigen::VectorXd z = datum.reduced(parameters);
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = model.layout().blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      const double held = source.prior_sigma[k] > 0.0 ? source.prior_sigma[k] : kUnheldNuisance;
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / (held * held);
+      prior.mean[block.offset + k] = source.prior_sigma[k] > 0.0 ? source.prior_mean[k] : z[block.offset + k];
+    }
+  }
+  MinimiseOptions options;
+  options.threads = threads;
+  model.set_second_order_remainder(parameters);
+  minimise(index, weight, datum, prior, options, z);
+  parameters = datum.raw(z);
+
+  const NormalEquations sums = NormalAccumulator(index, weight, nullptr, threads).accumulate(parameters);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(model.layout().size, model.layout().size);
+  if (const auto factor = cholesky_lower(datum.reduce_matrix(sums.matrix) + prior.precision)) {
+    covariance = datum.expand_covariance(inverse_from_cholesky(*factor));
+  }
+  Evaluation evaluation;
+  evaluation.residuals = residual_records(index, sigma, weight, parameters, covariance,
+                                          outlier_critical_value(index.observations(), 0.05), threads);
+  evaluation.setups = setup_summaries(campaign, evaluation.residuals, sigma);
+  for (const SetupSummary& setup : evaluation.setups) {
+    evaluation.chi2 += setup.chi2;
+    evaluation.dof += setup.redundancy;
+  }
+  evaluation.model_u.assign(index.observations(), 0.0);
+  if (identified != nullptr) {
+    evaluation.model_u = prediction_uncertainty(index, datum, sums, prior, parameters, *identified);
+  }
+  return evaluation;
+}
+
+namespace {
+
+bool is_angle(const Campaign& campaign, const ResidualRecord& record) {
+  const std::string& instrument = campaign.setups[record.setup].instrument;
+  return instrument == "angle" || (instrument == "laser-tracker" && record.channel > 0);
+}
+
+struct Spread {
+  double lengths = 0.0, angles = 0.0, max_length = 0.0, max_angle = 0.0;
+  std::size_t length_count = 0, angle_count = 0;
+};
+
+/// RMS and largest |e|: the channels of a vector reading are one value.
+Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& records) {
+  Spread spread;
+  for (std::size_t i = 0; i < records.size();) {
+    double squares = 0.0;
+    const ResidualRecord& first = records[i];
+    const bool angle = is_angle(campaign, first);
+    do {
+      squares += records[i].residual() * records[i].residual();
+      ++i;
+    } while (i < records.size() && records[i].setup == first.setup && records[i].row == first.row &&
+             is_angle(campaign, records[i]) == angle);
+    (angle ? spread.angles : spread.lengths) += squares;
+    (angle ? spread.max_angle : spread.max_length) =
+        std::max(angle ? spread.max_angle : spread.max_length, std::sqrt(squares));
+    ++(angle ? spread.angle_count : spread.length_count);
+  }
+  if (spread.length_count > 0)
+    spread.lengths = std::sqrt(spread.lengths / static_cast<double>(spread.length_count));
+  if (spread.angle_count > 0)
+    spread.angles = std::sqrt(spread.angles / static_cast<double>(spread.angle_count));
+  return spread;
+}
+
+}  // namespace
+
+Validation validate(const Campaign& campaign, const FitResult& result, int threads) {
+  Validation validation;
+  validation.before = evaluate_model(campaign, nominal_model(), nullptr, threads);
+  validation.after = evaluate_model(campaign, result.identified, &result, threads);
+  ValidationFigures& figures = validation.figures;
+  const Spread before = spread_of(campaign, validation.before.residuals);
+  const Spread after = spread_of(campaign, validation.after.residuals);
+  figures.rms_before = before.lengths;
+  figures.rms_after = after.lengths;
+  figures.max_before = before.max_length;
+  figures.max_after = after.max_length;
+  figures.angle_rms_before = before.angles;
+  figures.angle_rms_after = after.angles;
+  figures.angle_max_before = before.max_angle;
+  figures.angle_max_after = after.max_angle;
+  figures.lengths = after.length_count;
+  figures.angles = after.angle_count;
+  std::size_t inside = 0;
+  double chi2 = 0.0;
+  for (std::size_t i = 0; i < validation.after.residuals.size(); ++i) {
+    const ResidualRecord& record = validation.after.residuals[i];
+    const double variance = record.sigma * record.sigma + std::pow(validation.after.model_u[i], 2);
+    const double square = record.residual() * record.residual() / variance;
+    chi2 += square;
+    if (square <= 1.96 * 1.96) ++inside;
+  }
+  figures.reduced_chi2 = chi2 / std::max(1.0, validation.after.dof);
+  figures.coverage95 = static_cast<double>(inside) /
+                       static_cast<double>(std::max<std::size_t>(1, validation.after.residuals.size()));
+  return validation;
+}
+
+}  // namespace volcal

@@ -1,0 +1,57 @@
+#pragma once
+/// A given model on readings that did not make it: error functions frozen, only the campaign's nuisance
+/// parameters (stations, dead paths, alignments, tool and scale errors with priors) re-estimated.
+
+#include <optional>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+/// The machine without errors.
+ModelSpec nominal_model();
+/// The model with every function that has no coefficients switched off, so that it predicts without a fit.
+ModelSpec frozen_model(const ModelSpec& model);
+
+struct Evaluation {
+  std::vector<ResidualRecord>
+      residuals;  ///< sigma as stated; redundancy and w against the re-estimated nuisance
+  std::vector<double>
+      model_u;  ///< standard uncertainty of each prediction by the model, SI; 0 without covariance
+  std::vector<SetupSummary> setups;
+  double chi2 = 0.0;
+  double dof = 0.0;
+};
+
+/// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
+/// Throws InputError when the campaign does not fit the model's machine.
+Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,
+                          const FitResult* identified = nullptr, int threads = 0);
+
+/// Figures of `volcal validate`. Vectors count as one value, |e|; angles apart.
+struct ValidationFigures {
+  double rms_before = 0.0;  ///< m
+  double rms_after = 0.0;
+  double max_before = 0.0;
+  double max_after = 0.0;
+  double angle_rms_before = 0.0;  ///< rad
+  double angle_rms_after = 0.0;
+  double angle_max_before = 0.0;
+  double angle_max_after = 0.0;
+  std::size_t lengths = 0;
+  std::size_t angles = 0;
+  double reduced_chi2 = 0.0;  ///< after, with u_model^2 + sigma^2
+  double coverage95 = 0.0;    ///< share of readings inside +-1.96 sqrt(u_model^2 + sigma^2)
+};
+
+struct Validation {
+  Evaluation before;
+  Evaluation after;
+  ValidationFigures figures;
+};
+
+Validation validate(const Campaign& campaign, const FitResult& result, int threads = 0);
+
+}  // namespace volcal

@@ -1,0 +1,153 @@
+#include "volcal/identify/tables/error_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kEdgeOfMeasured = 1e-6;  // m or rad
+
+/// Steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be shorter.
+std::vector<double> table_positions(const Axis& axis, int positions) {
+  std::vector<double> table;
+  if (positions >= 2) {
+    for (int i = 0; i < positions; ++i) {
+      table.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / (positions - 1));
+    }
+    return table;
+  }
+  const double edge = is_rotary(axis.name) ? 3.14159265358979323846 / 180.0 : 1e-3;
+  const double coarsest = axis.travel() / edge / 20.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(coarsest)));
+  double step = decade;
+  for (const double factor : {2.0, 5.0}) {
+    if (decade * factor <= coarsest * (1.0 + 1e-9)) step = decade * factor;
+  }
+  const double first = std::ceil(axis.travel_min / edge / step - 1e-9) * step;
+  table.push_back(axis.travel_min);
+  for (int i = 0;; ++i) {
+    const double q = (first + i * step) * edge;
+    if (q >= axis.travel_max - 1e-9) break;
+    if (q > axis.travel_min + 1e-9) table.push_back(q);
+  }
+  table.push_back(axis.travel_max);
+  return table;
+}
+
+/// Reversal amplitude block of a symbol, if the model has one.
+const ParameterBlock* reversal_of(const FitResult& result, ErrorSymbol symbol) {
+  return result.layout.find_block("reversal " + symbol.name());
+}
+
+const FunctionSummary* summary_of(const FitResult& result, ErrorSymbol symbol) {
+  const auto found = std::ranges::find(result.functions, symbol, &FunctionSummary::symbol);
+  return found == result.functions.end() ? nullptr : &*found;
+}
+
+/// Raw row of a table value: function at q, direction share of the reversal, less the same at home when
+/// shifted.
+Eigen::VectorXd table_row(const FitResult& result, ErrorSymbol symbol, double q, int direction,
+                          bool zero_plus) {
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(result.layout.size);
+  if (const auto place = result.layout.find(symbol)) {
+    const FunctionGroup& group = result.layout.groups[static_cast<std::size_t>(place->group)];
+    const Eigen::VectorXd values = group.basis->row(q);
+    for (int j = 0; j < group.basis->size(); ++j) row[group.index(j, place->slot)] = values[j];
+  }
+  if (const ParameterBlock* reversal = reversal_of(result, symbol)) {
+    row[reversal->offset] = 0.5 * direction - (zero_plus ? 0.5 : 0.0);
+  }
+  return row;
+}
+
+ErrorTableRow filled(const FitResult& result, const Eigen::VectorXd& row) {
+  ErrorTableRow table_row;
+  table_row.value = row.dot(result.parameters);
+  table_row.u = std::sqrt(std::max(0.0, row.dot(result.covariance * row)));
+  table_row.U95 = result.coverage_factor * table_row.u;
+  return table_row;
+}
+
+bool outside(const FunctionSummary* summary, double q) {
+  return summary != nullptr &&
+         (q < summary->measured_min - kEdgeOfMeasured || q > summary->measured_max + kEdgeOfMeasured);
+}
+
+}  // namespace
+
+std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
+  std::vector<ErrorTableRow> table;
+  for (const Axis& axis : result.machine.axes) {
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      const bool reversal = reversal_of(result, symbol) != nullptr;
+      if (!result.layout.find(symbol) && !reversal) continue;
+      for (const int direction : reversal ? std::vector<int>{1, -1} : std::vector<int>{0}) {
+        for (const double q : table_positions(axis, options.positions)) {
+          ErrorTableRow row =
+              filled(result, table_row(result, symbol, q, direction, options.zero_plus && reversal));
+          row.symbol = symbol.name();
+          row.axis = axis.name;
+          row.position = q;
+          row.direction = direction;
+          row.rotation = is_rotation(component);
+          row.extrapolated = outside(summary_of(result, symbol), q);
+          table.push_back(row);
+        }
+      }
+    }
+  }
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (!block.location) continue;
+    ErrorTableRow row = filled(result, Eigen::VectorXd::Unit(result.layout.size, block.offset));
+    row.symbol = block.name;
+    row.rotation = is_rotation(block.location->component);
+    table.push_back(row);
+  }
+  return table;
+}
+
+VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool) {
+  VolumetricError error;
+  error.position = position;
+  error.tool = tool.name;
+  const KinematicChain chain(result.machine);
+  const auto rows = pose_error_rows(chain, result.layout, position, tool.offset);
+  error.value = rows * result.parameters;
+  Eigen::Matrix<double, 6, 6> covariance = rows * result.covariance * rows.transpose();
+  if (tool.offset_sigma > 0.0) {
+    covariance.topLeftCorner<3, 3>().diagonal().array() += tool.offset_sigma * tool.offset_sigma;
+  }
+  error.u = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  for (const FunctionSummary& function : result.functions) {
+    error.extrapolated = error.extrapolated || outside(&function, position[index_of(function.symbol.axis)]);
+  }
+  return error;
+}
+
+std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
+  std::vector<VolumetricError> grid;
+  std::vector<AxisPosition> positions = {AxisPosition{}};
+  for (const Axis& axis : result.machine.axes) {
+    if (is_rotary(axis.name)) continue;
+    std::vector<AxisPosition> extended;
+    for (const AxisPosition& position : positions) {
+      for (int i = 0; i < per_axis; ++i) {
+        AxisPosition next = position;
+        const double share = per_axis > 1 ? static_cast<double>(i) / (per_axis - 1) : 0.5;
+        next[index_of(axis.name)] = axis.travel_min + share * axis.travel();
+        extended.push_back(next);
+      }
+    }
+    positions = std::move(extended);
+  }
+  for (const Tool& tool : result.machine.tools) {
+    for (const AxisPosition& position : positions) grid.push_back(volumetric_error(result, position, tool));
+  }
+  return grid;
+}
+
+}  // namespace volcal

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "volcal/model/instruments/all_instruments.h"

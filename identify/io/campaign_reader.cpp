@@ -161,7 +161,9 @@ class CampaignReader {
 
   /// A campaign-wide table may hold the keys of any instrument.
   void know_all_noise_keys() {
-    for (const Instrument* instrument : instruments()) noise_options(*noise_, instrument->schema());
+    for (const Instrument* instrument : instruments()) {
+      for (const KeySchema& key : instrument->schema().noise_keys) noise_->number(key.key, kNotNegative);
+    }
   }
 
   static void read_columns(const TomlTable& table, ColumnMapping& mapping) {

@@ -1,0 +1,258 @@
+#include "volcal/identify/io/atomic_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kList = ".volcal";
+
+[[noreturn]] void fail(const std::string& path, const std::string& problem) {
+  throw InputError({path, 0}, problem, "check the path, its permissions and the free space");
+}
+
+[[noreturn]] void fail_system(const std::string& path, const std::string& doing) {
+  fail(path, doing + " failed: " + std::strerror(errno));
+}
+
+/// An open file descriptor.
+class Descriptor {
+ public:
+  Descriptor(const std::string& path, int flags, int mode = 0)
+      : number_(::open(path.c_str(), flags | O_CLOEXEC, mode)) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+  bool open() const { return number_ >= 0; }
+
+ private:
+  int number_;
+};
+
+/// Some file systems cannot flush a directory (EINVAL); that is no reason to refuse the result.
+void flush(const std::string& path) {
+  const Descriptor descriptor(path, O_RDONLY);
+  if (!descriptor.open()) fail_system(path, "opening");
+  if (::fsync(descriptor.number()) != 0 && errno != EINVAL && errno != EROFS) fail_system(path, "flushing");
+}
+
+void flush_tree(const fs::path& folder) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file() || entry.is_directory()) flush(entry.path().string());
+  }
+  flush(folder.string());
+}
+
+void write_all(const std::string& path, const std::string& content) {
+  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (!file.open()) fail_system(path, "creating the file");
+  std::size_t done = 0;
+  while (done < content.size()) {
+    const auto count = ::write(file.number(), content.data() + done, content.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail_system(path, "writing");
+    done += static_cast<std::size_t>(count);
+  }
+}
+
+std::string temporary_prefix(const fs::path& target) { return "." + target.filename().string() + ".tmp-"; }
+
+std::string backup_of(const fs::path& target) {
+  return (target.parent_path() / ("." + target.filename().string() + ".previous")).string();
+}
+
+std::string fresh_name(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  return (target.parent_path() /
+          (temporary_prefix(target) + std::to_string(::getpid()) + "-" + std::to_string(counter++)))
+      .string();
+}
+
+/// Temporary folders are locked while their writer lives.
+void remove_abandoned(const fs::path& target) {
+  std::error_code error;
+  const std::string prefix = temporary_prefix(target);
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(target.parent_path(), error)) {
+    if (entry.path().filename().string().starts_with(prefix)) found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) {
+    const Descriptor folder(path.string(), O_RDONLY | O_DIRECTORY);
+    if (folder.open() && ::flock(folder.number(), LOCK_EX | LOCK_NB) == 0) fs::remove_all(path, error);
+  }
+}
+
+/// A run on a file system without exchange may have been killed between its two renames.
+void repair(const fs::path& target) {
+  std::error_code error;
+  const fs::path backup = backup_of(target);
+  if (!fs::exists(backup, error)) return;
+  if (fs::exists(target, error)) {
+    fs::remove_all(backup, error);
+  } else {
+    fs::rename(backup, target, error);
+  }
+}
+
+void require_replaceable(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) {
+    throw InputError({target.string(), 0}, "the output is to be a folder, but a file of this name exists",
+                     "name another folder with -o");
+  }
+  const fs::path here = fs::current_path(error);
+  for (fs::path above = here; !above.empty(); above = above.parent_path()) {
+    if (above == target) {
+      throw InputError({target.string(), 0}, "the output folder is the current directory or holds it",
+                       "name a folder inside it, as in -o result");
+    }
+    if (above == above.parent_path()) break;
+  }
+  if (!fs::is_empty(target, error) && !fs::exists(target / kList, error)) {
+    throw InputError({target.string(), 0}, "the output folder holds files that volcal did not write",
+                     "name another folder with -o, or empty this one");
+  }
+}
+
+std::set<std::string> listed(const fs::path& folder) {
+  std::set<std::string> names;
+  std::ifstream list(folder / kList);
+  for (std::string line; std::getline(list, line);) names.insert(line);
+  return names;
+}
+
+}  // namespace
+
+AtomicFolder::AtomicFolder(const std::string& target) {
+  std::error_code error;
+  fs::path absolute = fs::weakly_canonical(fs::absolute(target, error), error);
+  if (!absolute.has_filename()) absolute = absolute.parent_path();
+  if (target.empty() || error || !absolute.has_filename()) fail(target, "the output path cannot be used");
+  target_ = absolute.string();
+  fs::create_directories(absolute.parent_path(), error);
+  if (error) fail(absolute.parent_path().string(), "creating the folder failed: " + error.message());
+  repair(absolute);
+  require_replaceable(absolute);
+  remove_abandoned(absolute);
+  create_temporary();
+}
+
+/// The lock tells other runs that the folder is in use; one of them may have removed it before it was locked.
+void AtomicFolder::create_temporary() {
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    temporary_ = fresh_name(target_);
+    if (::mkdir(temporary_.c_str(), 0777) != 0) {
+      if (errno == EEXIST) continue;
+      fail_system(temporary_, "creating the folder");
+    }
+    lock_ = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    struct stat status {};
+    if (lock_ >= 0 && ::flock(lock_, LOCK_EX) == 0 && ::stat(temporary_.c_str(), &status) == 0) return;
+    if (lock_ >= 0) ::close(lock_);
+    lock_ = -1;
+  }
+  fail(temporary_, "creating a temporary folder failed");
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code error;
+  if (!committed_ && !temporary_.empty()) fs::remove_all(temporary_, error);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void AtomicFolder::write(const std::string& name, const std::string& content) const {
+  write_all(path(name), content);
+}
+
+void AtomicFolder::carry_over_user_files() const {
+  if (!fs::exists(target_)) return;
+  const std::set<std::string> ours = listed(target_);
+  for (const auto& entry : fs::directory_iterator(target_)) {
+    const std::string name = entry.path().filename().string();
+    if (name == kList || ours.contains(name) || fs::exists(path(name))) continue;
+    fs::copy(entry.path(), path(name), fs::copy_options::recursive | fs::copy_options::copy_symlinks);
+  }
+}
+
+void AtomicFolder::write_list() const {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(temporary_))
+    names.push_back(entry.path().filename().string());
+  std::ranges::sort(names);
+  std::string text;
+  for (const std::string& name : names) text += name + "\n";
+  write_all(path(kList), text);
+}
+
+void AtomicFolder::exchange() const {
+  if (::rename(temporary_.c_str(), target_.c_str()) == 0) return;
+  if (errno != ENOTEMPTY && errno != EEXIST) fail_system(target_, "renaming the result");
+  if (::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno != EINVAL && errno != ENOSYS) fail_system(target_, "exchanging the result");
+  const std::string backup = backup_of(target_);
+  if (::rename(target_.c_str(), backup.c_str()) != 0) fail_system(target_, "setting the old result aside");
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const int reason = errno;
+    if (::rename(backup.c_str(), target_.c_str()) != 0) fail_system(backup, "putting the old result back");
+    errno = reason;
+    fail_system(target_, "renaming the result");
+  }
+  std::error_code error;
+  fs::remove_all(backup, error);
+}
+
+void AtomicFolder::commit() {
+  try {
+    write_list();
+    carry_over_user_files();
+    flush_tree(temporary_);
+  } catch (const fs::filesystem_error& error) {
+    fail(target_, std::string("completing the result failed: ") + error.code().message());
+  }
+  exchange();
+  committed_ = true;
+  std::error_code error;
+  fs::remove_all(temporary_, error);
+  flush(fs::path(target_).parent_path().string());
+}
+
+void write_file_atomically(const std::string& path, const std::string& content) {
+  const fs::path target = fs::absolute(path).lexically_normal();
+  std::error_code error;
+  if (fs::is_directory(target, error)) fail(path, "a directory of this name exists");
+  if (!target.parent_path().empty()) fs::create_directories(target.parent_path(), error);
+  if (error) fail(target.parent_path().string(), "creating the folder failed: " + error.message());
+  const std::string temporary = fresh_name(target);
+  try {
+    write_all(temporary, content);
+    flush(temporary);
+    if (::rename(temporary.c_str(), target.c_str()) != 0) fail_system(path, "renaming the file");
+  } catch (...) {
+    ::unlink(temporary.c_str());
+    throw;
+  }
+  flush(target.parent_path().string());
+}
+
+}  // namespace volcal

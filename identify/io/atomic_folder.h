@@ -1,0 +1,51 @@
+#pragma once
+/// Result folders and files that are either the old ones or the new ones, never half, also when the program
+/// is killed while it writes.
+///
+/// A folder is written under a temporary name beside its target, flushed to the disk and exchanged with the
+/// target in one step (renameat2 with RENAME_EXCHANGE; where the file system lacks it, two renames, and the
+/// next run repairs an interruption between them). The names written are listed in a file `.volcal` inside;
+/// files that the user put into the folder are carried over, and a folder that holds files but no such list
+/// is never replaced.
+
+#include <string>
+#include <vector>
+
+namespace volcal {
+
+class AtomicFolder {
+ public:
+  /// Creates the temporary folder and removes those of killed runs. Throws InputError when the target cannot
+  /// be written or replaced: a file, a foreign folder, the current directory or one above it.
+  explicit AtomicFolder(const std::string& target);
+  /// Removes what was written unless commit() was reached.
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+  const std::string& target() const { return target_; }
+  /// The temporary folder; anything written below it belongs to the result.
+  const std::string& path() const { return temporary_; }
+  std::string path(const std::string& name) const { return temporary_ + "/" + name; }
+  /// Writes one file.
+  void write(const std::string& name, const std::string& content) const;
+  /// Puts the folder in the place of the target. Throws InputError when the system refuses.
+  void commit();
+
+ private:
+  void create_temporary();
+  void carry_over_user_files() const;
+  void write_list() const;
+  void exchange() const;
+
+  std::string target_;
+  std::string temporary_;
+  int lock_ = -1;
+  bool committed_ = false;
+};
+
+/// Writes a file under a temporary name, flushes it and renames it. Throws InputError when the system
+/// refuses.
+void write_file_atomically(const std::string& path, const std::string& content);
+
+}  // namespace volcal

@@ -1,0 +1,240 @@
+#include "volcal/identify/io/result_json.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "volcal/identify/io/result_json_parts.h"
+#include "volcal/identify/io/text_file.h"
+#include "volcal/model/functions/registry.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using json_parts::number;
+
+double ratio(double chi2, double dof) { return dof > 0.0 ? chi2 / dof : std::nan(""); }
+
+Json setups_json(const FitResult& result) {
+  Json all = Json::array();
+  for (const SetupSummary& setup : result.setups) {
+    all.push_back({{"name", setup.name},
+                   {"instrument", setup.instrument},
+                   {"tool", setup.tool},
+                   {"reading_unit", setup.reading_unit},
+                   {"observations", setup.observations},
+                   {"chi2", number(setup.chi2)},
+                   {"dof", number(setup.redundancy)},
+                   {"chi2_per_dof", number(ratio(setup.chi2, setup.redundancy))},
+                   {"rms_residual", number(setup.rms_residual)},
+                   {"max_residual", number(setup.max_residual)}});
+  }
+  return all;
+}
+
+Json variance_components_json(const FitResult& result) {
+  Json all = Json::array();
+  for (const VarianceComponent& component : result.variance_components) {
+    all.push_back({{"instrument", component.instrument},
+                   {"scale", number(component.scale)},
+                   {"scale_u", number(component.scale_u)},
+                   {"redundancy", number(component.redundancy)},
+                   {"observations", component.observations}});
+  }
+  return all;
+}
+
+Json functions_json(const FitResult& result) {
+  Json all = Json::array();
+  for (const FunctionSummary& function : result.functions) {
+    all.push_back({{"symbol", function.symbol.name()},
+                   {"intervals", function.intervals},
+                   {"smoothed", function.smoothed},
+                   {"effective_parameters", number(function.effective_parameters)},
+                   {"measured_min", number(function.measured_min)},
+                   {"measured_max", number(function.measured_max)}});
+  }
+  return all;
+}
+
+Json rank_json(const RankReport& rank) {
+  Json errors = Json::array();
+  for (const Observability& error : rank.errors) {
+    errors.push_back({{"symbol", error.symbol},
+                      {"visible", error.visible},
+                      {"visible_fraction", number(error.visible_fraction)},
+                      {"u_rms", number(error.u_rms)},
+                      {"effective_parameters", number(error.effective_parameters)},
+                      {"reason", error.reason},
+                      {"remedy", error.remedy}});
+  }
+  return {{"parameters", rank.parameters},
+          {"rank", rank.rank},
+          {"invisible", rank.invisible},
+          {"held_by_prior", rank.held_by_prior},
+          {"errors", errors}};
+}
+
+Json locations_json(const FitResult& result) {
+  Json all = Json::array();
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (!block.location || block.size() != 1 || block.offset >= result.parameters.size()) continue;
+    const double variance = block.offset < result.covariance.rows()
+                                ? result.covariance(block.offset, block.offset)
+                                : std::nan("");
+    all.push_back({{"symbol", block.location->name()},
+                   {"value", number(result.parameters[block.offset])},
+                   {"u", number(std::sqrt(variance))}});
+  }
+  return all;
+}
+
+Json head_json(const FitResult& result) {
+  return {{"format", kResultFormat},
+          {"units", "m, rad, s, K; an error is actual minus nominal, tool relative to workpiece"},
+          {"status", std::string(to_string(result.status))},
+          {"messages", result.messages},
+          {"sigma0", number(result.sigma0)},
+          {"chi2", number(result.chi2)},
+          {"dof", number(result.dof)},
+          {"chi2_per_dof", number(ratio(result.chi2, result.dof))},
+          {"coverage_factor", number(result.coverage_factor)},
+          {"iterations", result.iterations},
+          {"initial_cost", number(result.initial_cost)},
+          {"final_cost", number(result.final_cost)},
+          {"outlier_critical_value", number(result.outlier_critical_value)},
+          {"reference_temperature_degC", number(result.reference_temperature_degC)},
+          {"temperature_is_campaign_mean", result.temperature_is_campaign_mean},
+          {"straightness_reference_line", "least squares, continuous over the travel"},
+          {"setups", setups_json(result)},
+          {"variance_components", variance_components_json(result)},
+          {"functions", functions_json(result)},
+          {"locations", locations_json(result)},
+          {"rank", rank_json(result.rank)}};
+}
+
+Json timings_json(const FitResult& result) {
+  Json all = Json::array();
+  for (const Timing& timing : result.timings) {
+    all.push_back({{"stage", timing.stage}, {"seconds", number(timing.seconds)}});
+  }
+  return all;
+}
+
+FitStatus status_from(const std::string& text) {
+  for (const FitStatus status :
+       {FitStatus::Ok, FitStatus::LackOfFit, FitStatus::RankDeficient, FitStatus::NotConverged}) {
+    if (to_string(status) == text) return status;
+  }
+  throw std::invalid_argument("status \"" + printable(text) + "\" is not known");
+}
+
+void read_head(const Json& json, FitResult& result) {
+  result.status = status_from(json.at("status").get<std::string>());
+  result.messages = json.at("messages").get<std::vector<std::string>>();
+  result.sigma0 = number(json.at("sigma0"));
+  result.chi2 = number(json.at("chi2"));
+  result.dof = number(json.at("dof"));
+  result.coverage_factor = number(json.at("coverage_factor"));
+  result.iterations = json.at("iterations").get<int>();
+  result.initial_cost = number(json.at("initial_cost"));
+  result.final_cost = number(json.at("final_cost"));
+  result.outlier_critical_value = number(json.at("outlier_critical_value"));
+  result.reference_temperature_degC = number(json.at("reference_temperature_degC"));
+  result.temperature_is_campaign_mean = json.at("temperature_is_campaign_mean").get<bool>();
+  for (const Json& setup : json.at("setups")) {
+    result.setups.push_back({setup.at("name").get<std::string>(), setup.at("instrument").get<std::string>(),
+                             setup.at("tool").get<std::string>(), setup.at("reading_unit").get<std::string>(),
+                             setup.at("observations").get<std::size_t>(), number(setup.at("chi2")),
+                             number(setup.at("dof")), number(setup.at("rms_residual")),
+                             number(setup.at("max_residual"))});
+  }
+  for (const Json& component : json.at("variance_components")) {
+    result.variance_components.push_back({component.at("instrument").get<std::string>(),
+                                          number(component.at("scale")), number(component.at("scale_u")),
+                                          number(component.at("redundancy")),
+                                          component.at("observations").get<std::size_t>()});
+  }
+  for (const Json& function : json.at("functions")) {
+    result.functions.push_back({json_parts::error_symbol(function.at("symbol")),
+                                function.at("intervals").get<int>(), function.at("smoothed").get<bool>(),
+                                number(function.at("effective_parameters")),
+                                number(function.at("measured_min")), number(function.at("measured_max"))});
+  }
+  for (const Json& timing : json.at("timings")) {
+    result.timings.push_back({timing.at("stage").get<std::string>(), number(timing.at("seconds"))});
+  }
+}
+
+RankReport rank_from(const Json& json) {
+  RankReport rank;
+  rank.parameters = json.at("parameters").get<int>();
+  rank.rank = json.at("rank").get<int>();
+  rank.invisible = json.at("invisible").get<std::vector<std::string>>();
+  rank.held_by_prior = json.at("held_by_prior").get<std::vector<std::string>>();
+  for (const Json& error : json.at("errors")) {
+    rank.errors.push_back({error.at("symbol").get<std::string>(), error.at("visible").get<bool>(),
+                           number(error.at("visible_fraction")), number(error.at("u_rms")),
+                           number(error.at("effective_parameters")), error.at("reason").get<std::string>(),
+                           error.at("remedy").get<std::string>()});
+  }
+  return rank;
+}
+
+FitResult result_from(const Json& json) {
+  const auto format = json.at("format").get<std::string>();
+  if (format != kResultFormat) throw std::invalid_argument("format is \"" + printable(format) + "\"");
+  FitResult result;
+  read_head(json, result);
+  result.rank = rank_from(json.at("rank"));
+  result.machine = json_parts::machine_from(json.at("machine"));
+  result.identified = json_parts::model_from(json.at("model"));
+  result.parameters = json_parts::vector_from(json.at("parameters"));
+  result.layout = json_parts::layout_from(json.at("layout"), result.machine, result.identified);
+  result.covariance = json_parts::covariance_from(json.at("covariance"));
+  if (result.parameters.size() != result.layout.size)
+    throw std::invalid_argument("parameters do not fit the layout");
+  if (result.covariance.rows() != 0 && result.covariance.rows() != result.parameters.size()) {
+    throw std::invalid_argument("covariance does not fit the parameters");
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string result_to_json(const FitResult& result) {
+  Json json = head_json(result);
+  json["timings"] = timings_json(result);
+  json["machine"] = json_parts::machine(result.machine);
+  json["model"] = json_parts::model(result.identified);
+  json["layout"] = json_parts::layout(result.layout);
+  json["parameters"] = json_parts::vector(result.parameters);
+  std::string text = json.dump(1);
+  text.replace(text.size() - 2, 2,
+               ",\n \"covariance\": " + json_parts::covariance_text(result.covariance) + "\n}\n");
+  return text;
+}
+
+std::string result_summary_json(const FitResult& result) {
+  Json json = head_json(result);
+  json["timings"] = timings_json(result);
+  return json.dump(1) + "\n";
+}
+
+FitResult result_from_json(const std::string& text, const std::string& file) {
+  const std::string remedy = "give a folder that volcal fit wrote, or run the fit again";
+  try {
+    return result_from(Json::parse(text));
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    const auto line = 1 + std::count(text.begin(), end, '\n');
+    throw InputError({file, static_cast<int>(line)}, "the file is no complete JSON", remedy);
+  } catch (const std::exception& error) {
+    throw InputError({file, 0}, "the result cannot be used: " + printable(error.what()), remedy);
+  }
+}
+
+}  // namespace volcal

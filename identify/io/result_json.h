@@ -1,0 +1,19 @@
+#pragma once
+/// result.json: everything an identification found but its single residuals (residuals.csv), to the last bit.
+/// Values are SI (m, rad, s, K); numbers that are not finite are the texts "nan", "inf", "-inf".
+
+#include <string>
+
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+
+inline constexpr const char* kResultFormat = "volcal-result-1";
+
+std::string result_to_json(const FitResult& result);
+/// Status, fit quality, rank report and squareness only: what `fit --json` prints.
+std::string result_summary_json(const FitResult& result);
+/// Throws InputError naming `file` and, where possible, the line.
+FitResult result_from_json(const std::string& text, const std::string& file);
+
+}  // namespace volcal

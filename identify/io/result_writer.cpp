@@ -1,0 +1,52 @@
+#include "volcal/identify/io/result_writer.h"
+
+#include <filesystem>
+
+#include "volcal/identify/io/result_json.h"
+#include "volcal/identify/io/table_writer.h"
+#include "volcal/identify/io/text_file.h"
+#include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/tables/error_tables.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string json_path(const std::string& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) ? (fs::path(path) / "result.json").string() : path;
+}
+
+}  // namespace
+
+void write_result(const AtomicFolder& folder, const FitResult& result, const Campaign& campaign) {
+  folder.write("result.json", result_to_json(result));
+  folder.write("error_tables.csv", error_tables_csv(error_table(result)));
+  folder.write("volumetric_grid.csv",
+               volumetric_grid_csv(volumetric_grid(result, kGridPointsPerAxis), result.machine));
+  write_residuals_csv(folder.path("residuals.csv"), result, campaign);
+  folder.write("machine.toml", machine_toml(result.machine));
+  folder.write(
+      "identified.toml",
+      model_toml(result.identified, "machine.toml",
+                 "Identified from " + campaign.file + ", status " + std::string(to_string(result.status)) +
+                     ".\nErrors are actual minus nominal, tool relative to workpiece."));
+}
+
+FitResult read_result(const std::string& path) {
+  const std::string file = json_path(path);
+  std::error_code error;
+  if (fs::is_directory(path, error) && !fs::exists(file, error)) {
+    throw InputError({path, 0}, "the folder holds no result.json", "give a folder that volcal fit wrote");
+  }
+  return result_from_json(read_text_file(file), file);
+}
+
+bool is_result(const std::string& path) {
+  std::error_code error;
+  const fs::path file = json_path(path);
+  return file.extension() == ".json" && fs::is_regular_file(file, error);
+}
+
+}  // namespace volcal

@@ -1,0 +1,27 @@
+#pragma once
+/// The folder that `fit` writes, and reading it again.
+
+#include <string>
+
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/description/campaign.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+
+/// Points per axis of volumetric_grid.csv.
+inline constexpr int kGridPointsPerAxis = 5;
+
+/// Writes result.json, error_tables.csv, volumetric_grid.csv, residuals.csv, identified.toml and machine.toml
+/// into `folder`; the caller adds what else belongs to the result (report.html) and commits.
+void write_result(const AtomicFolder& folder, const FitResult& result, const Campaign& campaign);
+
+/// Reads result.json of a result folder (or the file itself). `residuals` stays empty: they are in
+/// residuals.csv. Throws InputError.
+FitResult read_result(const std::string& path);
+
+/// True when `path` is a folder that holds a result.json, or such a file.
+bool is_result(const std::string& path);
+
+}  // namespace volcal

@@ -205,7 +205,7 @@ FitResult result_from(const Json& json) {
 
 }  // namespace
 
-std::string result_to_json(const FitResult& result) {
+std::string result_json(const FitResult& result) {
   Json json = head_json(result);
   json["timings"] = timings_json(result);
   json["machine"] = json_parts::machine(result.machine);

@@ -10,8 +10,8 @@ namespace volcal {
 
 inline constexpr const char* kResultFormat = "volcal-result-1";
 
-std::string result_to_json(const FitResult& result);
-/// Status, fit quality, rank report and squareness only: what `fit --json` prints.
+std::string result_json(const FitResult& result);
+/// The same without machine, model, parameters and covariance: for a reader who wants the verdict.
 std::string result_summary_json(const FitResult& result);
 /// Throws InputError naming `file` and, where possible, the line.
 FitResult result_from_json(const std::string& text, const std::string& file);

@@ -13,9 +13,12 @@ namespace volcal {
 /// Points per axis of volumetric_grid.csv.
 inline constexpr int kGridPointsPerAxis = 5;
 
-/// Writes result.json, error_tables.csv, volumetric_grid.csv, residuals.csv, identified.toml and machine.toml
-/// into `folder`; the caller adds what else belongs to the result (report.html) and commits.
-void write_result(const AtomicFolder& folder, const FitResult& result, const Campaign& campaign);
+/// Writes result.json, error_tables.csv, volumetric_grid.csv, residuals.csv, identified.toml, machine.toml
+/// and, when the program was built with it, report.html; the folder is replaced as a whole (atomic_folder.h).
+/// Throws InputError.
+void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target);
+/// The same into a folder that the caller commits.
+void write_result_files(const FitResult& result, const Campaign& campaign, const AtomicFolder& folder);
 
 /// Reads result.json of a result folder (or the file itself). `residuals` stays empty: they are in
 /// residuals.csv. Throws InputError.

@@ -1,4 +1,4 @@
-#include "volcal/identify/io/result_writer.h"
+#include "volcal/identify/io/result_folder.h"
 
 #include <filesystem>
 
@@ -6,6 +6,7 @@
 #include "volcal/identify/io/table_writer.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
@@ -20,8 +21,8 @@ std::string json_path(const std::string& path) {
 
 }  // namespace
 
-void write_result(const AtomicFolder& folder, const FitResult& result, const Campaign& campaign) {
-  folder.write("result.json", result_to_json(result));
+void write_result_files(const FitResult& result, const Campaign& campaign, const AtomicFolder& folder) {
+  folder.write("result.json", result_json(result));
   folder.write("error_tables.csv", error_tables_csv(error_table(result)));
   folder.write("volumetric_grid.csv",
                volumetric_grid_csv(volumetric_grid(result, kGridPointsPerAxis), result.machine));
@@ -32,6 +33,13 @@ void write_result(const AtomicFolder& folder, const FitResult& result, const Cam
       model_toml(result.identified, "machine.toml",
                  "Identified from " + campaign.file + ", status " + std::string(to_string(result.status)) +
                      ".\nErrors are actual minus nominal, tool relative to workpiece."));
+  if (report_available()) write_report(result, campaign, folder.path("report.html"));
+}
+
+void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target) {
+  AtomicFolder folder(target);
+  write_result_files(result, campaign, folder);
+  folder.commit();
 }
 
 FitResult read_result(const std::string& path) {

@@ -13,8 +13,8 @@ namespace volcal::sim {
 namespace {
 
 constexpr int kHighestDegree = 7;
-constexpr double kStraightness = 3e-6;     ///< m, before scaling to the volumetric error
-constexpr double kPositioning = 5e-6;      ///< m
+constexpr double kStraightness = 5e-6;     ///< m, before scaling to the volumetric error
+constexpr double kPositioning = 6e-6;      ///< m
 constexpr double kAngle = 8e-6;            ///< rad
 constexpr double kSquarenessMin = 5e-6;    ///< rad
 constexpr double kSquarenessMax = 30e-6;   ///< rad
@@ -66,7 +66,7 @@ SmoothFunction linear_axis_function(const Axis& axis, ErrorSymbol symbol, double
   for (int n = symbol.is_straightness() ? 2 : 1; n <= kHighestDegree; ++n) {
     f.legendre[static_cast<std::size_t>(n)] = size * random.normal() / std::pow(n, 1.5);
   }
-  const std::array<double, 2> share_of_travel = {random.uniform(0.36, 0.62), random.uniform(0.24, 0.36)};
+  const std::array<double, 2> share_of_travel = {random.uniform(0.48, 0.85), random.uniform(0.32, 0.48)};
   for (std::size_t i = 0; i < 2; ++i) {
     f.waves[i] = {size * kWave * wave_scale * random.uniform(0.5, 1.0) / static_cast<double>(i + 1),
                   2.0 * std::numbers::pi / (share_of_travel[i] * axis.travel()),

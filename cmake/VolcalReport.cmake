@@ -1,0 +1,65 @@
+# The report's page template: bundled from npm packages when the program is built and kept inside the library.
+# Without npm, or when the packages cannot be fetched, the program is built without the report and says so.
+
+set(VOLCAL_REPORT AUTO CACHE STRING "Build the HTML report: AUTO (when npm can fetch its packages), ON, OFF")
+set_property(CACHE VOLCAL_REPORT PROPERTY STRINGS AUTO ON OFF)
+
+# Reports that the page cannot be built: an error when it was asked for.
+function(volcal_report_unavailable reason)
+  if(VOLCAL_REPORT STREQUAL "AUTO")
+    message(WARNING "No report.html: ${reason}. Results are complete without it. To get the report, install "
+                    "nodejs and npm, make sure that the npm registry can be reached, and configure again.")
+  else()
+    message(FATAL_ERROR "No report.html: ${reason}")
+  endif()
+endfunction()
+
+# volcal_add_report(TARGET): embeds the template into the library TARGET.
+function(volcal_add_report target)
+  if(NOT VOLCAL_REPORT)
+    return()
+  endif()
+  find_program(VOLCAL_NPM npm)
+  find_program(VOLCAL_NODE NAMES node nodejs)
+  mark_as_advanced(VOLCAL_NPM VOLCAL_NODE)
+  if(NOT VOLCAL_NPM OR NOT VOLCAL_NODE)
+    volcal_report_unavailable("nodejs and npm are not installed")
+    return()
+  endif()
+
+  # Packages live in the build directory; they are fetched again only when the lock file changes.
+  set(source ${PROJECT_SOURCE_DIR}/identify/report/web)
+  set(work ${PROJECT_BINARY_DIR}/report)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${source}/package-lock.json)
+  file(SHA256 ${source}/package-lock.json lock_hash)
+  set(fetched "")
+  if(EXISTS ${work}/packages.sha256)
+    file(READ ${work}/packages.sha256 fetched)
+  endif()
+  if(NOT fetched STREQUAL lock_hash)
+    file(COPY ${source}/package.json ${source}/package-lock.json ${source}/.npmrc DESTINATION ${work})
+    message(STATUS "Fetching the packages of the report")
+    execute_process(COMMAND ${VOLCAL_NPM} ci --prefer-offline WORKING_DIRECTORY ${work}
+                    RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+    if(failed)
+      message(STATUS "${output}")
+      volcal_report_unavailable("npm cannot fetch the packages of identify/report/web")
+      return()
+    endif()
+    file(WRITE ${work}/packages.sha256 ${lock_hash})
+  endif()
+
+  set(template ${work}/report_template.html)
+  file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${source}/src/*)
+  add_custom_command(
+    OUTPUT ${template}
+    COMMAND ${VOLCAL_NODE} ${source}/build.mjs ${work}/node_modules ${template}
+    DEPENDS ${inputs} ${source}/build.mjs ${work}/packages.sha256
+    COMMENT "Bundling the report's page"
+    VERBATIM)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/identify/report/template_data.cpp PROPERTIES
+    COMPILE_DEFINITIONS "VOLCAL_REPORT_TEMPLATE=\"${template}\""
+    OBJECT_DEPENDS ${template})
+  # A generated file belongs to the target that uses it.
+  target_sources(${target} PRIVATE ${template})
+endfunction()

@@ -1,0 +1,52 @@
+#include "volcal/identify/report/numbers.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "volcal/model/description/units.h"
+
+namespace volcal::report {
+
+Json rounded(double value, int digits) {
+  if (!std::isfinite(value)) return nullptr;
+  if (value == 0.0) return 0;
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return std::strtod(text, nullptr);
+}
+
+Json rounded_array(const std::vector<double>& values, double factor, int digits) {
+  Json array = Json::array();
+  for (const double value : values) array.push_back(rounded(value * factor, digits));
+  return array;
+}
+
+Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits) {
+  return {rounded(vector.x() * factor, digits), rounded(vector.y() * factor, digits),
+          rounded(vector.z() * factor, digits)};
+}
+
+const char* position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
+
+double position_factor(AxisName axis) {
+  return is_rotary(axis) ? 1.0 / kRadianPerDegree : 1.0 / kMetrePerMillimetre;
+}
+
+std::string axis_letter(AxisName axis) { return std::string(1, letter_of(axis)); }
+
+std::string shown_unit(const std::string& edge_unit) {
+  if (edge_unit == "um") return "µm";
+  if (edge_unit == "urad") return "µrad";
+  if (edge_unit == "um/m/K") return "µm/(m K)";
+  return edge_unit;
+}
+
+const Observability* find_observability(const FitResult& result, const std::string& symbol) {
+  for (const Observability& error : result.rank.errors) {
+    if (error.symbol == symbol) return &error;
+  }
+  return nullptr;
+}
+
+}  // namespace volcal::report

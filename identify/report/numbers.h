@@ -1,0 +1,28 @@
+#pragma once
+/// Numbers as the report writes them: edge units, few digits, so that the page stays small.
+
+#include <vector>
+
+#include "volcal/identify/report/page.h"
+
+namespace volcal::report {
+
+inline constexpr double kPerMicro = 1e6;  ///< um per m, urad per rad
+inline constexpr double kMillimetre = 1e3;
+
+/// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
+Json rounded(double value, int digits = 5);
+Json rounded_array(const std::vector<double>& values, double factor, int digits = 5);
+Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5);
+
+/// Unit and factor of an axis's position at the edge: mm or deg.
+const char* position_unit(AxisName axis);
+double position_factor(AxisName axis);
+std::string axis_letter(AxisName axis);
+/// Unit as printed: "um/m/K" becomes "µm/(m K)".
+std::string shown_unit(const std::string& edge_unit);
+
+/// Entry of the rank report; nullptr when the symbol has none.
+const Observability* find_observability(const FitResult& result, const std::string& symbol);
+
+}  // namespace volcal::report

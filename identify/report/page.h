@@ -1,0 +1,48 @@
+#pragma once
+/// Sections of the report. A new section is one file in pages/ with a builder, one line in pages.cpp, and a
+/// renderer of the same kind with one line in web/src/pages.js.
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volcal/identify/report/report.h"
+#include "volcal/identify/report/volume_error.h"
+
+namespace volcal::report {
+
+using Json = nlohmann::ordered_json;
+
+/// What a section is made from; quantities that several sections show are computed once.
+struct PageInput {
+  const FitResult& result;
+  const Campaign& campaign;
+  const ReportOptions& options;
+  std::vector<ToolVolume> volume;  ///< volumetric error on a grid, per tool
+
+  PageInput(const FitResult& fit, const Campaign& readings, const ReportOptions& report_options);
+};
+
+struct Page {
+  std::string_view kind;   ///< name of the renderer
+  std::string_view title;  ///< heading and entry of the section list
+  Json (*build)(const PageInput& input);
+};
+
+std::span<const Page> pages();
+
+Json summary_page(const PageInput& input);
+Json functions_page(const PageInput& input);
+Json locations_page(const PageInput& input);
+Json volume_page(const PageInput& input);
+Json residuals_page(const PageInput& input);
+Json outliers_page(const PageInput& input);
+Json setups_page(const PageInput& input);
+Json observability_page(const PageInput& input);
+Json resolution_page(const PageInput& input);
+Json nuisance_page(const PageInput& input);
+Json computation_page(const PageInput& input);
+
+}  // namespace volcal::report

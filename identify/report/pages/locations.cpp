@@ -1,0 +1,73 @@
+/// Squareness of the linear axes, location and orientation of rotary axes.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "volcal/identify/report/numbers.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal::report {
+namespace {
+
+std::string meaning(LocationSymbol symbol) {
+  const char axis = letter_of(symbol.axis);
+  if (is_rotary(symbol.axis)) {
+    return is_rotation(symbol.component)
+               ? fmt::format("orientation of the {} axis about {}", axis,
+                             "xyz"[direction_of(symbol.component)])
+               : fmt::format("location of the {} axis in {}", axis, "xyz"[direction_of(symbol.component)]);
+  }
+  const int other = 3 - direction_of(symbol.component) - direction_of(symbol.axis);
+  return fmt::format("squareness of {} to {}", axis, "XYZ"[other]);
+}
+
+/// What a squareness amounts to over the whole travel of its axis, m; 0 for other location errors.
+double over_travel(const Machine& machine, LocationSymbol symbol, double value) {
+  return is_rotary(symbol.axis) ? 0.0 : value * machine.axis(symbol.axis).travel();
+}
+
+Json identified(const FitResult& result, const ParameterBlock& block) {
+  const LocationSymbol symbol = *block.location;
+  const double value = result.parameters[block.offset];
+  const double u = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
+  const Observability* error = find_observability(result, symbol.name());
+  const bool visible = error == nullptr || error->visible;
+  Json row = {{"symbol", symbol.name()},
+              {"axis", axis_letter(symbol.axis)},
+              {"meaning", meaning(symbol)},
+              {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
+              {"state", visible ? "identified" : "invisible"},
+              {"reason", visible ? "" : error->reason},
+              {"value", rounded(value * kPerMicro)},
+              {"u", rounded(u * kPerMicro, 3)},
+              {"U95", rounded(result.coverage_factor * u * kPerMicro, 3)}};
+  if (!is_rotary(symbol.axis)) {
+    row["travel_mm"] = rounded(result.machine.axis(symbol.axis).travel() / kMetrePerMillimetre, 7);
+    row["over_travel_um"] = rounded(over_travel(result.machine, symbol, value) * kPerMicro);
+  }
+  return row;
+}
+
+}  // namespace
+
+Json locations_page(const PageInput& input) {
+  const FitResult& result = input.result;
+  Json rows = Json::array();
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location) rows.push_back(identified(result, block));
+  }
+  for (const LocationSymbol symbol : result.identified.locations_off) {
+    rows.push_back({{"symbol", symbol.name()},
+                    {"axis", axis_letter(symbol.axis)},
+                    {"meaning", meaning(symbol)},
+                    {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
+                    {"state", "off"}});
+  }
+  return {{"primary", axis_letter(result.machine.datum.primary)},
+          {"secondary", axis_letter(result.machine.datum.secondary)},
+          {"coverage", rounded(result.coverage_factor)},
+          {"rows", std::move(rows)}};
+}
+
+}  // namespace volcal::report

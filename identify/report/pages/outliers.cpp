@@ -1,0 +1,47 @@
+/// Readings that the w-test suspects, worst first.
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/report/numbers.h"
+
+namespace volcal::report {
+namespace {
+
+constexpr std::size_t kListed = 200;
+
+}  // namespace
+
+Json outliers_page(const PageInput& input) {
+  const FitResult& result = input.result;
+  std::vector<const ResidualRecord*> suspects;
+  std::size_t removed = 0;
+  for (const ResidualRecord& record : result.residuals) {
+    if (record.flagged || record.removed) suspects.push_back(&record);
+    if (record.removed) ++removed;
+  }
+  std::ranges::stable_sort(suspects, std::greater<>(),
+                           [](const auto* record) { return std::abs(record->w); });
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < std::min(kListed, suspects.size()); ++i) {
+    const ResidualRecord& record = *suspects[i];
+    const SetupSummary& setup = result.setups[record.setup];
+    rows.push_back({{"setup", setup.name},
+                    {"instrument", setup.instrument},
+                    {"file_line", record.source_line},
+                    {"channel", record.channel},
+                    {"unit", shown_unit(setup.reading_unit)},
+                    {"residual", rounded(record.residual() * kPerMicro, 4)},
+                    {"sigma", rounded(record.sigma * kPerMicro, 3)},
+                    {"redundancy", rounded(record.redundancy, 3)},
+                    {"w", rounded(record.w, 4)},
+                    {"removed", record.removed}});
+  }
+  return {{"critical", rounded(result.outlier_critical_value, 4)},
+          {"observations", result.residuals.size()},
+          {"suspect", suspects.size()},
+          {"removed", removed},
+          {"rows", std::move(rows)}};
+}
+
+}  // namespace volcal::report

@@ -1,0 +1,104 @@
+#include "volcal/identify/report/report.h"
+
+#include <fstream>
+#include <stdexcept>
+
+#include "volcal/identify/report/page.h"
+#include "volcal/identify/report/template_data.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::string_view kDataSlot = "@VOLCAL_REPORT_DATA@";
+constexpr std::string_view kTitleSlot = "@VOLCAL_REPORT_TITLE@";
+constexpr int kGridPerAxis = 5;
+
+/// No text inside a script element may look like markup: every `<` is written as its JSON escape.
+std::string without_markup(const std::string& json) {
+  std::string text;
+  text.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      text += "\\u003c";
+    } else {
+      text += c;
+    }
+  }
+  return text;
+}
+
+std::string html_text(const std::string& plain) {
+  std::string text;
+  for (const char c : plain) {
+    switch (c) {
+      case '&':
+        text += "&amp;";
+        break;
+      case '<':
+        text += "&lt;";
+        break;
+      case '>':
+        text += "&gt;";
+        break;
+      default:
+        text += c;
+    }
+  }
+  return text;
+}
+
+std::string fill(std::string_view page, std::string_view slot, const std::string& content) {
+  const std::size_t place = page.find(slot);
+  if (place == std::string_view::npos) throw std::logic_error("report template lacks " + std::string(slot));
+  std::string filled;
+  filled.reserve(page.size() + content.size());
+  filled.append(page.substr(0, place)).append(content).append(page.substr(place + slot.size()));
+  return filled;
+}
+
+}  // namespace
+
+namespace report {
+
+PageInput::PageInput(const FitResult& fit, const Campaign& readings, const ReportOptions& report_options)
+    : result(fit), campaign(readings), options(report_options), volume(tool_volumes(fit, kGridPerAxis)) {}
+
+}  // namespace report
+
+bool report_available() { return !report::page_template().empty(); }
+
+std::string_view how_to_get_report() {
+  return "report.html is not written: the program was built without Node.js; install nodejs and npm and run "
+         "scripts/build again";
+}
+
+std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
+  const report::PageInput input(result, campaign, options);
+  report::Json document;
+  document["format"] = "volcal-report-1";
+  document["title"] = result.machine.name;
+  document["date"] = options.date;
+  document["pages"] = report::Json::array();
+  for (const report::Page& page : report::pages()) {
+    document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
+  }
+  return document.dump(-1, ' ', false, report::Json::error_handler_t::replace);
+}
+
+std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
+  if (!report_available()) throw std::runtime_error(std::string(how_to_get_report()));
+  const std::string titled =
+      fill(report::page_template(), kTitleSlot, html_text(result.machine.name + " \u2013 volcal report"));
+  return fill(titled, kDataSlot, without_markup(report_json(result, campaign, options)));
+}
+
+void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,
+                  const ReportOptions& options) {
+  const std::string page = report_html(result, campaign, options);
+  std::ofstream file(path, std::ios::binary);
+  file.write(page.data(), static_cast<std::streamsize>(page.size()));
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + path.string());
+}
+
+}  // namespace volcal

@@ -1,0 +1,35 @@
+#pragma once
+/// The report of a result: one self-contained HTML page with interactive plots, readable without a network.
+///
+/// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
+/// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
+/// its data and one JavaScript renderer; page.h and web/src/pages.js are the two registration tables.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+struct ReportOptions {
+  std::string date;  ///< as printed in the header; empty = none
+};
+
+/// False when the library was built without Node.js; results are complete without the report.
+bool report_available();
+/// What to do when the report is not available, one sentence for the user.
+std::string_view how_to_get_report();
+
+/// The JSON document that fills the template. Values in um, urad, mm, deg, degC; lengths of arrays are
+/// bounded, so that its size does not grow with the number of readings.
+std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
+/// The whole page. Throws std::runtime_error with how_to_get_report() when it is not available.
+std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
+/// Writes report_html() to a file. Throws std::runtime_error also when the file cannot be written.
+void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,
+                  const ReportOptions& options = {});
+
+}  // namespace volcal

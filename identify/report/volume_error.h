@@ -1,0 +1,31 @@
+#pragma once
+/// Volumetric error on a grid over the travel, as the report shows it.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal::report {
+
+/// Error vectors of one tool's functional point; workpiece coordinates, m. Rotary axes stand at home.
+struct ToolVolume {
+  std::string tool;
+  std::vector<Eigen::Vector3d> point_w;
+  std::vector<Eigen::Vector3d> error_w;
+  std::vector<Eigen::Vector3d> u_w;  ///< standard uncertainty per component
+  std::vector<bool> extrapolated;
+  std::vector<Eigen::Vector3d> corner_w;  ///< of the travel: bit i of the index = upper end of linear axis i
+
+  double error_rms() const;  ///< root mean |e|^2
+  double error_max() const;  ///< largest |e|
+  double u_rms() const;      ///< root mean |u|^2
+  double u_max() const;
+};
+
+/// `per_axis` positions on each linear axis.
+std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis);
+
+}  // namespace volcal::report

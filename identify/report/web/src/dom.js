@@ -1,0 +1,97 @@
+// Small helpers: elements, number formats, tables, buttons.
+
+/** Element with attributes and children (nodes or text; null is skipped). */
+export function el(tag, attributes = {}, children = []) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === null || value === undefined || value === false) continue;
+    if (name.startsWith('on')) node.addEventListener(name.slice(2), value);
+    else node.setAttribute(name, value === true ? '' : value);
+  }
+  const list = Array.isArray(children) ? children : [children];
+  node.append(...list.flat().filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+const minus = (text) => text.replace('-', '−');
+
+/** Number with fixed decimals and a true minus sign; an en dash when there is none. */
+export function fixed(value, decimals) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '–';
+  const text = value.toFixed(decimals);
+  return minus(Number(text) === 0 ? text.replace('-', '') : text);
+}
+
+/** Number with about `digits` significant digits, without exponent where a reader would not expect one. */
+export function significant(value, digits = 3) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '–';
+  if (value === 0) return '0';
+  const size = Math.floor(Math.log10(Math.abs(value)));
+  if (size < -5 || size > 7) return minus(value.toExponential(digits - 1));
+  return fixed(value, Math.max(0, digits - 1 - size));
+}
+
+/** Decimals that show an uncertainty with two significant digits. */
+export function decimalsFor(u) {
+  if (!Number.isFinite(u) || u <= 0) return 2;
+  return Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(u))));
+}
+
+export const count = (value) => value.toLocaleString('en-US').replaceAll(',', '\u202f');
+
+/** Header cell: name, unit below it in a lighter shade. */
+function headerCell(column) {
+  return el('th', { class: column.align ?? 'right', scope: 'col', title: column.title }, [
+    column.name,
+    column.unit ? el('span', { class: 'unit' }, column.unit) : null,
+  ]);
+}
+
+/**
+ * Table from rows of data. Columns: { name, unit, align: 'left' | 'right' (default), cell: row => text or node,
+ * title }. `rowClass`: row => class or null.
+ */
+export function table(columns, rows, { rowClass = () => null, className = '' } = {}) {
+  const body = rows.map((row) =>
+    el('tr', { class: rowClass(row) }, columns.map((column) => el('td', { class: column.align ?? 'right' }, column.cell(row)))));
+  return el('div', { class: 'table-frame' }, el('table', { class: className }, [
+    el('thead', {}, el('tr', {}, columns.map(headerCell))),
+    el('tbody', {}, body),
+  ]));
+}
+
+/** Table that scrolls on the screen when it is long; whole on paper. */
+export function longTable(columns, rows, options) {
+  const node = table(columns, rows, options);
+  if (rows.length > 24) node.classList.add('long');
+  return node;
+}
+
+/** Row of buttons of which one is chosen. */
+export function choice(label, options, onChoose) {
+  const buttons = options.map(([value, text]) =>
+    el('button', {
+      type: 'button',
+      onclick: () => {
+        select(value);
+        onChoose(value);
+      },
+      'data-value': value,
+    }, text));
+  const select = (value) => {
+    for (const button of buttons) button.setAttribute('aria-pressed', String(button.dataset.value === String(value)));
+  };
+  select(options[0][0]);
+  return el('div', { class: 'choice', role: 'group', 'aria-label': label }, [el('span', { class: 'muted' }, label), ...buttons]);
+}
+
+export const note = (...content) => el('p', { class: 'note' }, content);
+
+/** Error symbol in the colour of its axis. */
+export const symbolMark = (symbol, axis) => el('span', { class: `symbol axis-${axis}` }, symbol);
+
+/** Horizontal bar for a share between 0 and 1. */
+export function bar(share, axis) {
+  const width = `${Math.max(0, Math.min(1, share ?? 0)) * 100}%`;
+  return el('span', { class: 'bar' }, el('span', { class: `fill axis-${axis}`, style: `width:${width}` }));
+}

@@ -1,0 +1,221 @@
+import { choice, el, fixed, note, table } from '../dom.js';
+import { addPlot } from '../plot.js';
+import { color, series, transparent } from '../theme.js';
+
+const kComponents = ['x', 'y', 'z'];
+
+const column = (points, i) => points.map((point) => (point === null ? null : point[i]));
+
+/** Separate segments as one polyline with gaps. */
+function segments(pairs) {
+  const line = { x: [], y: [], z: [] };
+  for (const [from, to] of pairs) {
+    kComponents.forEach((c, i) => line[c].push(from[i], to[i], null));
+  }
+  return line;
+}
+
+const norm = (v) => Math.hypot(...v);
+
+function edges(corners) {
+  const pairs = [];
+  for (let a = 0; a < corners.length; ++a) {
+    for (let bit = 1; bit < corners.length; bit <<= 1) {
+      if (!(a & bit)) pairs.push([corners[a], corners[a | bit]]);
+    }
+  }
+  return pairs;
+}
+
+const boxTrace = (tool) => ({
+  ...segments(edges(tool.corner_mm)), type: 'scatter3d', mode: 'lines', line: { color: color('muted'), width: 1.5 },
+  hoverinfo: 'skip', name: 'work volume', showlegend: false,
+});
+
+function vectorTraces(tool, magnification) {
+  const size = tool.error_um.map(norm);
+  const tip = tool.point_mm.map((p, k) => p.map((v, i) => v + magnification * 1e-3 * tool.error_um[k][i]));
+  const shades = size.flatMap((s) => [s, s, s]);
+  const scale = { colorscale: 'Cividis', cmin: 0, cmax: Math.max(...size) };
+  const text = tool.error_um.map((e, k) =>
+    `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>EX ${fixed(e[0], 2)}, EY ${fixed(e[1], 2)}, EZ ${fixed(e[2], 2)} µm<br>|E| ${fixed(size[k], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
+  return [
+    { ...segments(tool.point_mm.map((p, k) => [p, tip[k]])), type: 'scatter3d', mode: 'lines', line: { width: 4, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
+    {
+      x: column(tip, 0), y: column(tip, 1), z: column(tip, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
+      marker: { size: 3, color: size, ...scale, colorbar: colorBar('|E| [µm]') }, hovertemplate: '%{text}<extra></extra>',
+    },
+  ];
+}
+
+const colorBar = (title) => ({
+  title: { text: title, side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x: 1, outlinewidth: 0, tickfont: { size: 10, color: color('text') },
+});
+
+/** Crosses of half-width u along each axis, at the same magnification as the vectors. */
+function uncertaintyTraces(tool, magnification) {
+  const size = tool.u_um.map(norm);
+  const scale = { colorscale: 'Cividis', cmin: 0, cmax: Math.max(...size) };
+  const pairs = tool.point_mm.flatMap((p, k) => kComponents.map((_, i) => {
+    const half = magnification * 1e-3 * tool.u_um[k][i];
+    return [p.map((v, j) => (j === i ? v - half : v)), p.map((v, j) => (j === i ? v + half : v))];
+  }));
+  const shades = size.flatMap((s) => Array(9).fill(s));
+  const text = tool.u_um.map((u, k) =>
+    `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>u(EX) ${fixed(u[0], 2)}, u(EY) ${fixed(u[1], 2)}, u(EZ) ${fixed(u[2], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
+  return [
+    { ...segments(pairs), type: 'scatter3d', mode: 'lines', line: { width: 4, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
+    {
+      x: column(tool.point_mm, 0), y: column(tool.point_mm, 1), z: column(tool.point_mm, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
+      marker: { size: 2.5, color: size, ...scale, colorbar: colorBar('u [µm]') }, hovertemplate: '%{text}<extra></extra>',
+    },
+  ];
+}
+
+function setupTraces(data) {
+  const instruments = [...new Set(data.setups.map((setup) => setup.instrument))];
+  const paths = data.setups.filter((setup) => setup.form === 'path');
+  const traces = instruments.flatMap((instrument, k) => {
+    const own = data.setups.filter((setup) => setup.instrument === instrument);
+    return ['path', 'points'].flatMap((form) => {
+      const points = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm, null]);
+      if (points.length === 0) return [];
+      const names = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm.map(() => setup.name), '']);
+      const shade = series(k);
+      return [{
+        x: column(points, 0), y: column(points, 1), z: column(points, 2), text: names, type: 'scatter3d', name: instrument, legendgroup: instrument,
+        mode: form === 'path' ? 'lines' : 'markers', line: { color: shade, width: 3 }, marker: { color: transparent(shade, 0.5), size: 1.6 },
+        visible: form === 'path' ? true : 'legendonly', hovertemplate: '%{text}<extra></extra>',
+      }];
+    });
+  });
+  if (paths.length <= 24) traces.push(pathLabels(paths));
+  return traces;
+}
+
+function pathLabels(paths) {
+  const named = paths.filter((setup) => setup.point_mm.length > 0);
+  const at = named.map((setup) => setup.point_mm.filter((p) => p !== null)[0]);
+  return {
+    x: column(at, 0), y: column(at, 1), z: column(at, 2), text: named.map((setup) => setup.name), type: 'scatter3d', mode: 'text',
+    textfont: { size: 10, color: color('text') }, hoverinfo: 'skip', showlegend: false,
+  };
+}
+
+function stationTraces(points) {
+  return [['station', 'diamond', 5], ['centre', 'cross', 3]].flatMap(([kind, symbol, size]) => {
+    const own = points.filter((point) => point.kind === kind);
+    if (own.length === 0) return [];
+    const at = own.map((point) => point.point_mm);
+    return [{
+      x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => point.name), type: 'scatter3d',
+      mode: kind === 'station' ? 'markers+text' : 'markers', textposition: 'top center', textfont: { size: 11, color: color('text') },
+      marker: { size, symbol, color: color('text') }, name: kind === 'station' ? 'stations' : 'ball-bar centres',
+      hovertemplate: '%{text}: %{x:.1f}, %{y:.1f}, %{z:.1f} mm<extra></extra>',
+    }];
+  });
+}
+
+function sceneLayout(camera) {
+  const axis = (name) => ({
+    title: { text: `${name} [mm]`, font: { size: 11, color: color(`axis-${name.toUpperCase()}`) } }, color: color('muted'), gridcolor: color('grid'),
+    zeroline: false, showbackground: false, tickfont: { size: 10 }, nticks: 6, showspikes: false,
+  });
+  return {
+    height: 520, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)',
+    font: { family: 'system-ui, sans-serif', size: 11, color: color('text') },
+    hoverlabel: { bgcolor: color('page'), bordercolor: color('rule'), font: { color: color('text'), size: 12 } },
+    legend: { x: 0, y: 0, orientation: 'h', bgcolor: 'rgba(0,0,0,0)' }, uirevision: 'keep',
+    scene: { aspectmode: 'data', xaxis: axis('x'), yaxis: axis('y'), zaxis: axis('z'), camera },
+  };
+}
+
+const kCamera = { eye: { x: 1.35, y: -1.75, z: 0.85 }, center: { x: 0, y: 0, z: -0.1 } };
+
+/** Turning one picture turns the other. */
+function coupleCameras(nodes) {
+  let busy = false;
+  nodes.forEach((node, k) => node.on('plotly_relayout', (change) => {
+    const camera = change['scene.camera'];
+    const other = nodes[1 - k];
+    if (!camera || busy || !other.layout) return;
+    busy = true;
+    Plotly.relayout(other, { 'scene.camera': camera }).finally(() => { busy = false; });
+  }));
+}
+
+/** Round magnification at which the largest vector is about a tenth of the volume's diagonal. */
+function startMagnification(tool) {
+  const [first, last] = [tool.corner_mm[0], tool.corner_mm.at(-1)];
+  const wanted = (0.1 * norm(first.map((v, i) => v - last[i]))) / (1e-3 * Math.max(tool.error_max_um, 1e-6));
+  const decade = 10 ** Math.floor(Math.log10(wanted));
+  return decade * [5, 2, 1].find((step) => step * decade <= wanted);
+}
+
+const componentTable = (tool) => table([
+  { name: 'Component', align: 'left', cell: (row) => row.component },
+  { name: 'Min', unit: 'µm', cell: (row) => fixed(row.min, 1) },
+  { name: 'Max', unit: 'µm', cell: (row) => fixed(row.max, 1) },
+  { name: 'Range', unit: 'µm', cell: (row) => fixed(row.range, 1) },
+  { name: 'u (RMS)', unit: 'µm', cell: (row) => fixed(row.u_rms, 2) },
+], tool.components);
+
+function slider(view, redraw) {
+  const output = el('output', {});
+  const input = el('input', { type: 'range', min: '-1', max: '1', step: '0.02', value: '0', 'aria-label': 'Magnification' });
+  const show = () => { output.textContent = `${Number(view.magnification.toPrecision(2)).toLocaleString('en-US')} ×`; };
+  input.addEventListener('input', () => {
+    view.magnification = view.start * 10 ** Number(input.value);
+    show();
+    redraw();
+  });
+  show();
+  return { node: el('label', { class: 'slider' }, [el('span', { class: 'muted' }, 'Magnification'), input, output]), show, input };
+}
+
+export function renderVolume(body, data) {
+  if (data.tools.length === 0 || data.linear_axes.length < 2) {
+    body.append(note('The machine has fewer than two linear axes or no tool: there is no volume to draw.'));
+    return;
+  }
+  const view = { tool: data.tools[0] };
+  view.start = view.magnification = startMagnification(view.tool);
+  const redraws = [];
+  const redraw = () => redraws.forEach((again) => again());
+  const tables = el('div', { class: 'volume-table' });
+  const captions = [el('figcaption'), el('figcaption')];
+  const describe = () => {
+    const { tool } = view;
+    captions[0].replaceChildren(el('strong', {}, 'Before: '), `identified error, RMS ${fixed(tool.error_rms_um, 1)} µm, max ${fixed(tool.error_max_um, 1)} µm`);
+    captions[1].replaceChildren(el('strong', {}, 'After: '), `what perfect compensation is expected to leave, RMS ${fixed(tool.u_rms_um, 2)} µm, max ${fixed(tool.u_max_um, 2)} µm (k = 1)`);
+    tables.replaceChildren(componentTable(tool));
+  };
+  const control = slider(view, redraw);
+  const controls = el('div', { class: 'controls' });
+  if (data.tools.length > 1) {
+    controls.append(choice('Tool', data.tools.map((tool, k) => [k, tool.name]), (k) => {
+      view.tool = data.tools[k];
+      describe();
+      redraw();
+    }));
+  }
+  controls.append(control.node);
+  const nodes = [el('div', { class: 'plot scene' }), el('div', { class: 'plot scene' })];
+  const traces = [vectorTraces, uncertaintyTraces];
+  const ready = [];
+  nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({
+    data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...(k === 0 ? stationTraces(data.named_points) : [])],
+    layout: sceneLayout(kCamera),
+  }), (drawn) => {
+    ready.push(drawn);
+    if (ready.length === 2) coupleCameras(nodes);
+  })));
+  describe();
+  body.append(
+    controls,
+    el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
+    tables,
+    note('Left: error of the functional point relative to home, each line from the nominal point to the magnified actual one (dot). Right: crosses with arms of one standard uncertainty along x, y and z at the same magnification: the readings do not say in which direction the remaining error points, nor do they cover repeatability, temperature or effects that the model lacks.'),
+    note(`Workpiece coordinates.${data.rotary_at_home ? ' Rotary axes at home.' : ''} Click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
+  );
+}

@@ -7,6 +7,8 @@
 namespace volcal::sim {
 namespace {
 
+constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
+
 /// Direction of approach after a move; where an axis rests, the last one stays.
 void approach(const CommandedPoint& from, CommandedPoint& to) {
   constexpr double kResting = 1e-12;
@@ -52,6 +54,12 @@ std::vector<CommandedPoint> repeated(const std::vector<CommandedPoint>& forward,
   return path;
 }
 
+/// Commanded positions of the NC program have three decimals of a millimetre.
+double programmed(double position) {
+  constexpr double kStepsPerMetre = 1e6;
+  return std::round(position * kStepsPerMetre) / kStepsPerMetre;
+}
+
 CommandedPoint between(const CommandedPoint& start, const CommandedPoint& end, double fraction) {
   CommandedPoint point = start;
   for (std::size_t k = 0; k < kAxisCount; ++k) {
@@ -89,7 +97,7 @@ std::vector<CommandedPoint> step_path(const CommandedPoint& start, const Command
   std::vector<CommandedPoint> forward = {between(start, end, 0.0)};
   for (int step = 1; step <= steps; ++step) {
     const CommandedPoint corner = between(start, end, static_cast<double>(step) / steps);
-    for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    for (const AxisName axis : kLinearAxes) {
       const std::size_t k = index_of(axis);
       if (start.position[k] == end.position[k]) continue;
       CommandedPoint next = forward.back();
@@ -125,7 +133,6 @@ std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName
 
 std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
                                                double jitter, RandomStream& random) {
-  constexpr std::array<AxisName, 3> kAxes = {AxisName::X, AxisName::Y, AxisName::Z};
   std::vector<CommandedPoint> forward;
   CommandedPoint previous = at_fraction(machine, Eigen::Vector3d::Zero());
   std::int32_t line = 0;
@@ -136,12 +143,12 @@ std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eig
         const int i = line % 2 == 0 ? column : count.x() - 1 - column;
         CommandedPoint point = previous;
         const Eigen::Vector3i index{i, j, k};
-        for (const AxisName name : kAxes) {
+        for (const AxisName name : kLinearAxes) {
           const Axis& axis = machine.axis(name);
           const int d = direction_of(name);
           const double step = axis.travel() / (count[d] - 1);
           const double q = axis.travel_min + step * (index[d] + jitter * random.uniform(-1.0, 1.0));
-          point.position[index_of(name)] = std::clamp(q, axis.travel_min, axis.travel_max);
+          point.position[index_of(name)] = std::clamp(programmed(q), axis.travel_min, axis.travel_max);
         }
         approach(previous, point);
         point.line = line;
@@ -168,6 +175,10 @@ std::vector<CommandedPoint> random_points(const Machine& machine, int count, Ran
     const double z = random.uniform();
     points.push_back(at_fraction(machine, {x, y, z}));
     points.back().direction.fill(0);
+    for (const AxisName axis : kLinearAxes) {
+      double& q = points.back().position[index_of(axis)];
+      q = programmed(q);
+    }
   }
   return points;
 }

@@ -29,12 +29,13 @@ std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName
                                           double radius, int points_per_turn);
 
 /// Boustrophedon grid over the whole travel, each position moved by up to `jitter` of a grid step and clipped
-/// to the travel, then the same positions in reverse order approached from the other side. Each row is a
-/// line.
+/// to the travel, in whole micrometres, then the same positions in reverse order approached from the other
+/// side. Each row is a line.
 std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
                                                double jitter, RandomStream& random);
 
-/// Uniformly distributed over the travel of the linear axes, rotary axes at home, direction not recorded.
+/// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home,
+/// direction not recorded.
 std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random);
 
 }  // namespace volcal::sim

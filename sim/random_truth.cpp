@@ -151,7 +151,7 @@ bool has_linear_axes(const Machine& machine) {
 }  // namespace
 
 double volumetric_rms(const TruthMachine& truth, const Eigen::Vector3d& tool_offset) {
-  constexpr int kGrid = 7;
+  constexpr int kGrid = 8;
   std::vector<MachineState> states(1);
   for (const Axis& axis : truth.machine().axes) states[0].position[index_of(axis.name)] = axis.home;
   for (const Axis& axis : truth.machine().axes) {
@@ -160,7 +160,7 @@ double volumetric_rms(const TruthMachine& truth, const Eigen::Vector3d& tool_off
     for (const MachineState& state : states) {
       for (int i = 0; i < kGrid; ++i) {
         finer.push_back(state);
-        finer.back().position[index_of(axis.name)] = axis.travel_min + axis.travel() * i / (kGrid - 1);
+        finer.back().position[index_of(axis.name)] = axis.travel_min + axis.travel() * (i + 0.5) / kGrid;
       }
     }
     states = std::move(finer);

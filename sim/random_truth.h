@@ -27,7 +27,8 @@ struct RandomTruthOptions {
 /// same truth, whatever else is simulated.
 TruthMachine random_truth(const Machine& machine, std::uint64_t seed, const RandomTruthOptions& options = {});
 
-/// sqrt(mean |e|^2) after rigid alignment over a grid of 7 points per linear axis, rotary axes at home.
+/// sqrt(mean |e|^2) after rigid alignment over 8 x 8 x 8 equal cells of the travel (their middles), rotary
+/// axes at home.
 double volumetric_rms(const TruthMachine& truth, const Eigen::Vector3d& tool_offset);
 
 }  // namespace volcal::sim

@@ -11,8 +11,8 @@ namespace volcal::sim {
 struct RandomTruthOptions {
   /// The volumetric error, sqrt(mean |e|^2) over the volume after rigid alignment with the first tool, is
   /// drawn from this range and all functions and squareness scaled to it.
-  double volumetric_rms_min = 15e-6;
-  double volumetric_rms_max = 22e-6;
+  double volumetric_rms_min = 15.5e-6;
+  double volumetric_rms_max = 21.5e-6;
   /// Relative size of angular errors, squareness and sines before that scaling.
   double angular_scale = 1.0;
   double squareness_scale = 1.0;

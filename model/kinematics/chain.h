@@ -7,9 +7,12 @@
 ///   linear, workpiece side   D = T(r) E T(-r) T(q u)
 ///   rotary, tool side        D = T(c + dc) R_o E Rot(q') T(-c)
 ///   rotary, workpiece side   D = T(c) Rot(q') E R_o^-1 T(-(c + dc))
-/// First order (Zhao, Li and Tang 2011, error twists): dP_w = sum_i R_(w<-i) [d_i + e_i x arm_i + q_i (u_i -
-/// e_i)]. The two differ by second order: |difference| <= sum of products of pairs of the angular errors
-/// (squareness included) times the largest arm, plus pairs angle x displacement; tested for random chains.
+/// First order (Zhao, Li and Tang 2011, error twists):
+///   dP_w = sum_i R_(w<-i) [d_i + e_i x arm_i + q_i (u_i - e_i)]
+/// The two differ by second order. With A the sum of |angular errors| (squareness included), D the sum of
+/// |displacements| and L the longest arm or travel, the functional points differ by at most
+/// (A^2 L / 2 + A D)(1 + A), the orientations by A^2 / 2 (1 + A); tested for random chains.
+/// The constructor throws std::out_of_range when the machine does not describe an axis of its structure.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -12,6 +12,7 @@
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal::testing_support {
+
 inline double uniform(std::mt19937_64& random, double half_width) {
   return std::uniform_real_distribution<double>(-half_width, half_width)(random);
 }

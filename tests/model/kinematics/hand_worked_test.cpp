@@ -47,7 +47,7 @@ void expect_errors(const Pose& pose, const std::vector<Expected>& rows) {
     const Vector3d exact =
         (chain.exact_pose<double>(pose.position, tool, errors).point_w - nominal) / kMicrometre;
     EXPECT_LT((first_order - row.error_um).norm(), 1e-9) << row.symbol << ": " << first_order.transpose();
-    EXPECT_LT((exact - row.error_um).norm(), 1.5e-3) << row.symbol << ": " << exact.transpose();
+    EXPECT_LT((exact - row.error_um).norm(), 1.2e-3) << row.symbol << ": " << exact.transpose();
   }
 }
 

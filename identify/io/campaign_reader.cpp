@@ -199,7 +199,7 @@ class CampaignReader {
       table.fail(
           "decimal",
           table.path() + ": decimal sign and delimiter are both '" + std::string(1, format.decimal) + "'",
-          "add delimiter = \";\" (or whatever separates the cells)");
+          "add delimiter = \";\", or whatever separates the cells");
     }
     format.skip_rows = static_cast<std::size_t>(table.integer("skip_rows", 0, kMostSkippedRows).value_or(0));
     return format;

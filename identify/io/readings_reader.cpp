@@ -13,6 +13,7 @@ namespace volcal {
 namespace {
 
 constexpr double kTravelMargin = 0.05;  // share of the travel that commanded positions may lie outside
+constexpr double kUnitSlip = 20.0;      // a position this many times beyond the travel may be in another unit
 constexpr double kColdest_degC = -60.0;
 constexpr double kHottest_degC = 300.0;
 
@@ -352,7 +353,9 @@ class ReadingsReader {
     const double factor = si_factor(column);
     const std::string unit(unit_of_key(column).suffix);
     std::string remedy = "check travel_" + unit + " of the machine and the unit and sign of the column";
+    const double reach = std::max(std::abs(axis.travel_min), std::abs(axis.travel_max));
     for (const double scale : {1e-3, 1e3}) {
+      if (scale < 1.0 && std::abs(*first) < kUnitSlip * reach) continue;
       const bool fits = std::ranges::none_of(values, [&](double q) { return outside(q * scale); });
       if (fits)
         remedy = "wrong unit by 1000? add scale = { " + column + " = " + shown(scale) + " } to the setup";

@@ -2,11 +2,11 @@
 
 #include <filesystem>
 
+#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/result_json.h"
 #include "volcal/identify/io/table_writer.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
-#include "volcal/identify/report/report.h"
 #include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
@@ -21,7 +21,9 @@ std::string json_path(const std::string& path) {
 
 }  // namespace
 
-void write_result_files(const FitResult& result, const Campaign& campaign, const AtomicFolder& folder) {
+void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target,
+                         const std::map<std::string, std::string>& more) {
+  AtomicFolder folder(target);
   folder.write("result.json", result_json(result));
   folder.write("error_tables.csv", error_tables_csv(error_table(result)));
   folder.write("volumetric_grid.csv",
@@ -33,12 +35,7 @@ void write_result_files(const FitResult& result, const Campaign& campaign, const
       model_toml(result.identified, "machine.toml",
                  "Identified from " + campaign.file + ", status " + std::string(to_string(result.status)) +
                      ".\nErrors are actual minus nominal, tool relative to workpiece."));
-  if (report_available()) write_report(result, campaign, folder.path("report.html"));
-}
-
-void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target) {
-  AtomicFolder folder(target);
-  write_result_files(result, campaign, folder);
+  for (const auto& [name, content] : more) folder.write(name, content);
   folder.commit();
 }
 

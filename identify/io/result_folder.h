@@ -1,9 +1,9 @@
 #pragma once
 /// The folder that `fit` writes, and reading it again.
 
+#include <map>
 #include <string>
 
-#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/errors.h"
@@ -14,11 +14,10 @@ namespace volcal {
 inline constexpr int kGridPointsPerAxis = 5;
 
 /// Writes result.json, error_tables.csv, volumetric_grid.csv, residuals.csv, identified.toml, machine.toml
-/// and, when the program was built with it, report.html; the folder is replaced as a whole (atomic_folder.h).
-/// Throws InputError.
-void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target);
-/// The same into a folder that the caller commits.
-void write_result_files(const FitResult& result, const Campaign& campaign, const AtomicFolder& folder);
+/// and `more` (name -> content: report.html); the folder is replaced as a whole (atomic_folder.h). Throws
+/// InputError.
+void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target,
+                         const std::map<std::string, std::string>& more = {});
 
 /// Reads result.json of a result folder (or the file itself). `residuals` stays empty: they are in
 /// residuals.csv. Throws InputError.

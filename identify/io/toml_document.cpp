@@ -56,11 +56,28 @@ std::optional<std::string> other_unit_of(std::string_view key, const std::vector
   return std::nullopt;
 }
 
+std::string type_remedy(const std::string& expected) {
+  if (expected.find("text") != std::string::npos) return "write texts in double quotes";
+  if (expected.find("table") != std::string::npos)
+    return "write [NAME] or NAME = { key = value }; repeated tables as [[NAME]]";
+  if (expected.find("array") != std::string::npos) return "write [1.0, 2.0, 3.0]";
+  return "write " + expected + " without quotes";
+}
+
+enum class Dimension { Length, Angle, Other };
+
+Dimension dimension_of(std::string_view unit) {
+  if (unit == "m" || unit == "mm" || unit == "um") return Dimension::Length;
+  if (unit == "rad" || unit == "mrad" || unit == "urad" || unit == "deg") return Dimension::Angle;
+  return Dimension::Other;
+}
+
 std::string unit_remedy(std::string_view key, const std::string& known) {
   const Unit given = unit_of_key(key);
   const Unit wanted = unit_of_key(known);
   std::string remedy = "write " + known + ", in " + std::string(wanted.suffix);
-  if (!given.suffix.empty()) {
+  const Dimension dimension = dimension_of(given.suffix);
+  if (dimension != Dimension::Other && dimension == dimension_of(wanted.suffix)) {
     remedy +=
         ": 1 " + std::string(given.suffix) + " = " + with_unit(given.si_per_unit / wanted.si_per_unit, known);
   }
@@ -159,7 +176,7 @@ void TomlTable::fail_missing(std::string_view key) const {
 void TomlTable::fail_type(std::string_view key, const TomlNode& node, const std::string& expected) const {
   throw InputError({source_->file, node.line},
                    name(key) + " is " + kind_name(node.kind) + ", expected " + expected,
-                   "see the documentation of this key");
+                   type_remedy(expected));
 }
 
 double TomlTable::finite(const TomlNode& node, std::string_view key, NumberLimits limits) const {
@@ -392,6 +409,10 @@ TomlTable TomlDocument::root() const { return TomlTable(source_, &source_->root,
 
 void TomlDocument::require_format(const std::string& format) const {
   const TomlTable table = root();
+  if (!table.has("format")) {
+    throw InputError({source_->file, 0}, "key format is missing at the top of the file",
+                     "add format = \"" + format + "\"");
+  }
   const std::string given = table.required_text("format");
   if (given == format) return;
   std::string remedy = "expected format = \"" + format + "\"";

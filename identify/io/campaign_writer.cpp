@@ -1,0 +1,229 @@
+#include "volcal/identify/io/campaign_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/readings_reader.h"
+#include "volcal/identify/io/toml_writer.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/instruments/registry.h"
+#include "volcal/sim/datum.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kTruthPositions = 41;
+
+const InstrumentSchema& schema_of(const Setup& setup) {
+  const Instrument* instrument = find_instrument(setup.instrument);
+  if (!instrument) throw std::invalid_argument("instrument " + setup.instrument + " is not registered");
+  return instrument->schema();
+}
+
+/// Decimals that resolve 0.1 nm or 0.1 nrad in a column's unit.
+int decimals_of(const std::string& column) {
+  const std::string_view unit = unit_of_key(column).suffix;
+  if (unit == "deg") return 10;
+  if (unit == "mm") return 7;
+  if (unit == "um" || unit == "urad" || unit == "s" || unit == "degC" || unit == "mm_min") return 4;
+  return 10;
+}
+
+struct CsvColumn {
+  std::string name;
+  double si_per_unit;
+  int decimals;
+  std::vector<double> values;
+};
+
+CsvColumn measured_column(const std::string& name, const std::vector<double>& values) {
+  return {name, unit_of_key(name).si_per_unit, decimals_of(name), values};
+}
+
+template <class Integer>
+CsvColumn integer_column(const std::string& name, const std::vector<Integer>& values) {
+  return {name, 1.0, 0, std::vector<double>(values.begin(), values.end())};
+}
+
+std::vector<CsvColumn> columns_of(const Setup& setup, const Machine& machine) {
+  const Readings& readings = setup.readings;
+  const InstrumentSchema& schema = schema_of(setup);
+  std::vector<CsvColumn> columns;
+  if (!readings.time.empty()) columns.push_back(measured_column("time_s", readings.time));
+  if (!readings.line.empty()) columns.push_back(integer_column("line", readings.line));
+  if (!readings.run.empty()) columns.push_back(integer_column("run", readings.run));
+  const auto letter = [](AxisName axis) {
+    return std::string(1, static_cast<char>(std::tolower(letter_of(axis))));
+  };
+  for (const Axis& axis : machine.axes) {
+    const std::string name = letter(axis.name) + (is_rotary(axis.name) ? "_deg" : "_mm");
+    columns.push_back(measured_column(name, readings.position[index_of(axis.name)]));
+  }
+  for (const Axis& axis : machine.axes) {
+    const auto& direction = readings.direction[index_of(axis.name)];
+    if (!direction.empty()) columns.push_back(integer_column("dir_" + letter(axis.name), direction));
+  }
+  if (!readings.feed.empty()) columns.push_back(measured_column("feed_mm_min", readings.feed));
+  for (const auto& [channel, values] : readings.temperature) {
+    columns.push_back(measured_column("T_" + channel + "_degC", values));
+  }
+  if (!readings.sigma.empty()) columns.push_back(measured_column(sigma_column(schema), readings.sigma));
+  const auto& set = schema.column_sets.at(readings.column_set);
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    columns.push_back(measured_column(set[k].column, readings.value.at(k)));
+  }
+  return columns;
+}
+
+/// Fixed decimals without the zeros at their end.
+void append_number(double value, int decimals, std::string& text) {
+  std::string number = fmt::format("{:.{}f}", value, decimals);
+  if (decimals > 0) {
+    number.erase(number.find_last_not_of('0') + 1);
+    if (number.back() == '.') number.pop_back();
+  }
+  text += number == "-0" ? "0" : number;
+}
+
+std::string vector_text(const Eigen::Vector3d& v, double si_per_unit) {
+  return fmt::format("[{}, {}, {}]", edge_number(v.x(), si_per_unit), edge_number(v.y(), si_per_unit),
+                     edge_number(v.z(), si_per_unit));
+}
+
+/// One `key = value` of a schema; empty when the options do not hold it.
+std::string option_toml(const KeySchema& key, const Options& options) {
+  const std::string stem(stem_of_key(key.key));
+  const double factor = unit_of_key(key.key).si_per_unit;
+  switch (key.type) {
+    case KeyType::Number:
+      if (const auto value = options.number(stem)) return key.key + " = " + edge_number(*value, factor);
+      break;
+    case KeyType::Vector3:
+      if (const auto value = options.vector(stem)) return key.key + " = " + vector_text(*value, factor);
+      break;
+    case KeyType::Text:
+      if (const auto value = options.text(stem)) return key.key + " = " + toml_text(*value);
+      break;
+    case KeyType::Boolean:
+      if (const auto value = options.boolean(stem)) return key.key + (*value ? " = true" : " = false");
+      break;
+  }
+  return {};
+}
+
+std::string noise_toml(const Setup& setup, const InstrumentSchema& schema) {
+  std::string inside;
+  for (const KeySchema& key : schema.noise_keys) {
+    const std::string entry = option_toml(key, setup.noise);
+    if (!entry.empty()) inside += (inside.empty() ? "" : ", ") + entry;
+  }
+  return inside.empty() ? "" : "noise = { " + inside + " }\n";
+}
+
+std::string setup_toml(const Setup& setup, const Machine& machine) {
+  const InstrumentSchema& schema = schema_of(setup);
+  std::string text = "\n[[setups]]\n";
+  text += "name = " + toml_text(setup.name) + "\n";
+  text += "instrument = " + toml_text(setup.instrument) + "\n";
+  text += "data = " + toml_text(readings_file_name(setup)) + "\n";
+  text += "tool = " + toml_text(machine.tools.at(setup.tool).name) + "\n";
+  for (const KeySchema& key : schema.keys) {
+    const std::string entry = option_toml(key, setup.options);
+    if (!entry.empty()) text += entry + "\n";
+  }
+  if (setup.has_noise) text += noise_toml(setup, schema);
+  return text + "repeatability_um = " + edge_number(setup.repeatability, kMetrePerMicrometre) + "\n";
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  if (!file.flush()) {
+    throw InputError({path, 0}, "cannot be written", "check permissions and free space");
+  }
+}
+
+std::string truth_csv(const sim::TruthMachine& truth) {
+  const sim::TruthInDatum tables(truth);
+  std::string text = "symbol,axis,position,position_unit,value,unit\n";
+  for (const Axis& axis : truth.machine().axes) {
+    if (is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      for (int i = 0; i < kTruthPositions; ++i) {
+        const double q = axis.travel_min + axis.travel() * i / (kTruthPositions - 1);
+        text += fmt::format("{},{},{},mm,{:.6f},{}\n", symbol.name(), letter_of(axis.name),
+                            edge_number(q, kMetrePerMillimetre), 1e6 * tables.value(symbol, q),
+                            edge_unit(component));
+      }
+    }
+  }
+  const auto symbols = tables.datum().squareness();
+  for (std::size_t i = 0; i < symbols.size(); ++i) {
+    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), 1e6 * tables.squareness()[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string readings_file_name(const Setup& setup) {
+  std::string name = setup.name;
+  const auto awkward = [](unsigned char c) { return !std::isalnum(c) && c != '_' && c != '-' && c != '.'; };
+  std::ranges::replace_if(name, awkward, '_');
+  return name + ".csv";
+}
+
+std::string campaign_toml(const Campaign& campaign, const std::string& machine_path) {
+  std::string text = fmt::format("format = \"{}\"\nmachine = {}\n", kCampaignFormat, toml_text(machine_path));
+  std::set<std::string> files;
+  for (const Setup& setup : campaign.setups) {
+    if (!files.insert(readings_file_name(setup)).second) {
+      throw std::invalid_argument("two setups would be written to " + readings_file_name(setup));
+    }
+    text += setup_toml(setup, campaign.machine);
+  }
+  return text;
+}
+
+std::string readings_csv(const Setup& setup, const Machine& machine) {
+  const std::vector<CsvColumn> columns = columns_of(setup, machine);
+  std::string text;
+  for (const CsvColumn& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      if (k > 0) text += ',';
+      append_number(columns[k].values.at(row) / columns[k].si_per_unit, columns[k].decimals, text);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void write_campaign(const Campaign& campaign, const std::string& folder, const std::string& machine_path) {
+  write_text(folder + "/campaign.toml", campaign_toml(campaign, machine_path));
+  for (const Setup& setup : campaign.setups) {
+    write_text(folder + "/" + readings_file_name(setup), readings_csv(setup, campaign.machine));
+  }
+}
+
+void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolder& folder) {
+  folder.write("machine.toml", machine_toml(simulated.campaign.machine));
+  folder.write("model.toml", model_toml(ModelSpec{}, "machine.toml"));
+  write_campaign(simulated.campaign, folder.path(), "machine.toml");
+  const std::string truth = folder.path("truth");
+  std::filesystem::create_directories(truth);
+  write_campaign(simulated.validation, truth, "../machine.toml");
+  write_text(truth + "/error_functions.csv", truth_csv(simulated.truth));
+}
+
+}  // namespace volcal

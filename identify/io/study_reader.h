@@ -1,0 +1,48 @@
+#pragma once
+/// study.toml: a machine, its hidden truth, surroundings and measurements, for `volcal simulate`.
+///
+///     format = "volcal-study-1"
+///     machine = "machine.toml"
+///     seed = 1
+///     pause_s = 600.0                    # between setups
+///     [truth]                            # all optional
+///     kind = "random"                    # or "perfect"
+///     volumetric_rms_um = [15.5, 21.5]   # after rigid alignment, drawn from this range
+///     angular_scale, squareness_scale, wave_scale = 1.0
+///     reversal_max_um, angular_reversal_max_urad = 0.0
+///     [truth.locations_urad]             # rotations in place of random ones: EC0Y = 12.0
+///     [truth.locations_um]               # displacements of rotary axes: EX0C = 10.0
+///     [truth.reversals_um]               # EXX = 3.0
+///     [truth.reversals_urad]             # EAX = 4.0
+///     [truth.expansions.X]               # unknown to the machine file
+///     expansion_um_per_m_K = 10.0
+///     temperature = "X"
+///     [[temperatures]]
+///     channel = "X"
+///     start_degC, drift_K_per_hour, amplitude_K, period_s, phase_deg, step_K, step_time_s
+///     [validation]
+///     points = 400
+///     tools = ["short"]
+///     [[measurements]]                   # setups' names start with `name`
+///     kind = "laser-tracer" | "laser-tracker" | "ball-bar-circles" | "diagonals" | "axis-lines" |
+///            "straightness-lines" | "squares" | "angle-lines" | "point-grid"
+/// Keys of a measurement: study_measurements.cpp; defaults: sim/measurements.h.
+
+#include <string>
+
+#include "volcal/identify/io/toml_document.h"
+#include "volcal/sim/study.h"
+
+namespace volcal {
+
+inline constexpr const char* kStudyFormat = "volcal-study-1";
+
+/// Reads a study and its machine. Throws InputError with file, line, problem and remedy.
+sim::Study read_study(const std::string& path);
+/// The same from text with a given machine (its `machine` key is not followed).
+sim::Study parse_study(const std::string& text, const std::string& file, const Machine& machine);
+
+/// One [[measurements]] table.
+sim::Measurement read_measurement(const TomlTable& table);
+
+}  // namespace volcal

@@ -1,0 +1,32 @@
+#pragma once
+/// Direction in which positions were approached: from the `dir_*` columns, or else from the order of the
+/// readings.
+
+#include <span>
+#include <vector>
+
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+/// Commanded positions closer than this (m; for rotary axes rad) are one.
+inline constexpr double kSamePosition = 1e-6;
+
+/// Rows of one pass, in the order in which they were read.
+struct Pass {
+  std::int32_t line = 0;
+  std::vector<std::size_t> rows;
+};
+/// The setup's passes by `line`; one pass when there is no such column. Order of first appearance.
+std::vector<Pass> passes(const Readings& readings);
+
+/// +1 or -1 per position: the sign of the last move. A position met again without a move between is taken to
+/// be approached in the sense of the next move (the axis overran it and came back), and so is the first one.
+/// 0 when nothing moves.
+std::vector<int> approach_from_order(std::span<const double> positions);
+
+/// Approach of an axis at every row: its `dir_` column where that says something, else the order of the
+/// commanded positions within each pass. 0 = unknown.
+std::vector<int> axis_approach(const Readings& readings, AxisName axis);
+
+}  // namespace volcal

@@ -1,0 +1,25 @@
+#include "volcal/identify/stats/channels.h"
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/instruments/registry.h"
+
+namespace volcal {
+
+std::string channel_column(const Setup& setup, std::size_t channel) {
+  const Instrument* instrument = find_instrument(setup.instrument);
+  if (!instrument) {
+    throw InputError({setup.data, setup.source_line},
+                     "setup " + setup.name + ": unknown instrument " + setup.instrument,
+                     "use one of the registered instruments");
+  }
+  return instrument->schema().column_sets.at(setup.readings.column_set).at(channel).column;
+}
+
+bool is_angle_channel(const Setup& setup, std::size_t channel) {
+  const std::string column = channel_column(setup, channel);
+  const std::string_view unit = unit_of_key(column).suffix;
+  return unit == "urad" || unit == "mrad" || unit == "rad" || unit == "deg";
+}
+
+}  // namespace volcal

@@ -15,9 +15,9 @@ void convert_table(const toml::table& table, TomlNode& into) {
   for (const auto& [key, child] : table) {
     TomlNode converted = convert(child);
     converted.line = static_cast<int>(key.source().begin.line);
-    into.entries.emplace_back(std::string(key.str()), std::move(converted));
+    into.entries.push_back({std::string(key.str()), std::move(converted)});
   }
-  std::ranges::stable_sort(into.entries, {}, [](const auto& entry) { return entry.second.line; });
+  std::ranges::stable_sort(into.entries, {}, [](const auto& entry) { return entry.node.line; });
 }
 
 TomlNode convert(const toml::node& node) {
@@ -60,8 +60,8 @@ std::string syntax_remedy(const std::string& description) {
 bool TomlNode::knows(std::string_view key) const { return std::ranges::find(known, key) != known.end(); }
 
 const TomlNode* TomlNode::find(std::string_view key) const {
-  const auto found = std::ranges::find_if(entries, [&](const auto& entry) { return entry.first == key; });
-  return found == entries.end() ? nullptr : &found->second;
+  const auto found = std::ranges::find_if(entries, [&](const auto& entry) { return entry.key == key; });
+  return found == entries.end() ? nullptr : &found->node;
 }
 
 std::shared_ptr<TomlSource> parse_toml(const std::string& text, const std::string& file) {

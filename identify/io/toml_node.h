@@ -12,6 +12,8 @@
 
 namespace volcal::detail {
 
+struct TomlEntry;
+
 struct TomlNode {
   TomlKind kind = TomlKind::Table;
   int line = 0;
@@ -19,12 +21,17 @@ struct TomlNode {
   std::int64_t integer = 0;
   bool boolean = false;
   std::string text;
-  std::vector<TomlNode> items;                            ///< of an array
-  std::vector<std::pair<std::string, TomlNode>> entries;  ///< of a table, in the order of the file
-  std::vector<std::string> known;                         ///< keys that a reader asked for
+  std::vector<TomlNode> items;     ///< of an array
+  std::vector<TomlEntry> entries;  ///< of a table, in the order of the file
+  std::vector<std::string> known;  ///< keys that a reader asked for
 
   bool knows(std::string_view key) const;
   const TomlNode* find(std::string_view key) const;
+};
+
+struct TomlEntry {
+  std::string key;
+  TomlNode node;
 };
 
 struct TomlSource {

@@ -1,0 +1,167 @@
+#include "volcal/identify/io/study_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/sim/reference_machines.h"
+
+namespace volcal {
+namespace {
+
+const std::string kHead = "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\n";
+const std::string kOneMeasurement = "[[measurements]]\nkind = \"diagonals\"\n";
+
+sim::Study parse(const std::string& body) {
+  return parse_study(kHead + body, "study.toml", sim::reference_machines()[0]);
+}
+
+TEST(SimulationFile, ReadsEverySection) {
+  const sim::Study study = parse(R"(
+seed = 42
+pause_s = 30.0
+[truth]
+kind = "perfect"
+volumetric_rms_um = [10, 12]
+wave_scale = 0.5
+reversal_max_um = 2.0
+[truth.locations_urad]
+EC0Y = 12.0
+[truth.reversals_um]
+EXX = 3
+[truth.reversals_urad]
+EAX = 4.0
+[truth.expansions.X]
+expansion_um_per_m_K = 10.0
+temperature = "scale"
+[[temperatures]]
+channel = "scale"
+start_degC = 21.0
+drift_K_per_hour = 0.36
+step_K = 1.0
+step_time_s = 100.0
+[validation]
+points = 50
+tools = ["side_x"]
+[[measurements]]
+kind = "axis-lines"
+name = "iso230_2"
+axes = ["X", "Z"]
+tool = "side_y"
+at = [0.5, 0.25, 0.75]
+runs = 3
+offset_per = "line"
+noise = { constant_um = 0.1, per_metre_um = 0.2, repeatability_um = 0.3 }
+)");
+  EXPECT_EQ(study.seed, 42U);
+  EXPECT_EQ(study.pause_between_setups, 30.0);
+  EXPECT_TRUE(study.truth.perfect);
+  EXPECT_DOUBLE_EQ(study.truth.random.volumetric_rms_min, 10e-6);
+  EXPECT_DOUBLE_EQ(study.truth.random.volumetric_rms_max, 12e-6);
+  EXPECT_EQ(study.truth.random.wave_scale, 0.5);
+  EXPECT_DOUBLE_EQ(study.truth.random.reversal_max, 2e-6);
+  EXPECT_DOUBLE_EQ(study.truth.locations.at(*LocationSymbol::parse("EC0Y")), 12e-6);
+  EXPECT_DOUBLE_EQ(study.truth.reversals.at(*ErrorSymbol::parse("EXX")), 3e-6);
+  EXPECT_DOUBLE_EQ(study.truth.reversals.at(*ErrorSymbol::parse("EAX")), 4e-6);
+  EXPECT_DOUBLE_EQ(study.truth.expansions.at(AxisName::X).per_kelvin, 10e-6);
+  ASSERT_EQ(study.environment.channels.size(), 1U);
+  EXPECT_DOUBLE_EQ(study.environment.channels[0].drift, 1e-4);
+  EXPECT_EQ(study.environment.channels[0].step_time, 100.0);
+  EXPECT_EQ(study.validation.points, 50);
+  EXPECT_EQ(study.validation.tools, std::vector<std::string>{"side_x"});
+  ASSERT_EQ(study.measurements.size(), 1U);
+  EXPECT_EQ(study.measurements[0].name, "iso230_2");
+  const auto& lines = std::get<sim::AxisLines>(study.measurements[0].settings);
+  EXPECT_EQ(lines.axes, (std::vector<AxisName>{AxisName::X, AxisName::Z}));
+  EXPECT_EQ(lines.tool, "side_y");
+  EXPECT_EQ(lines.at, Eigen::Vector3d(0.5, 0.25, 0.75));
+  EXPECT_EQ(lines.runs, 3);
+  EXPECT_TRUE(lines.offset_per_line);
+  EXPECT_DOUBLE_EQ(lines.noise.repeatability, 0.3e-6);
+  EXPECT_DOUBLE_EQ(lines.noise.per_metre, 0.2e-6);
+}
+
+TEST(SimulationFile, ReadsStationsAndRuns) {
+  const sim::Study study = parse(R"(
+[[measurements]]
+kind = "laser-tracker"
+grid = [4, 3, 2]
+station_sigma_mm = 2.0
+scale_sigma_um_per_m = 0.5
+noise = { constant_um = 1.0, angle_urad = 5.0 }
+[[measurements.stations]]
+name = "A"
+position_mm = [-300, -200.0, 50]
+[[measurements.runs]]
+station = "A"
+tool = "short"
+)");
+  const auto& tracker = std::get<sim::Tracking>(study.measurements[0].settings);
+  EXPECT_EQ(tracker.instrument, "laser-tracker");
+  EXPECT_EQ(tracker.grid, Eigen::Vector3i(4, 3, 2));
+  EXPECT_DOUBLE_EQ(*tracker.station_sigma, 2e-3);
+  EXPECT_DOUBLE_EQ(*tracker.length_scale_sigma, 0.5e-6);
+  EXPECT_DOUBLE_EQ(tracker.noise.angle, 5e-6);
+  ASSERT_EQ(tracker.stations.size(), 1U);
+  EXPECT_LT((tracker.stations[0].position_w - Eigen::Vector3d(-0.3, -0.2, 0.05)).norm(), 1e-15);
+  ASSERT_EQ(tracker.runs.size(), 1U);
+  EXPECT_EQ(sim::simulate(study).campaign.reading_count(), 2U * 24U * 3U);
+}
+
+TEST(SimulationFile, DefaultsAreThoseOfTheSettings) {
+  const sim::Study study = parse(kOneMeasurement);
+  const sim::Diagonals defaults;
+  const auto& read = std::get<sim::Diagonals>(study.measurements[0].settings);
+  EXPECT_EQ(read.points, defaults.points);
+  EXPECT_EQ(read.noise.constant, defaults.noise.constant);
+  EXPECT_EQ(study.seed, 1U);
+  EXPECT_EQ(study.validation.points, 400);
+}
+
+struct BadStudy {
+  std::string body;
+  int line;              ///< that the message names
+  std::string expected;  ///< in the message
+};
+
+class BadSimulationFiles : public testing::TestWithParam<BadStudy> {};
+
+TEST_P(BadSimulationFiles, NamesLineAndProblem) {
+  try {
+    sim::simulate(parse(GetParam().body));
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().file, "study.toml");
+    EXPECT_EQ(error.place().line, GetParam().line) << error.what();
+    EXPECT_NE(std::string(error.what()).find(GetParam().expected), std::string::npos) << error.what();
+    EXPECT_FALSE(error.remedy().empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    SimulationFile, BadSimulationFiles,
+    testing::Values(BadStudy{"seed = -1\n" + kOneMeasurement, 3, "seed"},
+                    BadStudy{"sed = 1\n" + kOneMeasurement, 3, "sed"},
+                    BadStudy{"seed = 1\n", 0, "measurements"},
+                    BadStudy{"[[measurements]]\nkind = \"diagonal\"\n", 4, "diagonal"},
+                    BadStudy{"[[measurements]]\nname = \"d\"\n", 3, "kind"},
+                    BadStudy{kOneMeasurement + "points = 1\n", 5, "points"},
+                    BadStudy{kOneMeasurement + "radius_mm = 1\n", 5, "radius_mm"},
+                    BadStudy{kOneMeasurement + "tool = \"long\"\n", 3, "long"},
+                    BadStudy{kOneMeasurement + "at = [0.5, 50, 0.5]\n", 5, "at"},
+                    BadStudy{kOneMeasurement + kOneMeasurement, 5, "body_ppp"},
+                    BadStudy{"[[measurements]]\nkind = \"ball-bar-circles\"\nradius_mm = 400\n", 3,
+                             "leaves the travel"},
+                    BadStudy{"[[measurements]]\nkind = \"squares\"\nplanes = [\"XX\"]\n", 3, "XX"},
+                    BadStudy{"[[measurements]]\nkind = \"laser-tracer\"\ngrid = [9, 7]\n", 5, "grid"},
+                    BadStudy{"[[measurements]]\nkind = \"axis-lines\"\naxes = [\"C\"]\n", 5, "axes"},
+                    BadStudy{"[truth.locations_urad]\nEA0Y = 1.0\n" + kOneMeasurement, 4, "EC0Y, EA0Z, EB0Z"},
+                    BadStudy{"[truth.locations_urad]\nEC0C = 1.0\n" + kOneMeasurement, 4, "EC0C"},
+                    BadStudy{"[truth.reversals_um]\nEAX = 1.0\n" + kOneMeasurement, 4, "EAX"},
+                    BadStudy{"[truth]\nvolumetric_rms_um = [20, 10]\n" + kOneMeasurement, 4, "range"},
+                    BadStudy{"[validation]\ntools = [\"none\"]\n" + kOneMeasurement, 4, "none"}));
+
+}  // namespace
+}  // namespace volcal

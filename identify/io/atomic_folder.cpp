@@ -142,14 +142,22 @@ std::set<std::string> listed(const fs::path& folder) {
   return names;
 }
 
-}  // namespace
-
-AtomicFolder::AtomicFolder(const std::string& target) {
+fs::path absolute_target(const std::string& target) {
   std::error_code error;
   fs::path absolute = fs::weakly_canonical(fs::absolute(target, error), error);
   if (!absolute.has_filename()) absolute = absolute.parent_path();
   if (target.empty() || error || !absolute.has_filename()) fail(target, "the output path cannot be used");
+  return absolute;
+}
+
+}  // namespace
+
+void require_output_folder(const std::string& target) { require_replaceable(absolute_target(target)); }
+
+AtomicFolder::AtomicFolder(const std::string& target) {
+  const fs::path absolute = absolute_target(target);
   target_ = absolute.string();
+  std::error_code error;
   fs::create_directories(absolute.parent_path(), error);
   if (error) fail(absolute.parent_path().string(), "creating the folder failed: " + error.message());
   repair(absolute);

@@ -44,6 +44,10 @@ class AtomicFolder {
   bool committed_ = false;
 };
 
+/// Throws what AtomicFolder would throw for this target, before a long computation is lost to it. Writes
+/// nothing.
+void require_output_folder(const std::string& target);
+
 /// Writes a file under a temporary name, flushes it and renames it. Throws InputError when the system
 /// refuses.
 void write_file_atomically(const std::string& path, const std::string& content);

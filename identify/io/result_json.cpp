@@ -53,6 +53,7 @@ Json functions_json(const FitResult& result) {
     all.push_back({{"symbol", function.symbol.name()},
                    {"intervals", function.intervals},
                    {"smoothed", function.smoothed},
+                   {"correlation_length", number(function.correlation_length)},
                    {"effective_parameters", number(function.effective_parameters)},
                    {"measured_min", number(function.measured_min)},
                    {"measured_max", number(function.measured_max)}});
@@ -146,23 +147,31 @@ void read_head(const Json& json, FitResult& result) {
   result.reference_temperature_degC = number(json.at("reference_temperature_degC"));
   result.temperature_is_campaign_mean = json.at("temperature_is_campaign_mean").get<bool>();
   for (const Json& setup : json.at("setups")) {
-    result.setups.push_back({setup.at("name").get<std::string>(), setup.at("instrument").get<std::string>(),
-                             setup.at("tool").get<std::string>(), setup.at("reading_unit").get<std::string>(),
-                             setup.at("observations").get<std::size_t>(), number(setup.at("chi2")),
-                             number(setup.at("dof")), number(setup.at("rms_residual")),
-                             number(setup.at("max_residual"))});
+    result.setups.push_back({.name = setup.at("name").get<std::string>(),
+                             .instrument = setup.at("instrument").get<std::string>(),
+                             .tool = setup.at("tool").get<std::string>(),
+                             .reading_unit = setup.at("reading_unit").get<std::string>(),
+                             .observations = setup.at("observations").get<std::size_t>(),
+                             .chi2 = number(setup.at("chi2")),
+                             .redundancy = number(setup.at("dof")),
+                             .rms_residual = number(setup.at("rms_residual")),
+                             .max_residual = number(setup.at("max_residual"))});
   }
   for (const Json& component : json.at("variance_components")) {
-    result.variance_components.push_back({component.at("instrument").get<std::string>(),
-                                          number(component.at("scale")), number(component.at("scale_u")),
-                                          number(component.at("redundancy")),
-                                          component.at("observations").get<std::size_t>()});
+    result.variance_components.push_back({.instrument = component.at("instrument").get<std::string>(),
+                                          .scale = number(component.at("scale")),
+                                          .scale_u = number(component.at("scale_u")),
+                                          .redundancy = number(component.at("redundancy")),
+                                          .observations = component.at("observations").get<std::size_t>()});
   }
   for (const Json& function : json.at("functions")) {
-    result.functions.push_back({json_parts::error_symbol(function.at("symbol")),
-                                function.at("intervals").get<int>(), function.at("smoothed").get<bool>(),
-                                number(function.at("effective_parameters")),
-                                number(function.at("measured_min")), number(function.at("measured_max"))});
+    result.functions.push_back({.symbol = json_parts::error_symbol(function.at("symbol")),
+                                .intervals = function.at("intervals").get<int>(),
+                                .smoothed = function.at("smoothed").get<bool>(),
+                                .correlation_length = number(function.at("correlation_length")),
+                                .effective_parameters = number(function.at("effective_parameters")),
+                                .measured_min = number(function.at("measured_min")),
+                                .measured_max = number(function.at("measured_max"))});
   }
   for (const Json& timing : json.at("timings")) {
     result.timings.push_back({timing.at("stage").get<std::string>(), number(timing.at("seconds"))});
@@ -176,10 +185,13 @@ RankReport rank_from(const Json& json) {
   rank.invisible = json.at("invisible").get<std::vector<std::string>>();
   rank.held_by_prior = json.at("held_by_prior").get<std::vector<std::string>>();
   for (const Json& error : json.at("errors")) {
-    rank.errors.push_back({error.at("symbol").get<std::string>(), error.at("visible").get<bool>(),
-                           number(error.at("visible_fraction")), number(error.at("u_rms")),
-                           number(error.at("effective_parameters")), error.at("reason").get<std::string>(),
-                           error.at("remedy").get<std::string>()});
+    rank.errors.push_back({.symbol = error.at("symbol").get<std::string>(),
+                           .visible = error.at("visible").get<bool>(),
+                           .visible_fraction = number(error.at("visible_fraction")),
+                           .u_rms = number(error.at("u_rms")),
+                           .effective_parameters = number(error.at("effective_parameters")),
+                           .reason = error.at("reason").get<std::string>(),
+                           .remedy = error.at("remedy").get<std::string>()});
   }
   return rank;
 }

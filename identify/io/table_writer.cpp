@@ -116,13 +116,18 @@ std::string residuals_csv_header() {
 }
 
 void write_residuals_csv(const std::string& path, const FitResult& result, const Campaign& campaign) {
+  write_residuals_csv(path, result.residuals, campaign);
+}
+
+void write_residuals_csv(const std::string& path, const std::vector<ResidualRecord>& residuals,
+                         const Campaign& campaign) {
   TextSink sink(path);
   auto out = std::back_inserter(sink.buffer());
   fmt::format_to(out, "{}", residuals_csv_header());
   std::size_t setup_index = campaign.setups.size();
   std::string name;
   const std::vector<ColumnSchema>* columns = nullptr;
-  for (const ResidualRecord& record : result.residuals) {
+  for (const ResidualRecord& record : residuals) {
     if (record.setup != setup_index) {
       setup_index = record.setup;
       const Setup& setup = campaign.setups.at(setup_index);

@@ -24,6 +24,8 @@ std::string volumetric_grid_csv(const std::vector<VolumetricError>& grid, const 
 /// for angles.
 std::string residuals_csv_header();
 /// Writes the file row by row: a million readings take no memory. Throws InputError when the disk is full.
+void write_residuals_csv(const std::string& path, const std::vector<ResidualRecord>& residuals,
+                         const Campaign& campaign);
 void write_residuals_csv(const std::string& path, const FitResult& result, const Campaign& campaign);
 
 }  // namespace volcal

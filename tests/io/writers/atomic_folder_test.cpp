@@ -104,6 +104,9 @@ TEST(AtomicFolder, NeverReplacesAForeignFolder) {
   EXPECT_THAT(message, HasSubstr("holds files that volcal did not write"));
   EXPECT_THAT(message, HasSubstr("name another folder with -o"));
   EXPECT_EQ(slurp(scratch.path() / "thesis.txt"), "years of work");
+  EXPECT_EQ(refusal([&] { require_output_folder(scratch.path().string()); }), message);
+  EXPECT_EQ(refusal([&] { require_output_folder((scratch.path() / "new").string()); }), "");
+  EXPECT_EQ(entries(scratch.path()), 1U);
 }
 
 TEST(AtomicFolder, NeverReplacesAFileOrTheCurrentFolder) {

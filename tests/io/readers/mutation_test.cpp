@@ -1,0 +1,185 @@
+/// Thousands of damaged files, the same ones on every run: each ends in success or in an InputError. Run
+/// under the sanitizers as well; tests/fuzz does the same without end.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "tests/support/reader_harness.h"
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::array<std::string_view, 40> kTokens = {"nan",
+                                                      "-inf",
+                                                      "1e999",
+                                                      "-1e-320",
+                                                      "0",
+                                                      "-1",
+                                                      "1e308",
+                                                      "9223372036854775807",
+                                                      "[",
+                                                      "]",
+                                                      "{",
+                                                      "}",
+                                                      "[[",
+                                                      "]]",
+                                                      "\"",
+                                                      "\"\"\"",
+                                                      "'",
+                                                      "=",
+                                                      ",",
+                                                      ";",
+                                                      "\n",
+                                                      "\r\n",
+                                                      "\t",
+                                                      "#",
+                                                      "\xEF\xBB\xBF",
+                                                      "\xFF\xFE",
+                                                      "\xC3\x28",
+                                                      ".",
+                                                      "true",
+                                                      "1979-05-27",
+                                                      "auto",
+                                                      "zero",
+                                                      "\\u0000",
+                                                      "_mm",
+                                                      "_um",
+                                                      "x_mm",
+                                                      "0x7F",
+                                                      "1_000",
+                                                      "+",
+                                                      "null"};
+
+class Mutator {
+ public:
+  explicit Mutator(std::uint64_t seed) : random_(seed) {}
+
+  std::string mutate(std::string text) {
+    const std::size_t count = 1 + below(3);
+    for (std::size_t i = 0; i < count; ++i) mutate_once(text);
+    return text;
+  }
+  std::size_t below(std::size_t bound) { return bound == 0 ? 0 : random_() % bound; }
+
+ private:
+  void mutate_once(std::string& text) {
+    const std::size_t at = below(text.size());
+    const std::string_view token = kTokens[below(kTokens.size())];
+    switch (below(8)) {
+      case 0:
+        if (!text.empty()) text[at] = static_cast<char>(random_());
+        return;
+      case 1:
+        text.erase(at, 1 + below(8));
+        return;
+      case 2:
+        text.insert(at, token);
+        return;
+      case 3:
+        text.insert(at, text.substr(below(text.size()), below(60)));
+        return;
+      case 4:
+        text.resize(at);
+        return;
+      case 5:
+        replace_number(text, at, token);
+        return;
+      case 6:
+        drop_line(text, at);
+        return;
+      default:
+        text.replace(at, std::min(token.size(), text.size() - at), token);
+        return;
+    }
+  }
+
+  static void replace_number(std::string& text, std::size_t at, std::string_view token) {
+    const auto first = text.find_first_of("0123456789", at);
+    if (first == std::string::npos) return;
+    const auto last = text.find_first_not_of("0123456789.", first);
+    text.replace(first, (last == std::string::npos ? text.size() : last) - first, token);
+  }
+
+  static void drop_line(std::string& text, std::size_t at) {
+    const auto first = text.rfind('\n', at);
+    const auto last = text.find('\n', at);
+    if (first != std::string::npos && last != std::string::npos && last > first)
+      text.erase(first, last - first);
+  }
+
+  std::mt19937_64 random_;
+};
+
+/// Returns how many of the mutants were accepted.
+int try_mutants(const std::string& good, int count, const std::function<bool(const std::string&)>& accepts) {
+  EXPECT_TRUE(accepts(good)) << "the sample itself is refused:\n" << good;
+  Mutator mutator(20160229);
+  int accepted = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::string mutant = mutator.mutate(good);
+    try {
+      if (accepts(mutant)) ++accepted;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "mutant " << i << ": " << error.what() << "\n" << mutant;
+    }
+  }
+  return accepted;
+}
+
+TEST(Mutation, Machine) {
+  const int accepted = try_mutants(testing::sample_machine(), 3000, testing::accepts_machine);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(accepted, 2000);
+}
+
+TEST(Mutation, Model) {
+  const int accepted = try_mutants(testing::sample_model(), 3000, testing::accepts_model);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(accepted, 2000);
+}
+
+TEST(Mutation, Campaign) {
+  const int accepted = try_mutants(testing::sample_campaign(), 3000, testing::accepts_campaign);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(accepted, 2000);
+}
+
+TEST(Mutation, ReadingsOfEveryInstrument) {
+  const auto all = instruments();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (const auto& columns : all[i]->schema().column_sets) {
+      const auto accepts = [&](const std::string& text) { return testing::accepts_readings(text, i, {}); };
+      const int accepted = try_mutants(testing::sample_csv(columns), 1000, accepts);
+      EXPECT_LT(accepted, 900) << all[i]->schema().name;
+    }
+  }
+}
+
+TEST(Mutation, Result) {
+  FitResult result;
+  result.machine = testing::harness_machine();
+  result.identified = parse_model(testing::sample_model(), "model.toml", result.machine);
+  ParameterBlock block;
+  block.kind = ParameterKind::Location;
+  block.name = "EC0Y";
+  block.labels = block.units = {""};
+  block.si_per_unit = {1e-6};
+  block.location = LocationSymbol::parse("EC0Y");
+  block.guess = block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(1);
+  result.layout.blocks = {block};
+  result.layout.size = 1;
+  result.parameters = Eigen::VectorXd::Constant(1, 12.5e-6);
+  result.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-12);
+  result.setups.push_back({.name = "S1", .instrument = "laser-tracer", .tool = "long", .reading_unit = "um"});
+  result.messages = {"a message"};
+  const int accepted = try_mutants(result_json(result), 3000, testing::accepts_result);
+  EXPECT_GT(accepted, 30);
+}
+
+}  // namespace
+}  // namespace volcal

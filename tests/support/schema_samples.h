@@ -1,0 +1,102 @@
+#pragma once
+/// Input files made from the schemas of everything registered: one setup per instrument with every key, one
+/// effect per kind, one function per basis. They seed the fuzzers and the mutation test, and a new plug-in is
+/// covered without touching either.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
+#include "volcal/model/instruments/registry.h"
+
+namespace volcal::testing {
+
+inline std::string sample_machine() {
+  return "format = \"volcal-machine-1\"\nname = \"sample\"\nstructure = \"w C' X' b Y Z (C) t\"\n"
+         "[datum]\nprimary = \"X\"\nsecondary = \"Y\"\n"
+         "[axes.X]\ntravel_mm = [0, 500]\nhome_mm = 0\nreference_point_mm = [0, -200, 0]\n"
+         "expansion_um_per_m_K = 11.5\nexpansion_sigma_um_per_m_K = 0.5\ntemperature = \"X\"\n"
+         "[axes.Y]\ntravel_mm = [0, 400]\nhome_mm = 0\n[axes.Z]\ntravel_mm = [-300, 0.0]\nhome_mm = 0\n"
+         "[axes.C]\ntravel_deg = [0, 360]\nhome_deg = 0\ncentre_mm = [250, 200, -400]\n"
+         "[tools.long]\noffset_mm = [0, 0, -150.5]\noffset_sigma_um = 2\n[tools.none]\noffset_mm = [0, 0, "
+         "0]\n";
+}
+
+inline std::string sample_value(const KeySchema& key, bool symbol) {
+  switch (key.type) {
+    case KeyType::Text:
+      return symbol ? "\"EXX\"" : "\"" + (key.choices.empty() ? "P1" : key.choices.front()) + "\"";
+    case KeyType::Boolean:
+      return "true";
+    case KeyType::Vector3:
+      return unit_of_key(key.key).suffix.empty() ? "[1, 0, 0]" : "[-350.0, -300.0, -250.0]";
+    case KeyType::Number:
+      break;
+  }
+  return key.plausible_min > 1.0 ? std::to_string(key.plausible_min) : "1.0";
+}
+
+inline std::string sample_setup(const InstrumentSchema& schema) {
+  std::string text = "[[setups]]\nname = \"" + schema.name + "\"\ninstrument = \"" + schema.name +
+                     "\"\ndata = \"" + schema.name + ".csv\"\ntool = \"long\"\nrepeatability_um = 0.5\n";
+  for (const KeySchema& key : schema.keys) text += key.key + " = " + sample_value(key, false) + "\n";
+  text += "noise = { ";
+  for (const KeySchema& key : schema.noise_keys)
+    text += (text.ends_with("{ ") ? "" : ", ") + key.key + " = 0.5";
+  return text + " }\n";
+}
+
+inline std::string sample_campaign() {
+  std::string text =
+      "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n[noise]\nrepeatability_um = 0.5\n";
+  for (const Instrument* instrument : instruments()) text += sample_setup(instrument->schema());
+  return text;
+}
+
+/// Readings of one column set of an instrument; positions run along the body diagonal.
+inline std::string sample_csv(const std::vector<ColumnSchema>& columns) {
+  std::string text = "time_s,line,run,x_mm,y_mm,z_mm,c_deg,dir_x,feed_mm_min,T_X_degC";
+  for (const ColumnSchema& column : columns) text += "," + column.column;
+  text += "\n";
+  for (int i = 0; i < 8; ++i) {
+    const std::string n = std::to_string(i);
+    text += n + ",0,1," + std::to_string(50 * i) + "," + std::to_string(40 * i) + ",-" +
+            std::to_string(30 * i) + ",0," + (i % 2 ? "1" : "-1") + ",1000,20." + n;
+    for (std::size_t c = 0; c < columns.size(); ++c) text += "," + std::to_string(0.25 * (i % 3) + 0.5);
+    text += "\n";
+  }
+  return text;
+}
+
+inline std::string sample_model() {
+  std::string text =
+      "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = "
+      "\"auto\" }\n"
+      "EXX = { degree = 2, knots = 4 }\nEYX = { knots_mm = [0, 100, 250, 500], coefficients_um = [0, 1, 2, "
+      "3, 4, 5] }\n"
+      "EAC = { knots_deg = [0, 90, 360] }\n";
+  const std::vector<std::string> symbols = {"EZX", "EAY", "EBC", "ECC", "EZC", "EXC"};
+  std::size_t next = 0;
+  for (const BasisKind* kind : basis_kinds()) {
+    if (next == symbols.size() || kind->name == "bspline") continue;
+    const std::string symbol = kind->linear_axes ? symbols[next] : "EYC";
+    text +=
+        symbol + " = { basis = \"" + std::string(kind->name) + "\"" +
+        (kind->degree_max > 0 ? ", degree = " + std::to_string(kind->degree_max < 5 ? kind->degree_max : 5)
+                              : "") +
+        " }\n";
+    ++next;
+  }
+  text += "[locations]\nEC0Y_urad = 12.5\nEA0Z = \"zero\"\nEX0C_um = 3\n";
+  for (const EffectKind* kind : effect_kinds()) {
+    text += "[[effects]]\nkind = \"" + kind->schema().kind + "\"\n";
+    for (const KeySchema& key : kind->schema().keys)
+      text += key.key + " = " + sample_value(key, key.key == "symbol") + "\n";
+  }
+  return text;
+}
+
+}  // namespace volcal::testing

@@ -12,6 +12,7 @@ function(volcal_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                          -fno-math-errno -ffp-contract=off)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)  # false alarms in Eigen products
     target_compile_options(${target} PRIVATE -Wno-restrict)  # false alarms on std::string, GCC bug 105651
   endif()
   if(VOLCAL_WARNINGS_AS_ERRORS)

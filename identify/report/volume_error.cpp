@@ -20,24 +20,13 @@ double max_norm(const std::vector<Eigen::Vector3d>& vectors) {
   return largest;
 }
 
-/// All combinations of `per_axis` equally spaced positions of the linear axes, first axis fastest.
-std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis) {
-  AxisPosition home{};
-  for (const Axis& axis : machine.axes) home[index_of(axis.name)] = axis.home;
-  std::vector<AxisPosition> positions = {home};
-  for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) continue;
-    std::vector<AxisPosition> next;
-    for (int i = 0; i < per_axis; ++i) {
-      const double q = axis.travel_min + axis.travel() * i / (per_axis - 1);
-      for (AxisPosition position : positions) {
-        position[index_of(axis.name)] = q;
-        next.push_back(position);
-      }
-    }
-    positions = std::move(next);
-  }
-  return positions;
+/// True when every linear axis stands at an end of its travel.
+bool is_corner(const Machine& machine, const AxisPosition& position) {
+  return std::ranges::all_of(machine.axes, [&](const Axis& axis) {
+    const double from_start = position[index_of(axis.name)] - axis.travel_min;
+    const double tolerance = 1e-9 * axis.travel();
+    return is_rotary(axis.name) || from_start < tolerance || from_start > axis.travel() - tolerance;
+  });
 }
 
 }  // namespace
@@ -49,23 +38,19 @@ double ToolVolume::u_max() const { return max_norm(u_w); }
 
 std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
   const KinematicChain chain(result.machine);
-  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
-  const std::vector<AxisPosition> corners = grid_positions(result.machine, 2);
   std::vector<ToolVolume> volumes;
-  for (const Tool& tool : result.machine.tools) {
-    ToolVolume volume;
-    volume.tool = tool.name;
-    for (const AxisPosition& position : positions) {
-      const VolumetricError error = volumetric_error(result, position, tool);
-      volume.point_w.push_back(chain.nominal_point_w(position, tool.offset));
-      volume.error_w.emplace_back(error.value.head<3>());
-      volume.u_w.emplace_back(error.u.head<3>());
-      volume.extrapolated.push_back(error.extrapolated);
+  for (const VolumetricError& error : volumetric_grid(result, per_axis)) {
+    if (volumes.empty() || volumes.back().tool != error.tool) {
+      volumes.emplace_back().tool = error.tool;
     }
-    for (const AxisPosition& corner : corners) {
-      volume.corner_w.push_back(chain.nominal_point_w(corner, tool.offset));
-    }
-    volumes.push_back(std::move(volume));
+    ToolVolume& volume = volumes.back();
+    const Tool& tool = result.machine.tools[*result.machine.tool_index(error.tool)];
+    const Eigen::Vector3d point_w = chain.nominal_point_w(error.position, tool.offset);
+    volume.point_w.push_back(point_w);
+    volume.error_w.emplace_back(error.value.head<3>());
+    volume.u_w.emplace_back(error.u.head<3>());
+    volume.extrapolated.push_back(error.extrapolated);
+    if (is_corner(result.machine, error.position)) volume.corner_w.push_back(point_w);
   }
   return volumes;
 }

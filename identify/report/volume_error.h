@@ -10,14 +10,15 @@
 
 namespace volcal::report {
 
-/// Error vectors of one tool's functional point; workpiece coordinates, m. Rotary axes stand at home.
+/// Error vectors of one tool's functional point; workpiece coordinates, m. Rotary axes stand at 0.
 struct ToolVolume {
   std::string tool;
   std::vector<Eigen::Vector3d> point_w;
   std::vector<Eigen::Vector3d> error_w;
   std::vector<Eigen::Vector3d> u_w;  ///< standard uncertainty per component
   std::vector<bool> extrapolated;
-  std::vector<Eigen::Vector3d> corner_w;  ///< of the travel: bit i of the index = upper end of linear axis i
+  std::vector<Eigen::Vector3d>
+      corner_w;  ///< of the travel: bits of the index = lower or upper ends of the axes
 
   double error_rms() const;  ///< root mean |e|^2
   double error_max() const;  ///< largest |e|

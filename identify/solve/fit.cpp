@@ -369,10 +369,12 @@ class Identification {
       for (const SmoothingTerm& term : terms_) {
         if (term.symbol != function.symbol) continue;
         summary.smoothed = true;
-        const auto n = term.penalty.rows();
+        summary.correlation_length =
+            term.prior_shape().length * campaign_.machine.axis(function.symbol.axis).travel();
+        const auto n = term.precision().rows();
         summary.effective_parameters -=
             term.lambda *
-            reduced_covariance_.block(term.offset, term.offset, n, n).cwiseProduct(term.penalty).sum();
+            reduced_covariance_.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();
       }
       const MeasuredRange range = measured_range(campaign_, function.symbol.axis);
       summary.measured_min = range.min;

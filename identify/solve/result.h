@@ -82,7 +82,8 @@ struct RankReport {
 struct FunctionSummary {
   ErrorSymbol symbol;
   int intervals = 0;
-  bool smoothed = false;  ///< smoothing prior in force (knots = "auto")
+  bool smoothed = false;            ///< smoothing prior in force (knots = "auto")
+  double correlation_length = 0.0;  ///< of the prior, m or rad; 0 = not smoothed
   double effective_parameters = 0.0;
   double measured_min = 0.0;  ///< range of positions with readings, m or rad
   double measured_max = 0.0;

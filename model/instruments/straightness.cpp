@@ -38,7 +38,7 @@ class StraightnessSetup final : public EquationBase<StraightnessSetup> {
     add_nuisance(scalar_nuisance(setup.name + ": offset", setup.readings.value[0].front()));
     const auto reference = setup.options.text("reference");
     add_nuisance(scalar_nuisance(
-        reference ? "reference " + *reference + ": rotation" : setup.name + ": slope", 0.0, 0.0, true));
+        reference ? "reference " + *reference + ": slope" : setup.name + ": slope", 0.0, 0.0, true));
   }
 
   template <class T>

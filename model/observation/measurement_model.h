@@ -31,6 +31,10 @@ struct RowJacobian {
   std::vector<double> tail_value[kMaxChannels];  ///< their derivatives
 };
 
+/// Raw parameters that a row depends on, and its derivatives as a dense vector over all parameters.
+std::vector<int> touched_parameters(const ParameterLayout& layout, const RowJacobian& row);
+Eigen::VectorXd dense_row(const ParameterLayout& layout, const RowJacobian& row, int channel);
+
 class MeasurementModel {
  public:
   /// `spec` must be resolved: every function that uses knots has breakpoints. Throws InputError.

@@ -32,11 +32,11 @@ enum class ParameterKind { Location, Effect, Expansion, ToolOffset, Nuisance };
 /// A named block of parameters that are not function coefficients.
 struct ParameterBlock {
   ParameterKind kind = ParameterKind::Nuisance;
-  std::string name;                          ///< "EC0Y", "reversal EXX", "station P1", "tool long"
-  std::vector<std::string> labels;           ///< one per parameter; may hold empty strings for a single one
-  std::vector<std::string> units;            ///< edge unit: "um", "urad", "mm", "um/m/K", "ppm"
+  std::string name;                 ///< "EC0Y", "reversal EXX", "station P1", "tool long"
+  std::vector<std::string> labels;  ///< one per parameter; may hold empty strings for a single one
+  std::vector<std::string> units;   ///< edge unit: "um", "urad", "mm", "um/m/K", "ppm"
   std::vector<double> si_per_unit;
-  std::optional<LocationSymbol> location;    ///< for ParameterKind::Location
+  std::optional<LocationSymbol> location;  ///< for ParameterKind::Location
   int offset = 0;
   Eigen::VectorXd guess;
   Eigen::VectorXd prior_mean;

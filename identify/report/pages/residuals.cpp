@@ -14,10 +14,16 @@ namespace {
 
 constexpr std::size_t kDrawn = 4000;  ///< per plot: five plots of a page stay near 20,000 points
 constexpr int kMeanBins = 20;
+constexpr double kFewestPerBin = 5.0;  ///< a mean of fewer readings says nothing
 constexpr double kHistogramEnd = 5.0;
 constexpr int kHistogramBins = 40;
 
 double nan() { return std::numeric_limits<double>::quiet_NaN(); }
+
+/// Readings that means are taken over: those with a residual of their own, suspect ones left out.
+bool counts(const ResidualRecord& record) {
+  return !record.removed && !record.flagged && record.redundancy > 0.0;
+}
 
 /// Mean of w in equal bins of an abscissa, with the number of readings in each.
 Json binned_mean(const std::vector<double>& abscissa, const std::vector<ResidualRecord>& records) {
@@ -33,7 +39,7 @@ Json binned_mean(const std::vector<double>& abscissa, const std::vector<Residual
   const double width = (high - low) / kMeanBins;
   if (width > 0.0) {
     for (std::size_t i = 0; i < abscissa.size(); ++i) {
-      if (std::isnan(abscissa[i]) || records[i].removed || records[i].redundancy <= 0.0) continue;
+      if (std::isnan(abscissa[i]) || !counts(records[i])) continue;
       const auto bin = static_cast<std::size_t>(
           std::clamp(static_cast<int>((abscissa[i] - low) / width), 0, kMeanBins - 1));
       sum[bin] += records[i].w;
@@ -45,7 +51,7 @@ Json binned_mean(const std::vector<double>& abscissa, const std::vector<Residual
   Json half_band = Json::array();
   for (int bin = 0; bin < kMeanBins; ++bin) {
     const auto k = static_cast<std::size_t>(bin);
-    if (count[k] == 0.0) continue;
+    if (count[k] < kFewestPerBin) continue;
     centre.push_back(rounded(low + (bin + 0.5) * width, 6));
     mean.push_back(rounded(sum[k] / count[k], 4));
     half_band.push_back(rounded(2.0 / std::sqrt(count[k]), 4));

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/text_tables.h"
 
 namespace volcal::report {
 namespace {
@@ -56,15 +57,15 @@ Json figures(const PageInput& input) {
     add("Volumetric error now", fmt::format("{:.1f}", worst->error_rms() * kPerMicro), "µm RMS",
         fmt::format("max {:.1f} µm, tool {}", worst->error_max() * kPerMicro, worst->tool));
     const auto vaguest = std::ranges::max_element(input.volume, {}, &ToolVolume::u_rms);
-    add("Uncertainty of it", fmt::format("{:.2f}", vaguest->u_rms() * kPerMicro), "µm RMS, k = 1",
+    add("Its uncertainty", fmt::format("{:.2f}", vaguest->u_rms() * kPerMicro), "µm RMS, k = 1",
         fmt::format("max {:.2f} µm, tool {}", vaguest->u_max() * kPerMicro, vaguest->tool));
   }
-  add("Scatter against stated noise σ₀", fmt::format("{:.3f}", result.sigma0), "", "1 = as stated");
+  add("Scatter / stated noise σ₀", fmt::format("{:.3f}", result.sigma0), "", "1 = as stated");
   add("χ² / degrees of freedom", fmt::format("{:.3f}", result.dof > 0 ? result.chi2 / result.dof : 0.0), "",
       fmt::format("{:.0f} / {:.0f}", result.chi2, result.dof));
-  add("Observations", fmt::format("{}", result.residuals.size()), "",
+  add("Observations", count_number(static_cast<long long>(result.residuals.size())), "",
       fmt::format("in {} setups", result.setups.size()));
-  add("Suspect readings", fmt::format("{}", flagged), "",
+  add("Suspect readings", count_number(flagged), "",
       fmt::format("|w| > {:.2f}", result.outlier_critical_value));
   return list;
 }

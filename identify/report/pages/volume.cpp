@@ -128,7 +128,7 @@ Json volume_page(const PageInput& input) {
     }
   }
   return {{"linear_axes", std::move(linear_axes)},
-          {"rotary_at_home", rotary},
+          {"has_rotary", rotary},
           {"tools", std::move(tools)},
           {"named_points", named_points(input.result)},
           {"setups", std::move(setups)},

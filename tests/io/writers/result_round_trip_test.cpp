@@ -170,7 +170,9 @@ TEST(IdentifiedToml, IsAModelThatCanBeLoadedAgain) {
     const auto again = read.effects[i].options.number("amplitude");
     const auto amplitude = result.identified.effects[i].options.number("amplitude");
     ASSERT_EQ(again.has_value(), amplitude.has_value());
-    if (again) EXPECT_DOUBLE_EQ(*again, *amplitude);
+    if (again) {
+      EXPECT_DOUBLE_EQ(*again, *amplitude);
+    }
   }
 }
 

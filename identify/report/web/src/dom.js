@@ -37,7 +37,7 @@ export function decimalsFor(u) {
   return Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(u))));
 }
 
-export const count = (value) => value.toLocaleString('en-US').replaceAll(',', '\u202f');
+export const count = (value) => value.toLocaleString('en-US');
 
 /** Header cell: name, unit below it in a lighter shade. */
 function headerCell(column) {

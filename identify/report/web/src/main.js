@@ -2,7 +2,7 @@
 import { el } from './dom.js';
 import { renderers } from './pages.js';
 import { drawAll, redrawAll } from './plot.js';
-import { onThemeChange, themeSwitch } from './theme.js';
+import { onPrint, onThemeChange, themeSwitch } from './theme.js';
 
 function section(page, index) {
   const body = el('div', { class: 'body' });
@@ -51,7 +51,7 @@ function start() {
   main.append(...sections);
   markCurrentSection(nav, sections);
   onThemeChange(redrawAll);
-  addEventListener('beforeprint', drawAll);
+  onPrint(drawAll);
 }
 
 start();

@@ -2,7 +2,7 @@
 import { color } from './theme.js';
 
 const plots = [];
-const config = { responsive: true, displaylogo: false, displayModeBar: 'hover',
+const config = { responsive: true, displaylogo: false, displayModeBar: true,
   modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d', 'resetCameraLastSave3d'] };
 
 const near = new IntersectionObserver((entries) => {
@@ -31,7 +31,13 @@ function update(plot) {
   Plotly.react(plot.node, data, layout, config);
 }
 
-export const drawAll = () => plots.forEach(draw);
+/** Draws every plot and fits it to the present width of its place. */
+export function drawAll() {
+  for (const plot of plots) {
+    if (plot.drawn) Plotly.Plots.resize(plot.node);
+    else draw(plot);
+  }
+}
 export const redrawAll = () => plots.forEach(update);
 
 const axisLine = () => ({
@@ -47,6 +53,13 @@ const axisLine = () => ({
   automargin: true,
 });
 
+/** Fonts and colours of every plot. */
+export const commonLayout = () => ({
+  font: { family: 'system-ui, sans-serif', size: 11, color: color('text') },
+  hoverlabel: { bgcolor: color('page'), bordercolor: color('rule'), font: { color: color('text'), size: 12 } },
+  modebar: { bgcolor: color('page'), color: color('muted'), activecolor: color('text') },
+});
+
 /** Layout of a two-dimensional plot with titled axes. */
 export function layout2d({ x, y, height, margin = {}, ...rest }) {
   return {
@@ -54,8 +67,7 @@ export function layout2d({ x, y, height, margin = {}, ...rest }) {
     margin: { l: 48, r: 10, t: 8, b: 40, ...margin },
     paper_bgcolor: 'rgba(0,0,0,0)',
     plot_bgcolor: 'rgba(0,0,0,0)',
-    font: { family: 'system-ui, sans-serif', size: 11, color: color('text') },
-    hoverlabel: { bgcolor: color('page'), bordercolor: color('rule'), font: { color: color('text'), size: 12 } },
+    ...commonLayout(),
     showlegend: false,
     xaxis: { ...axisLine(), ...x, title: { text: x.title, standoff: 6, font: { size: 11 } } },
     yaxis: { ...axisLine(), ...y, title: { text: y.title, standoff: 6, font: { size: 11 } } },

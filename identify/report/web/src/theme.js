@@ -29,18 +29,25 @@ export function transparent(hex, alpha) {
 /** Colours for things that are neither axes nor verdicts: instruments. Colour-blind safe. */
 export const series = (index) => color(`series-${index % 7}`);
 
-/** Button that switches between light and dark; printing is light. */
+/** Button that switches between light and dark. */
 export function themeSwitch() {
   const other = () => (root.dataset.theme === 'dark' ? 'light' : 'dark');
   const button = el('button', { type: 'button', onclick: () => setTheme(other()) });
   const label = () => { button.textContent = `${other()} background`; };
   onThemeChange(label);
   label();
-  let shown;
-  addEventListener('beforeprint', () => {
-    shown = root.dataset.theme;
-    setTheme('light');
-  });
-  addEventListener('afterprint', () => setTheme(shown));
   return button;
+}
+
+/** Before printing the page turns light and as wide as the paper, then `redraw` is called; afterwards it turns back. */
+export function onPrint(redraw) {
+  let shown;
+  const turn = (printing) => {
+    if (printing) shown = root.dataset.theme;
+    root.classList.toggle('printing', printing);
+    setTheme(printing ? 'light' : shown);
+    redraw();
+  };
+  addEventListener('beforeprint', () => turn(true));
+  addEventListener('afterprint', () => turn(false));
 }

@@ -17,6 +17,6 @@ export function renderLocations(body, data) {
       { name: 'of', unit: 'mm', cell: (row) => fixed(row.travel_mm, 0) },
       { name: '', align: 'left', cell: (row) => [stateText[row.state], row.reason].filter(Boolean).join(': ') },
     ], data.rows, { rowClass: (row) => (row.state === 'identified' ? null : 'dim') }),
-    note(`Datum: primary ${data.primary}, secondary ${data.secondary}. Positive squareness turns the axis by the right-hand rule about its first letter. U95 = ${fixed(data.coverage, 2)} u.`),
+    note(`Datum: primary ${data.primary}, secondary ${data.secondary}. Positive squareness turns the axis by the right-hand rule about its first letter. U95 = ${fixed(data.coverage, 2)}\u00a0u.`),
   );
 }

@@ -103,7 +103,7 @@ function setupPlot(view) {
   const label = (k) => (setups[k].station && setups[k].station !== setups[k].name ? `${setups[k].name} · ${setups[k].station}` : setups[k].name);
   const ticks = order.filter((k) => k % step === 0);
   const rms = view.mode !== 'w' ? [] : [{
-    x: order, y: setups.map((setup) => setup.rms_w), text: setups.map(label), type: 'scatter', mode: 'markers', name: 'RMS of w',
+    x: order, y: setups.map((setup) => setup.rms_w), text: order.map(label), type: 'scatter', mode: 'markers', name: 'RMS of w',
     marker: { symbol: 'line-ew-open', size: 16, color: color('text'), line: { width: 2.2 } }, hovertemplate: '%{text}: RMS of w %{y:.2f}<extra></extra>',
   }];
   return {
@@ -136,7 +136,7 @@ function legend(view) {
     ...view.instruments.map((name, k) => key(`dot series-${k % 7}`, name)),
     key('ring', 'suspect (w-test)'),
     key('band', '± 2σ'),
-    key('line', 'mean in bins, ± 2 standard deviations'),
+    key('line', 'mean without suspects, ± 2 standard deviations; RMS by setup'),
   ]);
 }
 
@@ -163,7 +163,10 @@ export function renderResiduals(body, data) {
     const time = plot.axis === 'time';
     add(time ? 'Against time' : el('span', { class: `axis-${plot.axis}` }, `Against ${plot.axis}`), time ? 'wide' : '', () => againstPlot(view, plot));
   }
-  add('By setup and station', 'wide', () => setupPlot(view));
-  add('Histogram of w and the standard normal curve', '', () => histogramPlot(data.histogram));
+  const timed = data.plots.some((plot) => plot.axis === 'time');
+  const histogram = () => add('Histogram of w and the standard normal curve', '', () => histogramPlot(data.histogram));
+  if (timed) histogram();
+  add('By setup and station', timed ? 'full' : 'wide', () => setupPlot(view));
+  if (!timed) histogram();
   body.append(grid);
 }

@@ -1,5 +1,5 @@
 import { choice, el, fixed, note, table } from '../dom.js';
-import { addPlot } from '../plot.js';
+import { addPlot, commonLayout } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
@@ -32,30 +32,33 @@ const boxTrace = (tool) => ({
   hoverinfo: 'skip', name: 'work volume', showlegend: false,
 });
 
+/** Light to strong shades for sizes. */
+const sizeScale = () => [0, 1, 2, 3].map((k) => [k / 3, color(`size-${k}`)]);
+
 function vectorTraces(tool, magnification) {
   const size = tool.error_um.map(norm);
   const tip = tool.point_mm.map((p, k) => p.map((v, i) => v + magnification * 1e-3 * tool.error_um[k][i]));
   const shades = size.flatMap((s) => [s, s, s]);
-  const scale = { colorscale: 'Cividis', cmin: 0, cmax: Math.max(...size) };
+  const scale = { colorscale: sizeScale(), cmin: 0, cmax: Math.max(...size) };
   const text = tool.error_um.map((e, k) =>
     `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>EX ${fixed(e[0], 2)}, EY ${fixed(e[1], 2)}, EZ ${fixed(e[2], 2)} µm<br>|E| ${fixed(size[k], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
   return [
-    { ...segments(tool.point_mm.map((p, k) => [p, tip[k]])), type: 'scatter3d', mode: 'lines', line: { width: 4, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
+    { ...segments(tool.point_mm.map((p, k) => [p, tip[k]])), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
     {
       x: column(tip, 0), y: column(tip, 1), z: column(tip, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
-      marker: { size: 3, color: size, ...scale, colorbar: colorBar('|E| [µm]') }, hovertemplate: '%{text}<extra></extra>',
+      marker: { size: 2, color: size, ...scale, colorbar: colorBar('|E| [µm]') }, hovertemplate: '%{text}<extra></extra>',
     },
   ];
 }
 
 const colorBar = (title) => ({
-  title: { text: title, side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x: 1, outlinewidth: 0, tickfont: { size: 10, color: color('text') },
+  title: { text: title, side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x: 0.88, outlinewidth: 0, tickfont: { size: 10, color: color('text') },
 });
 
 /** Crosses of half-width u along each axis, at the same magnification as the vectors. */
 function uncertaintyTraces(tool, magnification) {
   const size = tool.u_um.map(norm);
-  const scale = { colorscale: 'Cividis', cmin: 0, cmax: Math.max(...size) };
+  const scale = { colorscale: sizeScale(), cmin: 0, cmax: Math.max(...size) };
   const pairs = tool.point_mm.flatMap((p, k) => kComponents.map((_, i) => {
     const half = magnification * 1e-3 * tool.u_um[k][i];
     return [p.map((v, j) => (j === i ? v - half : v)), p.map((v, j) => (j === i ? v + half : v))];
@@ -64,10 +67,10 @@ function uncertaintyTraces(tool, magnification) {
   const text = tool.u_um.map((u, k) =>
     `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>u(EX) ${fixed(u[0], 2)}, u(EY) ${fixed(u[1], 2)}, u(EZ) ${fixed(u[2], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
   return [
-    { ...segments(pairs), type: 'scatter3d', mode: 'lines', line: { width: 4, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
+    { ...segments(pairs), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
     {
       x: column(tool.point_mm, 0), y: column(tool.point_mm, 1), z: column(tool.point_mm, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
-      marker: { size: 2.5, color: size, ...scale, colorbar: colorBar('u [µm]') }, hovertemplate: '%{text}<extra></extra>',
+      marker: { size: 1.6, color: size, ...scale, colorbar: colorBar('u [µm]') }, hovertemplate: '%{text}<extra></extra>',
     },
   ];
 }
@@ -102,7 +105,7 @@ function pathLabels(paths) {
   };
 }
 
-function stationTraces(points) {
+function stationTraces(points, inLegend) {
   return [['station', 'diamond', 5], ['centre', 'cross', 3]].flatMap(([kind, symbol, size]) => {
     const own = points.filter((point) => point.kind === kind);
     if (own.length === 0) return [];
@@ -110,27 +113,40 @@ function stationTraces(points) {
     return [{
       x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => point.name), type: 'scatter3d',
       mode: kind === 'station' ? 'markers+text' : 'markers', textposition: 'top center', textfont: { size: 11, color: color('text') },
-      marker: { size, symbol, color: color('text') }, name: kind === 'station' ? 'stations' : 'ball-bar centres',
+      marker: { size, symbol, color: color('text') }, name: kind === 'station' ? 'stations' : 'ball-bar centres', showlegend: inLegend,
       hovertemplate: '%{text}: %{x:.1f}, %{y:.1f}, %{z:.1f} mm<extra></extra>',
     }];
   });
 }
 
-function sceneLayout(camera) {
-  const axis = (name) => ({
+/** Ranges of x, y, z that hold the volume, the stations and the paths: the same in both pictures. */
+function ranges(data, tool) {
+  const points = [...tool.corner_mm, ...data.named_points.map((point) => point.point_mm),
+    ...data.setups.filter((setup) => setup.form === 'path').flatMap((setup) => setup.point_mm)].filter((p) => p !== null);
+  return kComponents.map((_, i) => {
+    const values = points.map((p) => p[i]);
+    const [low, high] = [Math.min(...values), Math.max(...values)];
+    const edge = 0.04 * (high - low) + 1;
+    return [low - edge, high + edge];
+  });
+}
+
+function sceneLayout(data, tool) {
+  const [x, y, z] = ranges(data, tool);
+  const axis = (name, range) => ({
+    range,
     title: { text: `${name} [mm]`, font: { size: 11, color: color(`axis-${name.toUpperCase()}`) } }, color: color('muted'), gridcolor: color('grid'),
     zeroline: false, showbackground: false, tickfont: { size: 10 }, nticks: 6, showspikes: false,
   });
   return {
-    height: 520, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)',
-    font: { family: 'system-ui, sans-serif', size: 11, color: color('text') },
-    hoverlabel: { bgcolor: color('page'), bordercolor: color('rule'), font: { color: color('text'), size: 12 } },
-    legend: { x: 0, y: 0, orientation: 'h', bgcolor: 'rgba(0,0,0,0)' }, uirevision: 'keep',
-    scene: { aspectmode: 'data', xaxis: axis('x'), yaxis: axis('y'), zaxis: axis('z'), camera },
+    height: 520, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: 'rgba(0,0,0,0)',
+    ...commonLayout(),
+    legend: { x: 0, y: 0, yanchor: 'bottom', orientation: 'h', bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant' }, uirevision: 'keep',
+    scene: { domain: { x: [0, 0.87], y: [0.1, 1] }, aspectmode: 'data', xaxis: axis('x', x), yaxis: axis('y', y), zaxis: axis('z', z), camera: kCamera },
   };
 }
 
-const kCamera = { eye: { x: 1.35, y: -1.75, z: 0.85 }, center: { x: 0, y: 0, z: -0.1 } };
+const kCamera = { eye: { x: 1.2, y: -1.68, z: 0.84 }, center: { x: 0.03, y: 0, z: -0.08 } };
 
 /** Turning one picture turns the other. */
 function coupleCameras(nodes) {
@@ -144,10 +160,10 @@ function coupleCameras(nodes) {
   }));
 }
 
-/** Round magnification at which the largest vector is about a tenth of the volume's diagonal. */
+/** Round magnification at which the largest vector is about a sixth of the volume's diagonal. */
 function startMagnification(tool) {
   const [first, last] = [tool.corner_mm[0], tool.corner_mm.at(-1)];
-  const wanted = (0.1 * norm(first.map((v, i) => v - last[i]))) / (1e-3 * Math.max(tool.error_max_um, 1e-6));
+  const wanted = (0.16 * norm(first.map((v, i) => v - last[i]))) / (1e-3 * Math.max(tool.error_max_um, 1e-6));
   const decade = 10 ** Math.floor(Math.log10(wanted));
   return decade * [5, 2, 1].find((step) => step * decade <= wanted);
 }
@@ -204,8 +220,8 @@ export function renderVolume(body, data) {
   const traces = [vectorTraces, uncertaintyTraces];
   const ready = [];
   nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({
-    data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...(k === 0 ? stationTraces(data.named_points) : [])],
-    layout: sceneLayout(kCamera),
+    data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...stationTraces(data.named_points, k === 0)],
+    layout: sceneLayout(data, view.tool),
   }), (drawn) => {
     ready.push(drawn);
     if (ready.length === 2) coupleCameras(nodes);
@@ -214,8 +230,9 @@ export function renderVolume(body, data) {
   body.append(
     controls,
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
-    tables,
+    el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
     note('Left: error of the functional point relative to home, each line from the nominal point to the magnified actual one (dot). Right: crosses with arms of one standard uncertainty along x, y and z at the same magnification: the readings do not say in which direction the remaining error points, nor do they cover repeatability, temperature or effects that the model lacks.'),
-    note(`Workpiece coordinates.${data.rotary_at_home ? ' Rotary axes at home.' : ''} Click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
+    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
+    ])]),
   );
 }

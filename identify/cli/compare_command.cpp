@@ -1,0 +1,134 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/io/table_writer.h"
+#include "volcal/identify/report/comparison_report.h"
+#include "volcal/identify/solve/evaluate.h"
+
+namespace volcal::cli {
+namespace {
+
+const std::string kNominal = "nominal";
+
+struct Arguments {
+  std::string campaign;
+  std::vector<std::string> models;
+  std::string output;
+  std::size_t worst = 10;
+  int threads = 0;
+  bool all = false;
+  bool json = false;
+};
+
+struct NamedModel {
+  std::string name;
+  ModelSpec spec;
+};
+
+bool predicts_errors(const ModelSpec& model) {
+  if (!model.locations.empty() || !model.effects.empty()) return true;
+  for (const auto& [symbol, function] : model.functions) {
+    if (!function.coefficients.empty()) return true;
+  }
+  return false;
+}
+
+/// A result, a model file, or the word "nominal".
+NamedModel load(const std::string& argument, const Campaign& campaign) {
+  if (argument == kNominal) return {"nominal machine", nominal_model()};
+  if (is_result(argument) || std::filesystem::is_directory(argument)) {
+    const FitResult result = read_result(argument);
+    if (const std::string difference = machine_difference(result.machine, campaign.machine);
+        !difference.empty()) {
+      throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
+                       "compare with a result of the same machine");
+    }
+    return {argument, result.identified};
+  }
+  NamedModel model{argument, read_model(argument, campaign.machine)};
+  if (!predicts_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
+  return model;
+}
+
+/// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json and comparison.txt.
+void write_folder(const std::string& target, const Campaign& campaign,
+                  const std::vector<ComparedModel>& models, const std::string& text,
+                  const std::string& json) {
+  AtomicFolder folder(target);
+  const bool one = models.size() == 1;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const std::string name = one ? "residuals.csv" : fmt::format("residuals_{}.csv", "AB"[i]);
+    write_residuals_csv(folder.path(name), models[i].records, campaign);
+  }
+  folder.write("comparison.txt", text);
+  folder.write("comparison.json", json);
+  folder.commit();
+}
+
+int run(const Arguments& arguments) {
+  const Campaign campaign = read_campaign(arguments.campaign);
+  ComparisonOptions comparison;
+  comparison.worst = arguments.worst;
+  std::vector<ComparedModel> models;
+  for (const std::string& argument : arguments.models) {
+    NamedModel model = load(argument, campaign);
+    Evaluation evaluation = evaluate_model(campaign, model.spec, nullptr, arguments.threads);
+    models.push_back(compared_model(model.name, campaign, std::move(evaluation.residuals), comparison));
+  }
+  const std::string json = comparison_json(campaign, models);
+  const std::string text = comparison_text(campaign, models, {arguments.all, arguments.worst});
+  if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
+  if (arguments.json) {
+    fmt::print("{}", json);
+    return kDone;
+  }
+  fmt::print("{}", text);
+  if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+  return kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option(
+         "MODEL", arguments->models,
+         "one or two of: a result folder, a model.toml, the word nominal (machine without errors); a model "
+         "without coefficients is the nominal machine")
+      ->required()
+      ->expected(1, 2);
+  app.add_option(
+      "-o,--output", arguments->output,
+      "folder for residuals.csv (of two models residuals_A.csv and residuals_B.csv), comparison.txt and "
+      "comparison.json");
+  app.add_option("--worst", arguments->worst, "readings listed")->capture_default_str();
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");
+  app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& compare_command() {
+  static const Command command = {
+      "compare", "show where a model fails to explain a campaign, with the figures of ISO 230",
+      "  volcal compare campaign.toml nominal\n"
+      "  volcal compare campaign.toml result -o comparison\n"
+      "  volcal compare campaign.toml nominal result\n"
+      "  volcal compare campaign.toml result --json | jq -r '.models[0].where_it_fails'\n",
+      define};
+  return command;
+}
+
+}  // namespace volcal::cli

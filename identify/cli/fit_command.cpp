@@ -1,0 +1,106 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/io/result_json.h"
+#include "volcal/identify/report/fit_summary.h"
+#include "volcal/identify/report/report.h"
+#include "volcal/identify/solve/fit.h"
+
+namespace volcal::cli {
+namespace {
+
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
+
+struct Arguments {
+  std::string campaign;
+  std::string model;
+  std::string output;
+  std::string loss = "none";
+  std::string outliers = "list";
+  std::string solver = "compressed";
+  int threads = 0;
+  bool keep_stated_sigma = false;
+  bool first_order = false;
+  bool json = false;
+};
+
+FitOptions fit_options(const Arguments& arguments) {
+  FitOptions options;
+  options.threads = arguments.threads;
+  options.loss = arguments.loss == "huber"    ? RobustLoss::Huber
+                 : arguments.loss == "cauchy" ? RobustLoss::Cauchy
+                                              : RobustLoss::None;
+  options.outliers = arguments.outliers == "remove" ? OutlierPolicy::Remove : OutlierPolicy::List;
+  options.solver = arguments.solver == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
+  options.variance_components = !arguments.keep_stated_sigma;
+  options.exact_kinematics = !arguments.first_order;
+  return options;
+}
+
+int run(const Arguments& arguments) {
+  const Campaign campaign = read_campaign(arguments.campaign);
+  const ModelSpec model =
+      arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  FitOptions options = fit_options(arguments);
+  ProgressBar bar("fit");
+  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
+  const FitResult result = fit(campaign, model, options);
+  bar.finish();
+  std::map<std::string, std::string> more;
+  if (report_available()) more["report.html"] = report_html(result, campaign, {today()});
+  write_result_folder(result, campaign, arguments.output, more);
+  if (arguments.json) {
+    fmt::print("{}\n", result_summary_json(result));
+  } else {
+    fmt::print("{}", fit_summary_text(result, campaign));
+    fmt::print("\nwritten: {}\n", arguments.output);
+    if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
+  }
+  return result.status == FitStatus::RankDeficient || result.status == FitStatus::NotConverged ? kIncomplete
+                                                                                               : kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option("-m,--model", arguments->model,
+                 "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
+  app.add_option("-o,--output", arguments->output, "result folder (replaced as a whole)")->required();
+  app.add_option("--outliers", arguments->outliers, "readings flagged by the w-test: list or remove them")
+      ->check(CLI::IsMember({"list", "remove"}));
+  app.add_option("--robust", arguments->loss, "robust loss")
+      ->check(CLI::IsMember({"none", "huber", "cauchy"}));
+  app.add_option("--solver", arguments->solver,
+                 "compressed normal equations, or one residual block per reading")
+      ->check(CLI::IsMember({"compressed", "per-reading"}));
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma, "do not estimate variance components");
+  app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");
+  app.add_flag("--json", arguments->json, "print result.json on standard output and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& fit_command() {
+  static const Command command = {
+      "fit", "identify the errors of a machine from a campaign",
+      "  volcal fit campaign.toml -o result\n"
+      "  volcal fit campaign.toml --model model.toml --outliers remove -o result\n"
+      "  volcal fit campaign.toml -o result --json | jq .sigma0\n",
+      define};
+  return command;
+}
+
+}  // namespace volcal::cli

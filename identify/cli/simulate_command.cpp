@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/io/study_reader.h"
+
+namespace volcal::cli {
+namespace {
+
+struct Arguments {
+  std::string study;
+  std::string output;
+  std::optional<std::uint64_t> seed;
+  bool json = false;
+};
+
+int run(const Arguments& arguments) {
+  sim::Study study = read_study(arguments.study);
+  if (arguments.seed) study.seed = *arguments.seed;
+  AtomicFolder folder(arguments.output);
+  const sim::SimulatedCampaign simulated = sim::simulate(study);
+  write_simulation(simulated, folder);
+  folder.commit();
+  if (arguments.json) {
+    const nlohmann::ordered_json json = {{"folder", arguments.output},
+                                         {"seed", study.seed},
+                                         {"setups", simulated.campaign.setups.size()},
+                                         {"readings", simulated.campaign.reading_count()}};
+    fmt::print("{}\n", json.dump(2));
+  } else {
+    fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
+               simulated.campaign.setups.size(), study.seed, arguments.output);
+    fmt::print("next: volcal fit {0}/campaign.toml --model {0}/model.toml -o result\n", arguments.output);
+  }
+  return kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("STUDY", arguments->study, "study.toml: machine, hidden truth, measurements")->required();
+  app.add_option("-o,--output", arguments->output, "folder for campaign.toml, its CSV files and truth/")
+      ->required();
+  app.add_option("--seed", arguments->seed,
+                 "instead of the study's seed; same seed, same readings to the bit");
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& simulate_command() {
+  static const Command command = {"simulate", "make a campaign from a machine with known errors",
+                                  "  volcal simulate datasets/demo/study.toml -o campaign\n"
+                                  "  volcal simulate study.toml --seed 7 -o campaign-7\n",
+                                  define};
+  return command;
+}
+
+}  // namespace volcal::cli

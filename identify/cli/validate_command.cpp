@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal::cli {
+namespace {
+
+struct Arguments {
+  std::string result;
+  std::string campaign;
+  double max_rms_um = 0.0;
+  int threads = 0;
+  bool json = false;
+};
+
+nlohmann::ordered_json figures_json(const ValidationFigures& figures) {
+  nlohmann::ordered_json json = {{"rms_before_um", figures.rms_before * 1e6},
+                                 {"rms_after_um", figures.rms_after * 1e6},
+                                 {"max_before_um", figures.max_before * 1e6},
+                                 {"max_after_um", figures.max_after * 1e6},
+                                 {"reduced_chi2", figures.reduced_chi2},
+                                 {"coverage95", figures.coverage95},
+                                 {"readings", figures.lengths}};
+  if (figures.angles > 0) {
+    json["angle_rms_before_urad"] = figures.angle_rms_before * 1e6;
+    json["angle_rms_after_urad"] = figures.angle_rms_after * 1e6;
+    json["angle_max_before_urad"] = figures.angle_max_before * 1e6;
+    json["angle_max_after_urad"] = figures.angle_max_after * 1e6;
+    json["angle_readings"] = figures.angles;
+  }
+  return json;
+}
+
+std::string figures_text(const Validation& validation) {
+  const ValidationFigures& figures = validation.figures;
+  TextTable totals({{"", Align::Left},
+                    {"readings"},
+                    {"RMS before"},
+                    {"RMS after"},
+                    {"max before"},
+                    {"max after"},
+                    {"unit", Align::Left}},
+                   "Readings that the fit never saw; before = nominal machine, after = identified");
+  const auto add = [&](const char* name, std::size_t count, double rms0, double rms1, double max0,
+                       double max1, const char* unit) {
+    if (count == 0) return;
+    totals.add_row({name, count_number(static_cast<long long>(count)), fixed_number(rms0 * 1e6, 3),
+                    fixed_number(rms1 * 1e6, 3), fixed_number(max0 * 1e6, 3), fixed_number(max1 * 1e6, 3),
+                    unit});
+  };
+  add("lengths and vectors", figures.lengths, figures.rms_before, figures.rms_after, figures.max_before,
+      figures.max_after, "um");
+  add("angles", figures.angles, figures.angle_rms_before, figures.angle_rms_after, figures.angle_max_before,
+      figures.angle_max_after, "urad");
+  TextTable setups({{"setup", Align::Left},
+                    {"instrument", Align::Left},
+                    {"tool", Align::Left},
+                    {"RMS before"},
+                    {"RMS after"},
+                    {"unit", Align::Left}},
+                   "Per setup (single components)");
+  for (std::size_t i = 0; i < validation.after.setups.size(); ++i) {
+    const SetupSummary& setup = validation.after.setups[i];
+    setups.add_row({setup.name, setup.instrument, setup.tool,
+                    fixed_number(validation.before.setups[i].rms_residual * 1e6, 3),
+                    fixed_number(setup.rms_residual * 1e6, 3), setup.reading_unit});
+  }
+  return totals.text() + "\n" + setups.text() +
+         fmt::format(
+             "\nreduced chi2 {:.3f} and {:.1f} % of readings inside 1.96 sqrt(u_model^2 + sigma^2) (95 % "
+             "expected)\n",
+             figures.reduced_chi2, 100.0 * figures.coverage95);
+}
+
+int run(const Arguments& arguments) {
+  const FitResult result = read_result(arguments.result);
+  const Campaign campaign = read_campaign(arguments.campaign);
+  const std::string difference = machine_difference(result.machine, campaign.machine);
+  if (!difference.empty()) {
+    throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,
+                     "validate on a campaign of the same machine");
+  }
+  const Validation validation = validate(campaign, result, arguments.threads);
+  if (arguments.json) {
+    fmt::print("{}\n", figures_json(validation.figures).dump(2));
+  } else {
+    fmt::print("{}", figures_text(validation));
+  }
+  const bool exceeded =
+      arguments.max_rms_um > 0.0 && validation.figures.rms_after * 1e6 > arguments.max_rms_um;
+  if (exceeded) fmt::print(stderr, "RMS after exceeds the limit of {} um\n", arguments.max_rms_um);
+  return exceeded ? kIncomplete : kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml with readings that the fit did not use")
+      ->required();
+  app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--threads", arguments->threads, "0 = all")->check(CLI::NonNegativeNumber);
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& validate_command() {
+  static const Command command = {"validate", "judge an identified model on readings it never saw",
+                                  "  volcal validate result other-setups/campaign.toml\n"
+                                  "  volcal validate result truth/campaign.toml --json\n"
+                                  "  volcal validate result acceptance/campaign.toml --max-rms-um 3\n",
+                                  define};
+  return command;
+}
+
+}  // namespace volcal::cli

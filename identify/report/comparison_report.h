@@ -1,0 +1,43 @@
+#pragma once
+/// What `compare` says: where a model fails, first in a sentence, then in tables, then as the standards' own
+/// figures of the readings and of the model. Edge units (um, urad, mm, deg).
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/identify/stats/comparison.h"
+#include "volcal/identify/stats/standard_figures.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+/// A model on a campaign. `name` as the user knows it: "nominal machine", "result".
+struct ComparedModel {
+  std::string name;
+  std::vector<ResidualRecord> records;
+  Comparison comparison;
+  StandardFigures figures;
+};
+
+/// Breaks the residuals down and evaluates the standards' figures.
+ComparedModel compared_model(std::string name, const Campaign& campaign, std::vector<ResidualRecord> records,
+                             const ComparisonOptions& options = {});
+
+struct ComparisonTextOptions {
+  bool all_cells = false;  ///< every cell; else the worst few of each breakdown
+  std::size_t worst = 10;  ///< readings listed
+};
+
+/// "where does the model fail", one to three sentences.
+std::string failure_sentence(const ComparedModel& model);
+
+/// One or two models, side by side; the models are of the same campaign.
+std::string comparison_text(const Campaign& campaign, std::span<const ComparedModel> models,
+                            const ComparisonTextOptions& options = {});
+
+/// Everything of the text and more as one JSON document, ending in a newline.
+std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models);
+
+}  // namespace volcal

@@ -1,0 +1,13 @@
+#pragma once
+/// What `volcal fit` prints: one page of text that says what was found, how well, and what was not.
+
+#include <string>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+std::string fit_summary_text(const FitResult& result, const Campaign& campaign);
+
+}  // namespace volcal

@@ -1,0 +1,178 @@
+// Identification against simulated truth. The simulator shares no physics with the model.
+
+#include "volcal/identify/solve/fit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/study.h"
+
+namespace volcal {
+namespace {
+
+sim::Study small_study(std::size_t machine, const sim::Tracking& tracking) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[machine];
+  study.seed = 11 + machine;
+  study.measurements.emplace_back().settings = tracking;
+  study.validation.points = 60;
+  return study;
+}
+
+sim::Tracking small_tracking() {
+  sim::Tracking tracking;
+  tracking.grid = {6, 5, 5};
+  return tracking;
+}
+
+ModelSpec spline_model(int intervals) {
+  ModelSpec model;
+  model.default_function.knots = KnotChoice::IntervalCount;
+  model.default_function.intervals = intervals;
+  return model;
+}
+
+const Observability& figure_of(const FitResult& result, const std::string& symbol) {
+  const auto found = std::ranges::find(result.rank.errors, symbol, &Observability::symbol);
+  if (found == result.rank.errors.end()) throw std::out_of_range(symbol);
+  return *found;
+}
+
+class FitOnStructure : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(FitOnStructure, FallsFromMachineErrorToNoise) {
+  const auto simulated = sim::simulate(small_study(GetParam(), small_tracking()));
+  const FitResult result = fit(simulated.campaign, ModelSpec{});
+  EXPECT_EQ(result.status, FitStatus::Ok);
+  const Validation validation = validate(simulated.validation, result);
+  EXPECT_GT(validation.figures.rms_before, 10e-6);
+  EXPECT_LT(validation.figures.rms_after, 1.2e-6);
+  EXPECT_GT(validation.figures.coverage95, 0.85);
+  EXPECT_NEAR(result.sigma0, 1.0, 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Structures, FitOnStructure, ::testing::Values(0U, 1U, 2U, 3U));
+
+TEST(Fit, CompressedAndPerReadingProblemsAgree) {
+  sim::Tracking tracking;
+  tracking.grid = {4, 4, 4};
+  const auto simulated = sim::simulate(small_study(0, tracking));
+  FitOptions options;
+  options.variance_components = false;
+  const FitResult compressed = fit(simulated.campaign, spline_model(3), options);
+  options.solver = SolverKind::PerReading;
+  const FitResult reference = fit(simulated.campaign, spline_model(3), options);
+  ASSERT_EQ(reference.status, FitStatus::Ok);
+  EXPECT_NEAR(compressed.final_cost / reference.final_cost, 1.0, 1e-9);
+  const double scale = reference.parameters.cwiseAbs().maxCoeff();
+  EXPECT_LT((compressed.parameters - reference.parameters).cwiseAbs().maxCoeff(), 1e-9 * scale);
+}
+
+TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
+  const auto simulated = sim::simulate(small_study(1, small_tracking()));
+  FitOptions options;
+  options.threads = 1;
+  const FitResult one = fit(simulated.campaign, spline_model(4), options);
+  options.threads = 3;
+  const FitResult three = fit(simulated.campaign, spline_model(4), options);
+  EXPECT_TRUE(one.parameters == three.parameters);
+  EXPECT_TRUE(one.covariance == three.covariance);
+}
+
+TEST(Fit, ConvergesFromStationsGuessedFiveCentimetresOff) {
+  const auto simulated = sim::simulate(small_study(0, small_tracking()));
+  const FitResult good = fit(simulated.campaign, spline_model(4));
+  Campaign moved = simulated.campaign;
+  int sign = 1;
+  for (volcal::Setup& setup : moved.setups) {
+    const Eigen::Vector3d station = *setup.options.vector("station");
+    setup.options.set("station", Eigen::Vector3d(station + Eigen::Vector3d(0.05 * sign, -0.05, 0.05)));
+    sign = -sign;
+  }
+  const FitResult far = fit(moved, spline_model(4));
+  EXPECT_EQ(far.status, FitStatus::Ok);
+  EXPECT_LT((far.parameters - good.parameters).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(Fit, EstimatesAWrongStatedSigma) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  for (volcal::Setup& setup : simulated.campaign.setups) {
+    setup.repeatability *= 0.5;
+    for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 0.5 * *setup.noise.number(key));
+  }
+  const FitResult result = fit(simulated.campaign, spline_model(5));
+  ASSERT_EQ(result.variance_components.size(), 1U);
+  EXPECT_NEAR(result.variance_components[0].scale, 2.0, 0.15);
+  EXPECT_EQ(result.status, FitStatus::LackOfFit);
+  EXPECT_NE(result.messages.front().find("laser-tracer"), std::string::npos);
+}
+
+TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  simulated.campaign.setups[2].readings.value[0][40] += 20e-6;
+  const auto record_of = [](const FitResult& result) {
+    return *std::ranges::find_if(result.residuals,
+                                 [](const ResidualRecord& r) { return r.setup == 2 && r.row == 40; });
+  };
+  const FitResult listed = fit(simulated.campaign, spline_model(5));
+  EXPECT_TRUE(record_of(listed).flagged);
+  EXPECT_FALSE(record_of(listed).removed);
+  FitOptions options;
+  options.outliers = OutlierPolicy::Remove;
+  const FitResult removed = fit(simulated.campaign, spline_model(5), options);
+  EXPECT_TRUE(record_of(removed).removed);
+  EXPECT_NEAR(record_of(removed).residual(), 20e-6, 4e-6);
+}
+
+TEST(Fit, RollOfTheLastAxisNeedsASidewaysTool) {
+  auto study = small_study(0, small_tracking());
+  auto& tracking = std::get<sim::Tracking>(study.measurements[0].settings);
+  tracking.runs.clear();
+  for (const char* station : {"P1", "P2", "P3", "P4"}) tracking.runs.push_back({station, "short"});
+  tracking.stations = {{"P1", {-0.3, -0.2, -0.2}},
+                       {"P2", {1.3, -0.2, -0.3}},
+                       {"P3", {1.2, 0.8, -0.2}},
+                       {"P4", {-0.2, 0.8, -0.3}}};
+  const FitResult result = fit(sim::simulate(study).campaign, spline_model(4));
+  EXPECT_EQ(result.status, FitStatus::RankDeficient);
+  const Observability& roll = figure_of(result, "ECZ");
+  EXPECT_FALSE(roll.visible);
+  EXPECT_EQ(roll.reason, "every tool offset lies on Z");
+  EXPECT_NE(roll.remedy.find("sideways"), std::string::npos);
+  EXPECT_TRUE(figure_of(result, "EXX").visible);
+  EXPECT_TRUE(result.covariance.allFinite());
+}
+
+TEST(Fit, ASingleStationIsNamedAsTheReason) {
+  auto study = small_study(0, small_tracking());
+  auto& tracking = std::get<sim::Tracking>(study.measurements[0].settings);
+  tracking.stations = {{"P1", {-0.3, -0.2, -0.2}}};
+  tracking.runs = {{"P1", "short"}};
+  const FitResult result = fit(sim::simulate(study).campaign, spline_model(4));
+  EXPECT_EQ(result.status, FitStatus::RankDeficient);
+  const auto invisible =
+      std::ranges::count_if(result.rank.errors, [](const Observability& e) { return !e.visible; });
+  EXPECT_GE(invisible, 6);
+  EXPECT_TRUE(std::ranges::any_of(result.rank.errors, [](const Observability& e) {
+    return e.remedy.find("more stations") != std::string::npos;
+  }));
+}
+
+TEST(Fit, TwelveErrorModelLeavesTheAngularErrorsOut) {
+  ModelSpec model = spline_model(4);
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    for (const Component component : {Component::A, Component::B, Component::C}) {
+      model.functions[{component, axis}].basis = "zero";
+    }
+  }
+  const auto simulated = sim::simulate(small_study(0, small_tracking()));
+  const FitResult result = fit(simulated.campaign, model);
+  EXPECT_EQ(result.layout.symbols().size(), 9U);
+  EXPECT_EQ(result.status, FitStatus::LackOfFit) << "the simulated machine has angular errors";
+}
+
+}  // namespace
+}  // namespace volcal

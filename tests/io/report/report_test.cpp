@@ -1,0 +1,240 @@
+#include "volcal/identify/report/report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/io/report/synthetic_fit.h"
+#include "volcal/identify/report/correlation.h"
+#include "volcal/identify/report/page.h"
+#include "volcal/identify/report/residual_sample.h"
+
+namespace volcal {
+namespace {
+
+using nlohmann::json;
+
+std::string file_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+json page_data(const json& document, const std::string& kind) {
+  for (const json& page : document.at("pages")) {
+    if (page.at("kind") == kind) return page.at("data");
+  }
+  ADD_FAILURE() << "no page " << kind;
+  return {};
+}
+
+class ReportTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    fit_ = new test::SyntheticFit(test::synthetic_fit());
+    document_ = new json(json::parse(report_json(fit_->result, fit_->campaign, {.date = "2024-05-17"})));
+  }
+  static void TearDownTestSuite() {
+    delete document_;
+    delete fit_;
+  }
+  static test::SyntheticFit* fit_;
+  static json* document_;
+};
+test::SyntheticFit* ReportTest::fit_ = nullptr;
+json* ReportTest::document_ = nullptr;
+
+TEST_F(ReportTest, EveryRegisteredPageIsInTheDocumentAndHasARenderer) {
+  const std::string renderers =
+      file_text(std::filesystem::path(VOLCAL_SOURCE_DIR) / "identify/report/web/src/pages.js");
+  std::set<std::string> kinds;
+  for (const report::Page& page : report::pages()) {
+    const std::string kind(page.kind);
+    EXPECT_TRUE(kinds.insert(kind).second) << kind << " is registered twice";
+    EXPECT_FALSE(page_data(*document_, kind).empty()) << kind;
+    EXPECT_THAT(renderers, ::testing::HasSubstr("\n  " + kind + ": render"));
+  }
+  EXPECT_EQ(document_->at("pages").size(), kinds.size());
+}
+
+TEST_F(ReportTest, ShowsAllEighteenFunctionsWithTheirState) {
+  const json data = page_data(*document_, "functions");
+  ASSERT_EQ(data.at("functions").size(), 18u);
+  for (const json& function : data.at("functions")) {
+    const std::string symbol = function.at("symbol");
+    if (symbol == "EAX") {
+      EXPECT_EQ(function.at("state"), "off");
+      continue;
+    }
+    EXPECT_EQ(function.at("state"), symbol == "ECZ" ? "invisible" : "identified") << symbol;
+    const std::size_t positions = function.at("position").size();
+    EXPECT_GE(positions, 41u);
+    EXPECT_EQ(function.at("curves").at(0).at("value").size(), positions);
+    EXPECT_EQ(function.at("curves").at(0).at("U95").size(), positions);
+    EXPECT_EQ(function.at("extrapolated").size(), positions);
+    EXPECT_EQ(function.at("knots").size(), 9u);
+  }
+}
+
+TEST_F(ReportTest, FunctionValuesAreThoseOfTheBasisInMicrometres) {
+  const json functions = page_data(*document_, "functions").at("functions");
+  const json eyx = functions.at(1);
+  ASSERT_EQ(eyx.at("symbol"), "EYX");
+  const FitResult& result = fit_->result;
+  const ErrorSymbol symbol{Component::Y, AxisName::X};
+  const auto place = result.layout.find(symbol);
+  ASSERT_TRUE(place);
+  const Basis& basis = *result.layout.groups[static_cast<std::size_t>(place->group)].basis;
+  const Eigen::VectorXd coefficients = result.layout.coefficients(symbol, result.parameters);
+  for (const std::size_t i : {0u, 13u, 40u}) {
+    const double q = eyx.at("position").at(i).get<double>() * 1e-3;
+    EXPECT_NEAR(eyx.at("curves").at(0).at("value").at(i).get<double>(), basis.value(q, coefficients) * 1e6,
+                1e-3);
+  }
+}
+
+TEST_F(ReportTest, MarksExtrapolatedPositions) {
+  for (const json& function : page_data(*document_, "functions").at("functions")) {
+    if (function.at("state") != "identified") continue;
+    const bool any =
+        std::ranges::any_of(function.at("extrapolated"), [](const json& flag) { return flag == 1; });
+    EXPECT_EQ(any, function.at("axis") == "Y") << function.at("symbol");
+  }
+}
+
+TEST_F(ReportTest, SquarenessIsInMicroradianWithItsEffectOverTheTravel) {
+  const json rows = page_data(*document_, "locations").at("rows");
+  ASSERT_EQ(rows.size(), 4u);  // three identified, one switched off
+  EXPECT_EQ(rows.at(0).at("symbol"), "EC0Y");
+  EXPECT_EQ(rows.at(0).at("meaning"), "squareness of Y to X");
+  EXPECT_EQ(rows.at(1).at("meaning"), "squareness of Z to Y");
+  EXPECT_EQ(rows.at(2).at("meaning"), "squareness of Z to X");
+  EXPECT_EQ(rows.at(3).at("state"), "off");
+  const double value = rows.at(0).at("value");
+  EXPECT_NEAR(value, fit_->result.parameters[fit_->result.layout.blocks[0].offset] * 1e6, 1e-2);
+  EXPECT_NEAR(rows.at(0).at("over_travel_um").get<double>(), value * 0.5, 1e-2);  // urad x 0.5 m
+}
+
+TEST_F(ReportTest, SummarySaysInWordsWhatIsNotVisible) {
+  const json data = page_data(*document_, "summary");
+  EXPECT_EQ(data.at("level"), "bad");
+  ASSERT_EQ(data.at("invisible").size(), 1u);
+  EXPECT_EQ(data.at("invisible").at(0).at("symbol"), "ECZ");
+  EXPECT_EQ(data.at("invisible").at(0).at("reason"), "every tool offset lies on Z");
+  EXPECT_NE(data.at("invisible").at(0).at("remedy"), "");
+}
+
+TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
+  const json data = page_data(*document_, "volume");
+  ASSERT_EQ(data.at("tools").size(), 2u);
+  for (const json& tool : data.at("tools")) {
+    EXPECT_EQ(tool.at("point_mm").size(), 125u);
+    EXPECT_EQ(tool.at("error_um").size(), 125u);
+    EXPECT_EQ(tool.at("u_um").size(), 125u);
+    EXPECT_EQ(tool.at("corner_mm").size(), 8u);
+    EXPECT_GT(tool.at("error_rms_um").get<double>(), tool.at("u_rms_um").get<double>());
+  }
+  EXPECT_EQ(data.at("named_points").size(), 3u);  // two stations, one ball-bar centre
+  EXPECT_EQ(data.at("setups").size(), fit_->campaign.setups.size());
+}
+
+TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
+  const json data = page_data(*document_, "outliers");
+  EXPECT_EQ(data.at("removed"), 1);
+  const json rows = data.at("rows");
+  ASSERT_GE(rows.size(), 6u);
+  EXPECT_EQ(rows.size(), data.at("suspect").get<std::size_t>());
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_GE(std::abs(rows.at(i - 1).at("w").get<double>()), std::abs(rows.at(i).at("w").get<double>()));
+  }
+}
+
+TEST_F(ReportTest, HistogramHoldsEveryReading) {
+  const json histogram = page_data(*document_, "residuals").at("histogram");
+  std::size_t sum = 0;
+  for (const json& count : histogram.at("count")) sum += count.get<std::size_t>();
+  EXPECT_EQ(sum, fit_->result.residuals.size());
+}
+
+TEST_F(ReportTest, NuisanceParametersAreInTheirEdgeUnit) {
+  const json rows = page_data(*document_, "nuisance").at("rows");
+  ASSERT_EQ(rows.size(), 10u);
+  EXPECT_EQ(rows.at(0).at("name"), "station P1");
+  EXPECT_NEAR(rows.at(0).at("guess").get<double>(), -600.0, 1e-9);
+  EXPECT_TRUE(rows.at(0).at("prior_sigma").is_null());
+  EXPECT_NEAR(rows.at(9).at("prior_sigma").get<double>(), 0.1, 1e-12);
+  EXPECT_EQ(rows.at(9).at("weak_default_prior"), true);
+}
+
+TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const auto path = std::filesystem::path(VOLCAL_BINARY_DIR) / "report_test.html";
+  write_report(fit_->result, fit_->campaign, path, {.date = "2024-05-17"});
+  const std::string page = file_text(path);
+  EXPECT_EQ(page.find("@VOLCAL_REPORT_"), std::string::npos);
+  EXPECT_NE(page.find("<title>VMC 800 &lt;x&gt; 500 &amp; 450"), std::string::npos);
+  const std::string opening = "<script type=\"application/json\" id=\"volcal-data\">";
+  const std::size_t start = page.find(opening);
+  ASSERT_NE(start, std::string::npos);
+  const std::size_t from = start + opening.size();
+  const std::string data = page.substr(from, page.find("</script", from) - from);
+  EXPECT_EQ(json::parse(data), *document_);
+  EXPECT_EQ(data.find('<'), std::string::npos);
+}
+
+TEST_F(ReportTest, NeedsNoNetwork) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const std::string page = report_html(fit_->result, fit_->campaign);
+  for (const char* loading : {"<script src", "<link rel=\"stylesheet\"", "@import", "url(http"}) {
+    EXPECT_EQ(page.find(loading), std::string::npos) << loading;
+  }
+}
+
+TEST(ReportSize, DoesNotGrowWithTheNumberOfReadings) {
+  const test::SyntheticFit small = test::synthetic_fit(10);
+  const test::SyntheticFit large = test::synthetic_fit(200);
+  ASSERT_GT(large.result.residuals.size(), 200'000u);
+  const std::string small_json = report_json(small.result, small.campaign);
+  const std::string large_json = report_json(large.result, large.campaign);
+  EXPECT_LT(static_cast<double>(large_json.size()), 1.1 * static_cast<double>(small_json.size()));
+  EXPECT_LT(large_json.size(), 1'500'000u);
+}
+
+TEST(ResidualSample, KeepsFlaggedAndWorstAndIsRepeatable) {
+  const test::SyntheticFit fit = test::synthetic_fit(10);
+  const auto& residuals = fit.result.residuals;
+  const auto sample = report::residual_sample(residuals, 2000);
+  ASSERT_EQ(sample.size(), 2000u);
+  EXPECT_TRUE(std::ranges::is_sorted(sample));
+  EXPECT_EQ(sample, report::residual_sample(residuals, 2000));
+  const std::set<std::size_t> chosen(sample.begin(), sample.end());
+  EXPECT_EQ(chosen.size(), sample.size());
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i].flagged || residuals[i].removed) {
+      EXPECT_TRUE(chosen.contains(i)) << i;
+    }
+  }
+  EXPECT_EQ(report::residual_sample(residuals, residuals.size()).size(), residuals.size());
+}
+
+TEST(ErrorCorrelation, OfTwoScalarsIsTheAbsoluteCorrelation) {
+  const FitResult result = test::synthetic_fit().result;
+  const report::ErrorCorrelation correlation = report::error_correlation(result);
+  ASSERT_EQ(correlation.symbol.size(), 20u);  // 17 functions, 3 squareness errors
+  const auto& blocks = result.layout.blocks;
+  const double expected = std::abs(result.covariance(blocks[0].offset, blocks[1].offset)) /
+                          std::sqrt(result.covariance(blocks[0].offset, blocks[0].offset) *
+                                    result.covariance(blocks[1].offset, blocks[1].offset));
+  EXPECT_NEAR(correlation.value(17, 18), expected, 1e-12);
+  EXPECT_TRUE((correlation.value.array() >= 0.0).all() && (correlation.value.array() <= 1.0).all());
+}
+
+}  // namespace
+}  // namespace volcal

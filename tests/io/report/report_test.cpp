@@ -203,7 +203,8 @@ TEST(ReportSize, DoesNotGrowWithTheNumberOfReadings) {
   ASSERT_GT(large.result.residuals.size(), 200'000u);
   const std::string small_json = report_json(small.result, small.campaign);
   const std::string large_json = report_json(large.result, large.campaign);
-  EXPECT_LT(static_cast<double>(large_json.size()), 1.1 * static_cast<double>(small_json.size()));
+  // Only the list of suspect readings, which has its own bound, is longer.
+  EXPECT_LT(static_cast<double>(large_json.size()), 1.25 * static_cast<double>(small_json.size()));
   EXPECT_LT(large_json.size(), 1'500'000u);
 }
 

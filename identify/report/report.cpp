@@ -68,8 +68,7 @@ PageInput::PageInput(const FitResult& fit, const Campaign& readings, const Repor
 bool report_available() { return !report::page_template().empty(); }
 
 std::string_view how_to_get_report() {
-  return "report.html is not written: the program was built without Node.js; install nodejs and npm and run "
-         "scripts/build again";
+  return "the program was built without Node.js; install nodejs and npm and run scripts/build again";
 }
 
 std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {

@@ -1,7 +1,7 @@
 #pragma once
 /// Campaigns written as files that campaign_reader.h reads back: campaign.toml and one CSV per setup.
 /// Lengths have 7 decimals of a millimetre and 4 of a micrometre (0.1 nm), angles 4 of a microradian and 10
-/// of a degree; keys of campaign.toml come back to the last bit.
+/// of a degree; the numbers of campaign.toml come back to rounding.
 
 #include <string>
 

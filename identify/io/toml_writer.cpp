@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -116,7 +119,8 @@ std::string edge_number(double si, double si_per_unit) {
   const double edge = si / si_per_unit;
   for (int digits = 6; digits < 17; ++digits) {
     const std::string text = fmt::format("{:.{}g}", edge, digits);
-    if (std::strtod(text.c_str(), nullptr) * si_per_unit == si) return text;
+    const double read = std::strtod(text.c_str(), nullptr) * si_per_unit;
+    if (std::abs(read - si) <= std::numeric_limits<double>::epsilon() * std::abs(si)) return text;
   }
   return fmt::format("{:.17g}", edge);
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// Machine and model files written out, readable again to the last bit (machine_reader.h, model_reader.h).
+/// Machine and model files written out, readable again to rounding (machine_reader.h, model_reader.h);
+/// result.json keeps every bit.
 
 #include <string>
 
@@ -8,7 +9,7 @@
 
 namespace volcal {
 
-/// A number in its edge unit, with the fewest digits that give `si` back when multiplied by `si_per_unit`.
+/// A number in its edge unit, with the fewest digits that give `si` back to one unit of the last place.
 std::string edge_number(double si, double si_per_unit);
 /// A TOML text in double quotes.
 std::string toml_text(const std::string& text);

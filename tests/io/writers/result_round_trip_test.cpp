@@ -120,7 +120,7 @@ TEST(ResultJson, RefusesDamagedFilesWithTheLine) {
   EXPECT_THAT(refusal(other), HasSubstr("run the fit again"));
 }
 
-TEST(MachineToml, IsReadAgainToTheBit) {
+TEST(MachineToml, IsReadAgain) {
   Machine machine = read_machine(kSmall + "machine.toml");
   machine.name = "a \"quoted\" name\nof two lines";
   machine.axes[1].travel_max = 0.1 + 0.2;

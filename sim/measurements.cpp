@@ -1,5 +1,8 @@
 #include "volcal/sim/measurements.h"
 
+#include <cmath>
+
+#include "volcal/model/description/units.h"
 #include "volcal/sim/paths.h"
 #include "volcal/sim/plan_tools.h"
 
@@ -59,6 +62,12 @@ LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d&
   low[direction_of(axis)] = 0.0;
   high[direction_of(axis)] = 1.0;
   return {at_fraction(machine, low), at_fraction(machine, high)};
+}
+
+Eigen::Vector3d stated_position(const Eigen::Vector3d& position, double millimetres) {
+  const double steps_per_millimetre = std::round(1.0 / millimetres);
+  const Eigen::Array3d steps = (position.array() / kMetrePerMillimetre * steps_per_millimetre).round();
+  return (steps / steps_per_millimetre * kMetrePerMillimetre).matrix();
 }
 
 std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine& machine,

@@ -49,7 +49,8 @@ std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanC
     plan.seconds_per_reading = settings.seconds_per_reading;
     RandomStream random(context.seed, "setup " + plan.name);
     plan.truth.centre = centre_w;
-    plan.options.set("centre", Eigen::Vector3d(centre_w + settings.centre_error * random.normal_vector()));
+    const Eigen::Vector3d guess = centre_w + settings.centre_error * random.normal_vector();
+    plan.options.set("centre", stated_position(guess, 0.001));
     const double length_error = settings.length_sigma.value_or(settings.length_error) * random.normal();
     plan.truth.length_error = length_error;
     if (settings.length_sigma) plan.options.set("length_sigma", *settings.length_sigma);

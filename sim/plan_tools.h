@@ -39,6 +39,9 @@ struct LineEnds {
 };
 LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d& at);
 
+/// A position as a user would state it, in whole steps of `millimetres`.
+Eigen::Vector3d stated_position(const Eigen::Vector3d& position, double millimetres);
+
 std::vector<SetupPlan> plan_tracking(const Tracking& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanContext& context);

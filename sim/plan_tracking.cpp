@@ -99,7 +99,7 @@ class TrackingPlanner {
     const double error = settings_.station_sigma ? *settings_.station_sigma : settings_.station_guess_error;
     const Eigen::Vector3d guess = station.position_w + error * random.normal_vector();
     plan.options.set("station", context_.prefix + station.name);
-    plan.options.set("station", guess);
+    plan.options.set("station", stated_position(guess, 0.1));
     if (settings_.station_sigma) plan.options.set("station_sigma", *settings_.station_sigma);
     if (settings_.length_scale_sigma) {
       plan.options.set("scale_sigma", *settings_.length_scale_sigma);

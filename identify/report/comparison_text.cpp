@@ -194,6 +194,7 @@ std::string worst_text(const Campaign& campaign, const ComparedModel& model, std
                    {"residual/sigma"},
                    {"", Align::Left}},
                   "Worst readings" + (named ? " of " + model.name : std::string()));
+  const bool fits = !model.comparison.total.significant;  // else a large residual is the model's
   for (const std::size_t i : model.comparison.worst) {
     if (count-- == 0) break;
     const ResidualRecord& record = model.records[i];
@@ -203,7 +204,7 @@ std::string worst_text(const Campaign& campaign, const ComparedModel& model, std
                    fixed_number(record.residual() * 1e6, 2), fixed_number(record.sigma * 1e6, 2),
                    is_angle_channel(setup, channel) ? "urad" : "um",
                    fixed_number(record.residual() / record.sigma, 1),
-                   record.removed ? "left out" : (record.flagged ? "outlier?" : "")});
+                   record.removed ? "left out" : (fits && record.flagged ? "outlier?" : "")});
   }
   return table.text();
 }
@@ -259,7 +260,11 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
   text += '\n' + setups_text(campaign, models, options);
   const std::string places = places_text(models, options);
   if (!places.empty()) text += '\n' + places;
-  text += "  * worse than chance, ** also worse than the rest (chi2 tests, 5 % over all cells)\n";
+  text +=
+      "  * worse than chance, ** also worse than the rest (chi2 tests, 5 % over all cells)\n"
+      "  dof: readings less the nuisance parameters estimated anew; readings that the model was fitted to "
+      "have\n"
+      "  chi2/dof a little below 1\n";
   std::vector<NamedFigures> figures;
   for (std::size_t m = 0; m < models.size(); ++m) {
     const std::string name = two ? std::string("model") + kSuffix[m] : "model";

@@ -135,11 +135,16 @@ std::vector<std::string> line_notes(const LineEvaluation& evaluation, const Posi
   if (figures.unknown_direction > 0) {
     notes.push_back(fmt::format("{} readings of unknown approach are left out", figures.unknown_direction));
   }
-  const bool once = std::all_of(figures.targets.begin(), figures.targets.end(), [](const auto& target) {
-    return target.positive.count < 2 && target.negative.count < 2;
-  });
-  if (once && !figures.targets.empty()) {
-    notes.emplace_back("every target was met once per direction: repeatability and accuracy are undefined");
+  const auto one_sided =
+      std::count_if(figures.targets.begin(), figures.targets.end(),
+                    [](const PositioningTarget& target) { return !target.bidirectional(); });
+  if (one_sided > 0 && figures.reversal) {
+    notes.push_back(
+        fmt::format("{} of {} targets were met from one direction only", one_sided, figures.targets.size()));
+  }
+  const bool repeated = figures.positive.repeatability || figures.negative.repeatability;
+  if (!repeated && !figures.targets.empty()) {
+    notes.emplace_back("R and A are undefined: they need two approaches of every target from a direction");
   }
   return notes;
 }

@@ -209,7 +209,7 @@ TEST(StandardFigures, TwoMovingAxesAreAFaceDiagonal) {
   ASSERT_EQ(figures.diagonal_groups.size(), 1U);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.systematic, 12e-6, 1e-12);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.reversal, 2e-6, 1e-12);
-  EXPECT_THAT(figures.diagonals[0].notes, testing::Contains(HasSubstr("once per direction")));
+  EXPECT_THAT(figures.diagonals[0].notes, testing::Contains(HasSubstr("R and A are undefined")));
 }
 
 /// One axis at a time: the corners of the staircase lie far off any line.
@@ -223,6 +223,20 @@ TEST(StandardFigures, SequentialStepsAreNoDiagonal) {
   EXPECT_THAT(figures.diagonals, IsEmpty());
   EXPECT_THAT(figures.not_recognised,
               ElementsAre("steps: the commanded points do not lie on a straight line"));
+}
+
+/// The turning point is read twice but the columns say that both came from below: 0.3 has no approach from
+/// above.
+TEST(StandardFigures, TargetsMetFromOneDirectionAreCounted) {
+  Campaign campaign = empty_campaign();
+  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", x_line(0.5, 0.0, +1));
+  setup.options.set("direction", Vector3d(1, 0, 0));
+  setup.readings.direction[0] = {1, 1, 1, 1, -1, -1, 1, 1, 1, 1, -1, -1};
+  const auto figures =
+      standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
+  ASSERT_EQ(figures.lines.size(), 1U);
+  EXPECT_THAT(figures.lines[0].notes, ElementsAre("1 of 3 targets were met from one direction only"));
+  EXPECT_EQ(figures.lines[0].figures.readings.targets[2].positive.count, 4);
 }
 
 TEST(StandardFigures, BeamAcrossTheMotionIsNoPositioningTest) {

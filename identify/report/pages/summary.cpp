@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text_tables.h"
@@ -70,6 +71,15 @@ Json figures(const PageInput& input) {
   return list;
 }
 
+std::string reference_temperature(const FitResult& result) {
+  if (std::isnan(result.reference_temperature_degC)) {
+    return "that of the measurement; the campaign records none";
+  }
+  return fmt::format(
+      "{:.2f} °C{}", result.reference_temperature_degC,
+      result.temperature_is_campaign_mean ? " (mean of the campaign; not reduced to 20 °C)" : "");
+}
+
 Json machine_facts(const PageInput& input) {
   const FitResult& result = input.result;
   const Machine& machine = result.machine;
@@ -86,10 +96,7 @@ Json machine_facts(const PageInput& input) {
   add("Datum", fmt::format("primary {}, secondary {}; every function is zero at home, straightness has no "
                            "least-squares slope over the travel",
                            letter_of(machine.datum.primary), letter_of(machine.datum.secondary)));
-  add("Reference temperature",
-      fmt::format(
-          "{:.2f} °C{}", result.reference_temperature_degC,
-          result.temperature_is_campaign_mean ? " (mean of the campaign; not reduced to 20 °C)" : ""));
+  add("Reference temperature", reference_temperature(result));
   add("Uncertainty", fmt::format("U95 = {:.3g} u (95 % interval)", result.coverage_factor));
   if (!input.campaign.file.empty()) add("Campaign", input.campaign.file);
   if (!input.options.date.empty()) add("Date", input.options.date);

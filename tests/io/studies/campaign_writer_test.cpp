@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <stdexcept>
+#include <variant>
 
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
@@ -44,6 +46,23 @@ void expect_near(const std::vector<double>& a, const std::vector<double>& b, dou
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], tolerance);
 }
 
+void expect_same(const Options& written, const Options& read) {
+  ASSERT_EQ(written.all().size(), read.all().size());
+  for (const auto& [key, value] : written.all()) {
+    const std::string& stem = key.first;
+    SCOPED_TRACE(stem);
+    if (std::holds_alternative<std::string>(value)) {
+      EXPECT_EQ(*written.text(stem), read.text(stem).value());
+    }
+    if (std::holds_alternative<double>(value)) {
+      EXPECT_DOUBLE_EQ(*written.number(stem), read.number(stem).value());
+    }
+    if (std::holds_alternative<Eigen::Vector3d>(value)) {
+      EXPECT_LT((*written.vector(stem) - read.vector(stem).value()).norm(), 1e-15);
+    }
+  }
+}
+
 void expect_same(const Campaign& written, const Campaign& read) {
   ASSERT_EQ(written.setups.size(), read.setups.size());
   for (std::size_t i = 0; i < written.setups.size(); ++i) {
@@ -53,9 +72,9 @@ void expect_same(const Campaign& written, const Campaign& read) {
     EXPECT_EQ(a.name, b.name);
     EXPECT_EQ(a.instrument, b.instrument);
     EXPECT_EQ(a.tool, b.tool);
-    EXPECT_EQ(a.repeatability, b.repeatability);
-    EXPECT_EQ(a.options.all(), b.options.all());
-    EXPECT_EQ(a.noise.all(), b.noise.all());
+    EXPECT_DOUBLE_EQ(a.repeatability, b.repeatability);
+    expect_same(a.options, b.options);
+    expect_same(a.noise, b.noise);
     EXPECT_EQ(a.readings.column_set, b.readings.column_set);
     EXPECT_EQ(a.readings.direction, b.readings.direction);
     EXPECT_EQ(a.readings.line, b.readings.line);

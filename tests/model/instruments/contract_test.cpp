@@ -155,11 +155,11 @@ TEST_P(InstrumentContract, NuisanceBlocksAreNamedAndComplete) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, InstrumentContract, ::testing::ValuesIn(all_cases()), [](const auto& info) {
-  std::string name = info.param.instrument->schema().name;
+INSTANTIATE_TEST_SUITE_P(All, InstrumentContract, ::testing::ValuesIn(all_cases()), [](const auto& tested) {
+  std::string name = tested.param.instrument->schema().name;
   std::replace(name.begin(), name.end(), '-', '_');
-  return name + (info.param.all_keys ? "_all_keys_" : "_required_keys_") + std::to_string(info.param.choice) +
-         "_columns_" + std::to_string(info.param.column_set);
+  return name + (tested.param.all_keys ? "_all_keys_" : "_required_keys_") + std::to_string(tested.param.choice) +
+         "_columns_" + std::to_string(tested.param.column_set);
 });
 
 TEST(InstrumentSchemas, SayWhatTheyAre) {

@@ -12,7 +12,7 @@ export function renderNuisance(body, data) {
     { name: 'Value', cell: (row) => fixed(row.value, decimalsFor(row.u)) },
     { name: 'u', cell: (row) => fixed(row.u, decimalsFor(row.u)) },
     { name: 'Unit', align: 'left', cell: (row) => row.unit },
-    { name: 'Guess', cell: (row) => significant(row.guess, 5) },
+    { name: 'Guess', cell: (row) => fixed(row.guess, Math.min(4, decimalsFor(row.u))) },
     { name: 'Change', cell: (row) => fixed(row.change, decimalsFor(row.u)) },
     { name: 'Prior σ', cell: (row) => significant(row.prior_sigma, 3) },
     { name: 'Held by', align: 'left', cell: heldBy },
@@ -21,7 +21,7 @@ export function renderNuisance(body, data) {
     body.append(note(`The first ${count(data.rows.length)} of ${count(data.count)} are listed; result.json has all.`));
   }
   if (data.held_by_prior.length > 0) {
-    body.append(el('h3', {}, 'Held at the guess by a weak default prior'), el('ul', {}, data.held_by_prior.map((name) => el('li', {}, name))));
+    body.append(el('h3', {}, 'Held at the guess by a weak default prior'), el('ul', {}, data.held_by_prior.map((name) => el('li', {}, name.replaceAll('+-', '±')))));
   }
   body.append(note('Unknowns that the measurement brought with it. What is invisible by nature, such as the out-of-plane centre of a plane circle, is held by a weak default prior and says nothing about the machine.'));
 }

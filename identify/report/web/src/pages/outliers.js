@@ -4,7 +4,8 @@ export function renderOutliers(body, data) {
   const expected = data.observations * 2 * (1 - normalCdf(data.critical));
   body.append(note(
     `Baarda's w-test, |w| > ${fixed(data.critical, 2)}: ${count(data.suspect)} of ${count(data.observations)} readings; `,
-    `${fixed(expected, expected < 10 ? 1 : 0)} expected by chance. ${data.removed === 0 ? 'None' : count(data.removed)} ${data.removed === 1 ? 'was' : 'were'} taken out of the adjustment; the others are kept.`));
+    `${fixed(expected, expected < 10 ? 1 : 0)} expected by chance.`,
+    data.suspect === 0 ? '' : ` ${data.removed === 0 ? 'None' : count(data.removed)} ${data.removed === 1 ? 'was' : 'were'} taken out of the adjustment; the others are kept.`));
   if (data.rows.length === 0) return;
   body.append(longTable([
     { name: 'Setup', align: 'left', cell: (row) => row.setup },

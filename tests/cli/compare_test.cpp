@@ -1,0 +1,104 @@
+/// `volcal compare` as a user meets it: text, JSON, files, exit codes.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kExample = std::string(VOLCAL_SOURCE_DIR) + "/datasets/examples/mixed-1/";
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;
+  std::string errors;
+};
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Outcome compare(const std::string& arguments) {
+  const ::volcal::testing::ScratchFolder folder;
+  const std::string output = (folder.path() / "output").string(),
+                    errors = (folder.path() / "errors").string();
+  const std::string command =
+      std::string(VOLCAL_PROGRAM) + " compare " + arguments + " >" + output + " 2>" + errors + " </dev/null";
+  const int status = std::system(command.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(output), content(errors)};
+}
+
+TEST(Compare, AnswersFirstWhereTheNominalMachineFails) {
+  const Outcome outcome = compare(kExample + "campaign.toml nominal");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_THAT(outcome.output, StartsWith("nominal machine: does not explain the readings, chi2/dof "));
+  for (const char* part : {"Residuals by setup", "ISO 230-2:2014", "ISO 230-4:2005", "ISO 230-6:2002",
+                           "E_d [um]", "Worst readings"}) {
+    EXPECT_THAT(outcome.output, HasSubstr(part));
+  }
+}
+
+TEST(Compare, AModelWithoutCoefficientsIsTheNominalMachineAndSaysSo) {
+  const Outcome outcome = compare(kExample + "campaign.toml " + kExample + "model.toml");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, StartsWith("nominal machine ("));
+  EXPECT_THAT(outcome.output, HasSubstr("model.toml holds no coefficients"));
+}
+
+TEST(Compare, JsonIsOneDocumentAndNothingElse) {
+  const Outcome outcome = compare(kExample + "campaign.toml nominal nominal --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(outcome.output);
+  ASSERT_EQ(json.at("models").size(), 2U);
+  const auto& standards = json.at("models").at(0).at("standards");
+  EXPECT_EQ(standards.at("iso230_2").size(), 9U);
+  EXPECT_EQ(standards.at("iso230_4").size(), 6U);
+  EXPECT_EQ(standards.at("iso230_6").size(), 4U);
+  EXPECT_EQ(json.at("models").at(0).at("total").at("observations"), 4712);
+}
+
+TEST(Compare, WritesEveryResidual) {
+  const ::volcal::testing::ScratchFolder folder;
+  const auto target = folder.path() / "comparison";
+  const Outcome outcome = compare(kExample + "campaign.toml nominal -o " + target.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const std::string residuals = content(target / "residuals.csv");
+  EXPECT_THAT(residuals, StartsWith("setup,row,reading,predicted,residual_um,sigma_um,standardized,"));
+  EXPECT_EQ(std::count(residuals.begin(), residuals.end(), '\n'), 1 + 4712);
+  EXPECT_TRUE(std::filesystem::exists(target / "comparison.txt"));
+  EXPECT_TRUE(nlohmann::json::accept(content(target / "comparison.json")));
+}
+
+TEST(Compare, BadArgumentsAreExitCodeTwo) {
+  const Outcome missing = compare(kExample + "campaign.toml no-such-model.toml");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.errors, HasSubstr("no-such-model.toml"));
+  EXPECT_EQ(missing.output, "");
+
+  const Outcome no_result = compare(kExample + "campaign.toml " + kExample);
+  EXPECT_EQ(no_result.exit_code, 2);
+  EXPECT_THAT(no_result.errors, HasSubstr("holds no result.json"));
+
+  const Outcome three = compare(kExample + "campaign.toml nominal nominal nominal");
+  EXPECT_EQ(three.exit_code, 2);
+  EXPECT_EQ(compare(kExample + "campaign.toml").exit_code, 2);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -428,6 +428,13 @@ class Identification {
     for (const ParameterBlock& block : model_.layout().blocks) {
       if (block.location) identified.locations[*block.location] = parameters_[block.offset];
     }
+    for (EffectSpec& effect : identified.effects) {
+      const auto bound = find_effect(effect.kind)->bind(effect, spec_.file, campaign_.machine);
+      for (const EffectAmplitude& amplitude : bound->amplitudes()) {
+        const ParameterBlock* block = model_.layout().find_block(amplitude.label);
+        if (block != nullptr) effect.options.set(amplitude.option, parameters_[block->offset]);
+      }
+    }
     return identified;
   }
 

@@ -19,6 +19,7 @@ struct EffectAmplitude {
   ErrorSymbol target;
   std::string unit;  ///< edge unit of the amplitude: "um", "urad", "um/m/K"
   double si_per_unit = 1.0;
+  std::string option;        ///< stem of the schema's key that holds the value of an identified model
   double guess = 0.0;        ///< SI; the value of an identified model, else 0
   double prior_mean = 0.0;   ///< SI
   double prior_sigma = 0.0;  ///< SI; 0 = no prior

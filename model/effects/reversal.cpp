@@ -51,6 +51,7 @@ class BoundReversal final : public BoundEffect {
                            .target = symbol,
                            .unit = std::string(edge_unit(symbol.component)),
                            .si_per_unit = kMetrePerMicrometre,
+                           .option = "amplitude",
                            .guess = amplitude});
   }
 

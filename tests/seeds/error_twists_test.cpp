@@ -40,10 +40,11 @@ Twist position_dependent(const JointLever& lever, Component component) {
   }
   const Matrix3d turn = rotation_about(direction_of(lever.axis), lever.position);
   Twist sum = Twist::Zero();
-  for (int k = 0; k < 3; ++k) {
-    const Component stator = kAllComponents[static_cast<std::size_t>(k + (is_rotation(component) ? 3 : 0))];
-    sum += turn(k, direction_of(component)) * twist(KinematicChain::motion_lever_w(lever, stator),
-                                                    KinematicChain::motion_rotation_w(lever, stator));
+  for (const Component stator : kAllComponents) {
+    if (is_rotation(stator) != is_rotation(component)) continue;
+    sum += turn(direction_of(stator), direction_of(component)) *
+           twist(KinematicChain::motion_lever_w(lever, stator),
+                 KinematicChain::motion_rotation_w(lever, stator));
   }
   return sum;
 }

@@ -97,6 +97,25 @@ TEST(EffectContract, AmplitudesHaveNameUnitAndTarget) {
   }
 }
 
+/// An identified amplitude can be written into the effect's table and is read from it again.
+TEST(EffectContract, AnIdentifiedValueSurvivesInTheOptions) {
+  const Machine machine = machine_of("w X' b Y Z t");
+  for (const EffectKind* effect : effect_kinds()) {
+    EffectSpec spec = smallest_spec(effect->schema());
+    const auto amplitudes = effect->bind(spec, "model.toml", machine)->amplitudes();
+    for (const EffectAmplitude& amplitude : amplitudes) {
+      const auto holds = [&](const KeySchema& key) {
+        return key.type == KeyType::Number && stem_of_key(key.key) == amplitude.option;
+      };
+      EXPECT_TRUE(std::ranges::any_of(effect->schema().keys, holds)) << amplitude.label;
+      spec.options.set(amplitude.option, 3.0 * amplitude.si_per_unit);
+    }
+    for (const EffectAmplitude& amplitude : effect->bind(spec, "model.toml", machine)->amplitudes()) {
+      EXPECT_EQ(amplitude.guess, 3.0 * amplitude.si_per_unit) << amplitude.label;
+    }
+  }
+}
+
 /// An effect that nobody has measured yet adds nothing: amplitudes start at zero, or at their prior.
 TEST(EffectContract, StartsWithoutContribution) {
   const Machine machine = machine_of("w X' b Y Z t");

@@ -75,10 +75,10 @@ TEST(Datum, AllChoicesGiveTheSameErrorsUpToARigidMotion) {
       std::vector<Vector3d> first_order;
       std::vector<Vector3d> exact;
       for (const AxisPosition& position : positions) {
-        first_order.push_back(chain.first_order(position, tool, errors).displacement_w -
-                              chain.first_order(position, tool, reference).displacement_w);
-        exact.push_back(chain.exact_pose<double>(position, tool, errors).point_w -
-                        chain.exact_pose<double>(position, tool, reference).point_w);
+        first_order.emplace_back(chain.first_order(position, tool, errors).displacement_w -
+                                 chain.first_order(position, tool, reference).displacement_w);
+        exact.emplace_back(chain.exact_pose<double>(position, tool, errors).point_w -
+                           chain.exact_pose<double>(position, tool, reference).point_w);
       }
       EXPECT_LT(sim::rms_after_alignment(points, first_order), 1e-17) << code;
       EXPECT_LT(sim::rms_after_alignment(points, exact), 0.1e-6) << code;  // 300 urad squared times 1 m

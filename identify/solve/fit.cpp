@@ -14,6 +14,7 @@
 #include "volcal/identify/solve/smoothing.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 

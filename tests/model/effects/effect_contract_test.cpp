@@ -110,7 +110,8 @@ TEST(EffectContract, AnIdentifiedValueSurvivesInTheOptions) {
       EXPECT_TRUE(std::ranges::any_of(effect->schema().keys, holds)) << amplitude.label;
       spec.options.set(amplitude.option, 3.0 * amplitude.si_per_unit);
     }
-    for (const EffectAmplitude& amplitude : effect->bind(spec, "model.toml", machine)->amplitudes()) {
+    const auto identified = effect->bind(spec, "model.toml", machine);
+    for (const EffectAmplitude& amplitude : identified->amplitudes()) {
       EXPECT_EQ(amplitude.guess, 3.0 * amplitude.si_per_unit) << amplitude.label;
     }
   }

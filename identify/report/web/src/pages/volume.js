@@ -148,15 +148,13 @@ function sceneLayout(data, tool) {
 
 const kCamera = { eye: { x: 1.2, y: -1.68, z: 0.84 }, center: { x: 0.03, y: 0, z: -0.08 } };
 
-/** Turning one picture turns the other. */
+/** Turning one picture turns the other; equal cameras end the exchange. */
 function coupleCameras(nodes) {
-  let busy = false;
   nodes.forEach((node, k) => node.on('plotly_relayout', (change) => {
     const camera = change['scene.camera'];
     const other = nodes[1 - k];
-    if (!camera || busy || !other.layout) return;
-    busy = true;
-    Plotly.relayout(other, { 'scene.camera': camera }).finally(() => { busy = false; });
+    if (!camera || JSON.stringify(camera) === JSON.stringify(other.layout.scene.camera)) return;
+    Plotly.relayout(other, { 'scene.camera': structuredClone(camera) });
   }));
 }
 

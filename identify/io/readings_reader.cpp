@@ -196,11 +196,27 @@ class ReadingsReader {
       }
     }
     if (complete.empty()) fail_reading(fullest, most);
+    drop_parts_of_larger_sets(complete);
     if (complete.size() > 1) fail_two_readings(complete);
     readings_.column_set = complete.front();
     const auto& set = instrument_.column_sets[complete.front()];
     readings_.value.resize(set.size());
     for (const ColumnSchema& column : set) require(column.column);
+  }
+
+  /// Of the sets found, those whose columns all belong to another set found as well say nothing new.
+  void drop_parts_of_larger_sets(std::vector<std::size_t>& complete) const {
+    const auto is_part_of = [&](std::size_t part, std::size_t whole) {
+      const auto& columns = instrument_.column_sets[whole];
+      return part != whole &&
+             std::ranges::all_of(instrument_.column_sets[part], [&](const ColumnSchema& column) {
+               return std::ranges::find(columns, column.column, &ColumnSchema::column) != columns.end();
+             });
+    };
+    const std::vector<std::size_t> all = complete;
+    std::erase_if(complete, [&](std::size_t part) {
+      return std::ranges::any_of(all, [&](std::size_t whole) { return is_part_of(part, whole); });
+    });
   }
 
   [[noreturn]] void fail_reading(std::size_t set, std::size_t present) const {
@@ -229,6 +245,12 @@ class ReadingsReader {
     const auto known = optional_columns(machine_, instrument_);
     for (const std::string& column : table_.header()) {
       if (is_taken(column)) continue;
+      if (const auto meant = missing_component(column)) {
+        const std::string_view unit = unit_of_key(column).suffix;
+        const bool other_unit = !unit.empty() && unit != unit_of_key(*meant).suffix;
+        throw InputError(table_.header_place(), "column " + printable(column) + " is not " + *meant,
+                         near_miss_remedy(column, *meant, other_unit));
+      }
       if (column.starts_with("T_")) {
         throw InputError(table_.header_place(), "column " + printable(column) + " looks like a temperature",
                          "name it T_<channel>_degC, or map it with columns = { T_CHANNEL_degC = \"" +
@@ -246,6 +268,21 @@ class ReadingsReader {
                          near_miss_remedy(column, standard, other_unit));
       }
     }
+  }
+
+  /// The column of a larger set than the one found that `column` may be meant to be.
+  std::optional<std::string> missing_component(const std::string& column) const {
+    std::vector<std::string> missing;
+    for (const auto& set : instrument_.column_sets) {
+      if (set.size() <= instrument_.column_sets[readings_.column_set].size()) continue;
+      for (const ColumnSchema& part : set) {
+        if (std::ranges::find(name_, part.column) == name_.end()) missing.push_back(part.column);
+      }
+    }
+    const auto same_stem = std::ranges::find_if(missing, [&](const std::string& name) {
+      return lower(std::string(stem_of_key(column))) == stem_of_key(name);
+    });
+    return same_stem != missing.end() ? std::optional(*same_stem) : nearest_name(column, missing);
   }
 
   static std::string near_miss_remedy(const std::string& column, const std::string& standard,

@@ -229,6 +229,10 @@ void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const Setup
 
 void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupValues& values,
                      StandardFigures& result) {
+  if (setup.readings.channels() < 3) {
+    result.not_recognised.push_back(setup.name + ": two components of the error vectors only");
+    return;
+  }
   const std::vector<Vector3d> point_w = nominal_points_w(campaign, setup);
   std::vector<Vector3d> points, readings, model;
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {

@@ -71,7 +71,8 @@ struct InstrumentSchema {
   std::string equation;  ///< observation equation as printed in help
   std::string source;
   std::vector<KeySchema> keys;
-  /// Alternative sets of columns, preferred first; exactly one set must be present in the file.
+  /// Alternative sets of columns, preferred first. One set must be present in the file; of two that contain
+  /// each other the larger counts, of others both are an error.
   std::vector<std::vector<ColumnSchema>> column_sets;
   std::vector<KeySchema> noise_keys;
 };

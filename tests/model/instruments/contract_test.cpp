@@ -158,8 +158,8 @@ TEST_P(InstrumentContract, NuisanceBlocksAreNamedAndComplete) {
 INSTANTIATE_TEST_SUITE_P(All, InstrumentContract, ::testing::ValuesIn(all_cases()), [](const auto& tested) {
   std::string name = tested.param.instrument->schema().name;
   std::replace(name.begin(), name.end(), '-', '_');
-  return name + (tested.param.all_keys ? "_all_keys_" : "_required_keys_") + std::to_string(tested.param.choice) +
-         "_columns_" + std::to_string(tested.param.column_set);
+  return name + (tested.param.all_keys ? "_all_keys_" : "_required_keys_") +
+         std::to_string(tested.param.choice) + "_columns_" + std::to_string(tested.param.column_set);
 });
 
 TEST(InstrumentSchemas, SayWhatTheyAre) {
@@ -203,6 +203,35 @@ TEST(Straightness, ArmsOfATurnedSquareDeviateWithOppositeSigns) {
   };
   EXPECT_DOUBLE_EQ(slope_derivative(Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()), 1.0);
   EXPECT_DOUBLE_EQ(slope_derivative(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX()), -1.0);
+}
+
+// Hand-worked: turned by 10 urad about z, a point at x = 0.5 m of an artefact shifts by 5 um in y; the third
+// component is not read. Setups on one artefact turn about one point, the origin.
+TEST(VolumetricPoints, SetupsOnOneArtefactShareItsAlignment) {
+  const Machine machine;
+  std::vector<std::string> names;
+  for (const double x : {0.5, 1.5}) {
+    volcal::Setup setup;
+    setup.name = "S" + std::to_string(names.size());
+    setup.options.set("artefact", std::string("plate"));
+    setup.readings.column_set = 1;
+    setup.readings.value = {{0.0, 0.0}, {0.0, 0.0}};
+    setup.readings.source_line = {2, 3};
+    SetupContext context{setup, machine, "campaign.toml", {{x, 0.0, 0.0}, {x, 0.0, 0.2}}};
+    const auto bound = find_instrument("volumetric-points")->bind(context);
+    ASSERT_EQ(bound->channels(), 2);
+    for (const NuisanceBlock& block : bound->nuisance()) names.push_back(block.name);
+    ToolState<double> state;
+    state.point_w = {x, 0.0, 0.0};
+    const double nuisance[6] = {1e-6, 2e-6, 3e-6, 0.0, 0.0, 10e-6};
+    double predicted[kMaxChannels];
+    bound->predict(0, state, nuisance, predicted);
+    EXPECT_NEAR(predicted[0], 1e-6, 1e-15);
+    EXPECT_NEAR(predicted[1], 2e-6 + 10e-6 * x, 1e-15);
+  }
+  EXPECT_EQ(names[0], "artefact plate: alignment shift");
+  EXPECT_EQ(names[0], names[2]);
+  EXPECT_EQ(names[1], names[3]);
 }
 
 }  // namespace

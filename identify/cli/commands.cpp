@@ -1,18 +1,24 @@
-#include "volcal/identify/cli/commands.h"
-
 #include <array>
+
+#include "volcal/identify/cli/command.h"
 
 namespace volcal::cli {
 
+// One line per command, in the order of the help.
+#define VOLCAL_COMMANDS(COMMAND) \
+  COMMAND(init_command)          \
+  COMMAND(simulate_command)      \
+  COMMAND(fit_command)           \
+  COMMAND(compare_command)       \
+  COMMAND(validate_command)      \
+  COMMAND(tables_command)
+
+#define VOLCAL_DECLARE(name) const Command& name();
+#define VOLCAL_ADDRESS(name) &(name)(),
+VOLCAL_COMMANDS(VOLCAL_DECLARE)
+
 std::span<const Command* const> commands() {
-  static const auto kCommands = std::to_array<const Command*>({
-      &init_command(),
-      &simulate_command(),
-      &fit_command(),
-      &compare_command(),
-      &validate_command(),
-      &tables_command(),
-  });
+  static const auto kCommands = std::to_array<const Command*>({VOLCAL_COMMANDS(VOLCAL_ADDRESS)});
   return kCommands;
 }
 

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
-#include "volcal/identify/io/table_writer.h"
+#include "volcal/identify/io/residual_writer.h"
 #include "volcal/identify/report/comparison_report.h"
 #include "volcal/identify/solve/evaluate.h"
 

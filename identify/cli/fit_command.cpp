@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"

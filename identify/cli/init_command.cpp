@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"

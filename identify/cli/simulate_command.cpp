@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/io/study_reader.h"

@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/result_folder.h"
-#include "volcal/identify/io/table_writer.h"
-#include "volcal/identify/tables/error_tables.h"
-#include "volcal/model/description/errors.h"
+#include "volcal/identify/tables/table_format.h"
 
 namespace volcal::cli {
 namespace {
@@ -25,24 +23,34 @@ struct Arguments {
   bool json = false;
 };
 
+std::string format_help() {
+  std::string text = "table format:";
+  for (const TableFormat* format : table_formats())
+    text += fmt::format(" {} = {};", format->name, format->summary);
+  text.back() = '.';
+  return text;
+}
+
 int run(const Arguments& arguments) {
   const FitResult result = read_result(arguments.result);
-  ErrorTableOptions options;
-  options.positions = arguments.positions;
-  options.zero_plus = arguments.zero == "plus";
-  const auto table = error_table(result, options);
-  const auto grid = volumetric_grid(result, arguments.grid);
+  TableFormatOptions options;
+  options.functions.positions = arguments.positions;
+  options.functions.zero_plus = arguments.zero == "plus";
+  options.grid_per_axis = arguments.grid;
+  const auto files = find_table_format(arguments.format)->write(result, options);
   AtomicFolder folder(arguments.output);
-  folder.write("error_tables.csv", error_tables_csv(table));
-  folder.write("volumetric_grid.csv", volumetric_grid_csv(grid, result.machine));
+  std::vector<std::string> names;
+  for (const TableFile& file : files) {
+    folder.write(file.name, file.content);
+    names.push_back(file.name);
+  }
   folder.commit();
   if (arguments.json) {
     const nlohmann::ordered_json json = {
-        {"folder", arguments.output}, {"error_table_rows", table.size()}, {"grid_rows", grid.size()}};
+        {"folder", arguments.output}, {"format", arguments.format}, {"files", names}};
     fmt::print("{}\n", json.dump(2));
   } else {
-    fmt::print("{}: error_tables.csv ({} rows), volumetric_grid.csv ({} rows)\n", arguments.output,
-               table.size(), grid.size());
+    fmt::print("{}: {}\n", arguments.output, fmt::join(names, ", "));
     for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -52,7 +60,7 @@ std::function<int()> define(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
   app.add_option("-o,--output", arguments->output, "folder for the tables")->required();
-  app.add_option("-f,--format", arguments->format, "table format")->check(CLI::IsMember({"csv"}));
+  app.add_option("-f,--format", arguments->format, format_help())->check(CLI::IsMember(table_format_names()));
   app.add_option("--positions", arguments->positions,
                  "rows per function; default: round steps, 21 to 51 rows")
       ->check(CLI::Range(2, 100000));

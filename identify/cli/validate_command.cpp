@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "volcal/identify/cli/commands.h"
+#include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"

@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/residual_writer.h"
 #include "volcal/identify/io/result_json.h"
-#include "volcal/identify/io/table_writer.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/tables/table_format.h"
 
 namespace volcal {
 namespace {
@@ -25,9 +25,10 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
                          const std::map<std::string, std::string>& more) {
   AtomicFolder folder(target);
   folder.write("result.json", result_json(result));
-  folder.write("error_tables.csv", error_tables_csv(error_table(result)));
-  folder.write("volumetric_grid.csv",
-               volumetric_grid_csv(volumetric_grid(result, kGridPointsPerAxis), result.machine));
+  const TableFormatOptions options{.functions = {}, .grid_per_axis = kGridPointsPerAxis};
+  for (const TableFile& file : find_table_format("csv")->write(result, options)) {
+    folder.write(file.name, file.content);
+  }
   write_residuals_csv(folder.path("residuals.csv"), result, campaign);
   folder.write("machine.toml", machine_toml(result.machine));
   folder.write(

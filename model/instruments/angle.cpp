@@ -1,6 +1,5 @@
 #include <utility>
 
-#include "volcal/model/instruments/all_instruments.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {

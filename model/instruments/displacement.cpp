@@ -2,7 +2,6 @@
 #include <map>
 #include <utility>
 
-#include "volcal/model/instruments/all_instruments.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {

@@ -3,7 +3,6 @@
 #include <numbers>
 #include <utility>
 
-#include "volcal/model/instruments/all_instruments.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/kinematics/chain.h"
 

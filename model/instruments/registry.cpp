@@ -3,15 +3,24 @@
 #include <algorithm>
 #include <array>
 
-#include "volcal/model/instruments/all_instruments.h"
-
 namespace volcal {
 
+// One line per instrument.
+#define VOLCAL_INSTRUMENTS(INSTRUMENT) \
+  INSTRUMENT(laser_tracer)             \
+  INSTRUMENT(laser_tracker)            \
+  INSTRUMENT(ball_bar)                 \
+  INSTRUMENT(displacement)             \
+  INSTRUMENT(straightness)             \
+  INSTRUMENT(angle)                    \
+  INSTRUMENT(volumetric_points)
+
+#define VOLCAL_DECLARE(name) const Instrument& name();
+#define VOLCAL_ADDRESS(name) &(name)(),
+VOLCAL_INSTRUMENTS(VOLCAL_DECLARE)
+
 std::span<const Instrument* const> instruments() {
-  static const std::array<const Instrument*, 7> kInstruments = {
-      &laser_tracer(), &laser_tracker(), &ball_bar(),          &displacement(),
-      &straightness(), &angle(),         &volumetric_points(),
-  };
+  static const auto kInstruments = std::to_array<const Instrument*>({VOLCAL_INSTRUMENTS(VOLCAL_ADDRESS)});
   return kInstruments;
 }
 

@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "volcal/model/instruments/all_instruments.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "volcal/model/instruments/all_instruments.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {

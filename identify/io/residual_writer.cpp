@@ -1,12 +1,12 @@
-#include "volcal/identify/io/table_writer.h"
+#include "volcal/identify/io/residual_writer.h"
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <cstdio>
 #include <iterator>
 #include <memory>
 
+#include "volcal/identify/tables/csv_cell.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
@@ -15,24 +15,6 @@ namespace volcal {
 namespace {
 
 constexpr double kMicro = 1e-6;  // um or urad to SI
-
-std::string_view position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
-
-double position_factor(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }
-
-/// A name as a CSV cell.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string component_column(Component component) {
-  const char letter =
-      static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(kAllAxes[index_of(component)]))));
-  return fmt::format("e{}_{}", letter, edge_unit(component));
-}
 
 /// A text file written in pieces.
 class TextSink {
@@ -67,49 +49,6 @@ class TextSink {
 
 }  // namespace
 
-std::string error_tables_csv(const std::vector<ErrorTableRow>& rows) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "symbol,axis,position,position_unit,direction,value,unit,u,U95,extrapolated\n");
-  for (const ErrorTableRow& row : rows) {
-    fmt::format_to(out, "{},", row.symbol);
-    if (row.axis) {
-      fmt::format_to(out, "{},{:.10g},{},", letter_of(*row.axis), row.position / position_factor(*row.axis),
-                     position_unit(*row.axis));
-    } else {
-      fmt::format_to(out, ",,,");
-    }
-    fmt::format_to(out, "{},{:.9g},{},{:.6g},{:.6g},{}\n", row.direction, row.value / kMicro,
-                   row.rotation ? "urad" : "um", row.u / kMicro, row.U95 / kMicro, row.extrapolated ? 1 : 0);
-  }
-  return fmt::to_string(text);
-}
-
-std::string volumetric_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  for (const AxisName axis : kAllAxes) {
-    if (!machine.has_axis(axis)) continue;
-    const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-    fmt::format_to(out, "{}_{},", letter, position_unit(axis));
-  }
-  fmt::format_to(out, "tool");
-  for (const Component component : kAllComponents) fmt::format_to(out, ",{}", component_column(component));
-  for (const Component component : kAllComponents) fmt::format_to(out, ",u_{}", component_column(component));
-  fmt::format_to(out, ",extrapolated\n");
-  for (const VolumetricError& point : grid) {
-    for (const AxisName axis : kAllAxes) {
-      if (!machine.has_axis(axis)) continue;
-      fmt::format_to(out, "{:.10g},", point.position[index_of(axis)] / position_factor(axis));
-    }
-    fmt::format_to(out, "{}", cell(point.tool));
-    for (const double value : point.value) fmt::format_to(out, ",{:.9g}", value / kMicro);
-    for (const double u : point.u) fmt::format_to(out, ",{:.6g}", u / kMicro);
-    fmt::format_to(out, ",{}\n", point.extrapolated ? 1 : 0);
-  }
-  return fmt::to_string(text);
-}
-
 std::string residuals_csv_header() {
   return "setup,row,reading,predicted,residual_um,sigma_um,standardized,redundancy,w,flagged,column,"
          "removed\n";
@@ -131,7 +70,7 @@ void write_residuals_csv(const std::string& path, const std::vector<ResidualReco
     if (record.setup != setup_index) {
       setup_index = record.setup;
       const Setup& setup = campaign.setups.at(setup_index);
-      name = cell(setup.name);
+      name = csv_cell(setup.name);
       columns = &find_instrument(setup.instrument)->schema().column_sets.at(setup.readings.column_set);
     }
     const std::string& column = columns->at(static_cast<std::size_t>(record.channel)).column;

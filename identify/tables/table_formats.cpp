@@ -1,0 +1,32 @@
+#include <algorithm>
+#include <array>
+
+#include "volcal/identify/tables/table_format.h"
+
+namespace volcal {
+
+// One line per table format.
+#define VOLCAL_TABLE_FORMATS(FORMAT) FORMAT(csv_table_format)
+
+#define VOLCAL_DECLARE(name) const TableFormat& name();
+#define VOLCAL_ADDRESS(name) &(name)(),
+VOLCAL_TABLE_FORMATS(VOLCAL_DECLARE)
+
+std::span<const TableFormat* const> table_formats() {
+  static const auto kFormats = std::to_array<const TableFormat*>({VOLCAL_TABLE_FORMATS(VOLCAL_ADDRESS)});
+  return kFormats;
+}
+
+const TableFormat* find_table_format(std::string_view name) {
+  const auto formats = table_formats();
+  const auto found = std::ranges::find(formats, name, &TableFormat::name);
+  return found == formats.end() ? nullptr : *found;
+}
+
+std::vector<std::string> table_format_names() {
+  std::vector<std::string> names;
+  for (const TableFormat* format : table_formats()) names.emplace_back(format->name);
+  return names;
+}
+
+}  // namespace volcal

@@ -169,7 +169,7 @@ double volumetric_rms(const TruthMachine& truth, const Eigen::Vector3d& tool_off
   std::vector<Eigen::Vector3d> error;
   for (const MachineState& state : states) {
     point.push_back(truth.nominal_point(state, tool_offset));
-    error.push_back(truth.point(state, tool_offset) - point.back());
+    error.emplace_back(truth.point(state, tool_offset) - point.back());
   }
   return rms_after_alignment(point, error);
 }

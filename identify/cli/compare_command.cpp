@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,8 +11,8 @@
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
-#include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/residual_writer.h"
+#include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/comparison_report.h"
 #include "volcal/identify/solve/evaluate.h"
 
@@ -37,10 +38,8 @@ struct NamedModel {
 
 bool predicts_errors(const ModelSpec& model) {
   if (!model.locations.empty() || !model.effects.empty()) return true;
-  for (const auto& [symbol, function] : model.functions) {
-    if (!function.coefficients.empty()) return true;
-  }
-  return false;
+  return std::ranges::any_of(model.functions,
+                             [](const auto& entry) { return !entry.second.coefficients.empty(); });
 }
 
 /// A result, a model file, or the word "nominal".

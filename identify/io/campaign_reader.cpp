@@ -121,7 +121,7 @@ class CampaignReader {
     return instrument->schema();
   }
 
-  std::size_t read_tool(const TomlTable& table) {
+  std::size_t read_tool(const TomlTable& table) const {
     const Machine& machine = campaign_.machine;
     if (machine.tools.empty()) {
       table.fail("tool", "the machine " + machine.file + " has no tools",

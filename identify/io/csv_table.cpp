@@ -64,7 +64,8 @@ class Cells {
   /// False at the end of the line. `closed()` tells whether a quoted cell ended properly.
   bool advance() {
     if (done_) return false;
-    if (const auto start = rest_.find_first_not_of(' '); start != rest_.npos && rest_[start] == '"') {
+    if (const auto start = rest_.find_first_not_of(' ');
+        start != std::string_view::npos && rest_[start] == '"') {
       read_quoted(start + 1);
     } else {
       take(find_delimiter(0));
@@ -79,7 +80,7 @@ class Cells {
  private:
   std::size_t find_delimiter(std::size_t from) const {
     const std::size_t found = rest_.find(delimiter_, from);
-    return found == rest_.npos ? rest_.size() : found;
+    return found == std::string_view::npos ? rest_.size() : found;
   }
 
   void take(std::size_t stop) {

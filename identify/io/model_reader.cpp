@@ -246,6 +246,7 @@ class ModelReader {
   void fail_location(const TomlTable& table, const std::string& key,
                      const std::vector<LocationSymbol>& known) const {
     std::vector<std::string> names;
+    names.reserve(known.size());
     for (const LocationSymbol& symbol : known) names.push_back(symbol.name());
     table.fail(key, "locations." + printable(key) + " is no location error of this machine",
                std::string("with primary ") + letter_of(machine_.datum.primary) + " and secondary " +
@@ -316,7 +317,7 @@ std::string machine_difference(const Machine& a, const Machine& b) {
   }
   if (a.datum.primary != b.datum.primary || a.datum.secondary != b.datum.secondary) return "datum";
   for (std::size_t i = 0; i < a.axes.size(); ++i) {
-    if (const std::string difference = axis_difference(a.axes[i], b.axes[i]); !difference.empty())
+    if (std::string difference = axis_difference(a.axes[i], b.axes[i]); !difference.empty())
       return difference;
   }
   return "";

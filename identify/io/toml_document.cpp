@@ -133,7 +133,7 @@ void TomlTable::know(std::string_view key) const {
   if (!node_->knows(key)) node_->known.emplace_back(key);
 }
 
-const TomlNode* TomlTable::find(std::string_view key) const {
+TomlNode* TomlTable::find(std::string_view key) const {
   know(key);
   return node_->find(key);
 }
@@ -276,14 +276,14 @@ std::optional<std::vector<std::string>> TomlTable::texts(std::string_view key) c
 }
 
 std::optional<TomlTable> TomlTable::table(std::string_view key) const {
-  const TomlNode* found = find(key);
+  TomlNode* found = find(key);
   if (!found) return std::nullopt;
   if (found->kind != TomlKind::Table) fail_type(key, *found, "a table [" + name(key) + "]");
-  return TomlTable(source_, const_cast<TomlNode*>(found), name(key));
+  return TomlTable(source_, found, name(key));
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
-  const TomlNode* found = find(key);
+  TomlNode* found = find(key);
   if (!found) return {};
   if (found->kind == TomlKind::Table) {
     fail(key, name(key) + " is a single table", "write [[" + name(key) + "]] with double brackets");
@@ -291,9 +291,9 @@ std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
   if (found->kind != TomlKind::Array) fail_type(key, *found, "tables [[" + name(key) + "]]");
   std::vector<TomlTable> all;
   for (std::size_t i = 0; i < found->items.size(); ++i) {
-    const TomlNode& item = found->items[i];
+    TomlNode& item = found->items[i];
     if (item.kind != TomlKind::Table) fail_type(key, item, "tables [[" + name(key) + "]]");
-    all.emplace_back(source_, const_cast<TomlNode*>(&item), name(key) + "[" + std::to_string(i + 1) + "]");
+    all.emplace_back(source_, &item, name(key) + "[" + std::to_string(i + 1) + "]");
   }
   return all;
 }

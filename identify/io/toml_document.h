@@ -85,7 +85,7 @@ class TomlTable {
   [[noreturn]] void fail_missing(std::string_view key) const;
 
  private:
-  const detail::TomlNode* find(std::string_view key) const;
+  detail::TomlNode* find(std::string_view key) const;
   std::string name(std::string_view key) const;  ///< with the path of the table
   double finite(const detail::TomlNode& node, std::string_view key, NumberLimits limits) const;
   [[noreturn]] void fail_type(std::string_view key, const detail::TomlNode& node,

@@ -60,7 +60,12 @@ std::string syntax_remedy(const std::string& description) {
 bool TomlNode::knows(std::string_view key) const { return std::ranges::find(known, key) != known.end(); }
 
 const TomlNode* TomlNode::find(std::string_view key) const {
-  const auto found = std::ranges::find_if(entries, [&](const auto& entry) { return entry.key == key; });
+  const auto found = std::ranges::find(entries, key, &TomlEntry::key);
+  return found == entries.end() ? nullptr : &found->node;
+}
+
+TomlNode* TomlNode::find(std::string_view key) {
+  const auto found = std::ranges::find(entries, key, &TomlEntry::key);
   return found == entries.end() ? nullptr : &found->node;
 }
 

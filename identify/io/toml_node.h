@@ -27,6 +27,7 @@ struct TomlNode {
 
   bool knows(std::string_view key) const;
   const TomlNode* find(std::string_view key) const;
+  TomlNode* find(std::string_view key);
 };
 
 struct TomlEntry {

@@ -30,7 +30,7 @@ std::string array(const Range& values, double si_per_unit) {
 }
 
 std::string key_text(const std::string& key) {
-  const auto bare = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; };
+  const auto bare = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   return !key.empty() && std::ranges::all_of(key, bare) ? key : toml_text(key);
 }
 
@@ -118,7 +118,7 @@ std::string effect_toml(const EffectSpec& effect) {
 std::string edge_number(double si, double si_per_unit) {
   const double edge = si / si_per_unit;
   for (int digits = 6; digits < 17; ++digits) {
-    const std::string text = fmt::format("{:.{}g}", edge, digits);
+    std::string text = fmt::format("{:.{}g}", edge, digits);
     const double read = std::strtod(text.c_str(), nullptr) * si_per_unit;
     if (std::abs(read - si) <= std::numeric_limits<double>::epsilon() * std::abs(si)) return text;
   }

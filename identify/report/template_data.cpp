@@ -14,8 +14,10 @@ asm(".pushsection .rodata\n"
     "volcal_report_template_end:\n"
     ".byte 0\n"
     ".popsection\n");
+// NOLINTBEGIN(readability-identifier-naming): symbols of the assembler text above
 extern "C" const char volcal_report_template_begin[];
 extern "C" const char volcal_report_template_end[];
+// NOLINTEND(readability-identifier-naming)
 #endif
 
 namespace volcal::report {

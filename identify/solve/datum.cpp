@@ -107,7 +107,8 @@ std::vector<bool> DatumSpace::touched(const std::vector<int>& raw_parameters) co
   }
   for (const BlockCoordinates& block : blocks_) {
     for (int k = 0; k < block.size; ++k) {
-      if (raw[static_cast<std::size_t>(block.raw_offset + k)]) mark(block.offset, block.size);
+      if (raw[static_cast<std::size_t>(block.raw_offset) + static_cast<std::size_t>(k)])
+        mark(block.offset, block.size);
     }
   }
   return reduced;

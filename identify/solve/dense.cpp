@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+// NOLINTBEGIN(readability-identifier-naming): the names are LAPACK's
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -14,6 +15,7 @@ void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const 
 void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
             const double* a, const int* lda, const double* beta, double* c, const int* ldc);
 }
+// NOLINTEND(readability-identifier-naming)
 
 namespace volcal {
 

@@ -138,13 +138,31 @@ std::string outliers_table(const FitResult& result) {
 }
 
 std::string notes(const FitResult& result) {
-  std::string text;
+  std::string text = rank_text(result) + "\n";
   for (const std::string& message : result.messages) text += "! " + message + "\n";
   for (const std::string& held : result.rank.held_by_prior) text += "  " + held + "\n";
   return text;
 }
 
 }  // namespace
+
+std::string rank_text(const FitResult& result) {
+  const int rest = result.rank.parameters - result.rank.rank;
+  std::string text = fmt::format("Rank: the readings alone determine {} of {} parameters", result.rank.rank,
+                                 result.rank.parameters);
+  if (rest == 0) return text + ".";
+  if (std::ranges::any_of(result.functions, &FunctionSummary::smoothed)) {
+    text += fmt::format(
+        "; with automatic knots, which are finer than the data, the other {} are detail between the readings "
+        "that "
+        "the smoothing prior holds: resolution, not invisibility",
+        rest);
+    return text + (result.rank.invisible.empty() ? "." : ", except for the errors named here.");
+  }
+  if (result.rank.invisible.empty())
+    return text + fmt::format("; {} rest on priors, and no error is invisible.", rest);
+  return text + fmt::format("; {} combinations are not determined, in the errors named here.", rest);
+}
 
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result, campaign) + reference_line(result);

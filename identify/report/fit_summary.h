@@ -8,6 +8,9 @@
 
 namespace volcal {
 
+/// One sentence: how many parameters the readings alone determine, and what holds the rest.
+std::string rank_text(const FitResult& result);
+
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign);
 
 }  // namespace volcal

@@ -1,6 +1,7 @@
 /// What the readings can see: visible fraction and uncertainty of every error, correlations, rank.
 
 #include "volcal/identify/report/correlation.h"
+#include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/numbers.h"
 
 namespace volcal::report {
@@ -44,11 +45,9 @@ Json correlation_json(const FitResult& result) {
 
 Json observability_page(const PageInput& input) {
   const FitResult& result = input.result;
-  return {{"parameters", result.rank.parameters},
-          {"rank", result.rank.rank},
-          {"invisible", result.rank.invisible},
-          {"errors", error_rows(result)},
-          {"correlation", correlation_json(result)}};
+  return {{"parameters", result.rank.parameters}, {"rank", result.rank.rank},
+          {"rank_text", rank_text(result)},       {"invisible", result.rank.invisible},
+          {"errors", error_rows(result)},         {"correlation", correlation_json(result)}};
 }
 
 }  // namespace volcal::report

@@ -39,18 +39,8 @@ function heatMap(correlation) {
   ]));
 }
 
-function rankText(deficit, invisible) {
-  if (deficit === 0) return 'everything is determined by the readings.';
-  const many = deficit > 1;
-  if (invisible) return el('strong', {}, `${deficit} combination${many ? 's are' : ' is'} not determined by the readings.`);
-  return `${deficit} combination${many ? 's rest' : ' rests'} on a prior, none of which makes an error invisible.`;
-}
-
 export function renderObservability(body, data) {
-  body.append(el('p', {}, [
-    `${data.parameters} parameters after the datum, rank ${data.rank}: `,
-    rankText(data.parameters - data.rank, data.invisible.length > 0),
-  ]));
+  body.append(el('p', {}, data.rank_text));
   if (data.invisible.length > 0) {
     body.append(el('ul', { class: 'messages' }, data.invisible.map((text) => el('li', {}, text))));
   }

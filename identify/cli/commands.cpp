@@ -11,7 +11,8 @@ namespace volcal::cli {
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \
   COMMAND(validate_command)      \
-  COMMAND(tables_command)
+  COMMAND(tables_command)        \
+  COMMAND(study_command)
 
 #define VOLCAL_DECLARE(name) const Command& name();
 #define VOLCAL_ADDRESS(name) &(name)(),

@@ -265,6 +265,7 @@ class Identification {
   void update_hyperparameters() {
     EvidenceOptions evidence;
     evidence.variance_components = options_.variance_components;
+    evidence.threads = threads_;
     const EvidenceState state =
         maximise_evidence(instrument_equations(), z_, base_prior_, evidence, scale_, terms_);
     scale_ = state.scale;
@@ -329,6 +330,7 @@ class Identification {
   void finish() {
     result_.parameters = parameters_;
     result_.layout = model_.layout();
+    result_.covariance += datum_->expand_covariance(amplitude_covariance(terms_, reduced_covariance_, z_));
     result_.setups = setup_summaries(campaign_, result_.residuals, stated_sigma_);
     for (const SetupSummary& setup : result_.setups) {
       result_.chi2 += setup.chi2;
@@ -370,6 +372,7 @@ class Identification {
       for (const SmoothingTerm& term : terms_) {
         if (term.symbol != function.symbol) continue;
         summary.smoothed = true;
+        summary.prior = to_string(term.prior_shape().roughness);
         summary.correlation_length =
             term.prior_shape().length * campaign_.machine.axis(function.symbol.axis).travel();
         const auto n = term.precision().rows();

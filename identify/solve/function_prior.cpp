@@ -4,21 +4,28 @@
 #include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "volcal/identify/solve/datum.h"
 
 namespace volcal {
 namespace {
 
-constexpr std::array<double, 7> kLengths = {0.06, 0.1, 0.15, 0.22, 0.32, 0.46, 0.7};  // share of the travel
-constexpr double kStraightVariance = 1e4;  // of constant and slope, unit amplitude 1
-constexpr double kNugget = 1e-9;           // keeps the covariance of smooth shapes invertible
 constexpr int kPointsPerPiece = 4;
-constexpr int kAmplitudeSteps = 40;
+constexpr int kHighestDegree = 30;
+constexpr double kNugget = 1e-7;  // of the mean variance: keeps the covariance of smooth shapes invertible
 
-double correlation(Roughness roughness, double distance) {
-  if (roughness == Roughness::SquaredExponential) return std::exp(-0.5 * distance * distance);
-  const double s = std::sqrt(5.0) * distance;
-  return (1.0 + s + s * s / 3.0) * std::exp(-s);
+struct LengthRange {
+  double shortest;
+  double longest;
+};
+/// Chosen so that equal places in the ranges are about as smooth.
+constexpr std::array<LengthRange, kRoughnessKinds> kLengthRange = {
+    {{0.12, 1.6}, {0.05, 0.7}, {0.03, 0.7}, {0.06, 2.0}}};
+
+double length_at(Roughness roughness, int place) {
+  const LengthRange range = kLengthRange[static_cast<std::size_t>(roughness)];
+  return range.shortest *
+         std::pow(range.longest / range.shortest, static_cast<double>(place) / (kPriorLengths - 1));
 }
 
 Eigen::VectorXd collocation_points(const Basis& basis) {
@@ -26,9 +33,8 @@ Eigen::VectorXd collocation_points(const Basis& basis) {
   Eigen::VectorXd points(static_cast<Eigen::Index>(pieces.size() - 1) * kPointsPerPiece);
   Eigen::Index next = 0;
   for (std::size_t i = 0; i + 1 < pieces.size(); ++i) {
-    for (int k = 0; k < kPointsPerPiece; ++k) {
+    for (int k = 0; k < kPointsPerPiece; ++k)
       points[next++] = pieces[i] + (pieces[i + 1] - pieces[i]) * (k + 0.5) / kPointsPerPiece;
-    }
   }
   return points;
 }
@@ -40,90 +46,108 @@ Eigen::MatrixXd projection(const Basis& basis, const Eigen::VectorXd& points) {
   return (values.transpose() * values).ldlt().solve(values.transpose());
 }
 
-/// Covariance of the shape alone between the points, unit amplitude.
-Eigen::MatrixXd stationary(Roughness roughness, double length, const Eigen::VectorXd& points,
-                           const Axis& axis) {
-  Eigen::MatrixXd covariance(points.size(), points.size());
-  for (Eigen::Index i = 0; i < points.size(); ++i) {
-    for (Eigen::Index j = 0; j < points.size(); ++j) {
-      covariance(i, j) = correlation(roughness, std::abs(points[i] - points[j]) / (length * axis.travel()));
-    }
+/// Columns sqrt(2n + 1) P_n(t), n = 2, 3, ...
+Eigen::MatrixXd legendre_columns(const Eigen::ArrayXd& t) {
+  Eigen::MatrixXd columns(t.size(), kHighestDegree - 1);
+  Eigen::ArrayXd previous = Eigen::ArrayXd::Ones(t.size());
+  Eigen::ArrayXd current = t;
+  for (int n = 2; n <= kHighestDegree; ++n) {
+    const Eigen::ArrayXd next = ((2 * n - 1) * t * current - (n - 1) * previous) / n;
+    previous = current;
+    current = next;
+    columns.col(n - 2) = std::sqrt(2.0 * n + 1.0) * current;
+  }
+  return columns;
+}
+
+Eigen::MatrixXd legendre_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
+  Eigen::MatrixXd columns = legendre_columns(t);
+  for (int n = 2; n <= kHighestDegree; ++n) {
+    const double exponent = roughness == Roughness::Heat ? n * length * n * length : n * length;
+    columns.col(n - 2) *= std::exp(-exponent);
+  }
+  return columns * columns.transpose();
+}
+
+double correlation(Roughness roughness, double distance) {
+  if (roughness == Roughness::SquaredExponential) return std::exp(-0.5 * distance * distance);
+  const double s = std::sqrt(5.0) * distance;
+  return (1.0 + s + s * s / 3.0) * std::exp(-s);
+}
+
+Eigen::MatrixXd stationary_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
+  Eigen::MatrixXd covariance(t.size(), t.size());
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    for (Eigen::Index j = 0; j < t.size(); ++j)
+      covariance(i, j) = correlation(roughness, std::abs(t[i] - t[j]) / (2.0 * length));
   }
   return covariance;
 }
 
-PriorShape conditioned(Roughness roughness, double length, Eigen::MatrixXd covariance,
-                       const Eigen::VectorXd& points, const Eigen::MatrixXd& project, const Axis& axis,
-                       const Eigen::MatrixXd& datum_basis) {
-  const Eigen::VectorXd scaled = (points.array() - axis.home) / axis.travel();
-  covariance.array() += kStraightVariance;
-  covariance += kStraightVariance * scaled * scaled.transpose();
-  covariance.diagonal().array() += kNugget * kPointsPerPiece;
-  const Eigen::MatrixXd of_coefficients = project * covariance * project.transpose();
-  PriorShape shape{roughness, length, {}, {}, 0.0};
-  const Eigen::MatrixXd precision = datum_basis.transpose() * of_coefficients.ldlt().solve(datum_basis);
-  shape.precision = 0.5 * (precision + precision.transpose());
-  const Eigen::LLT<Eigen::MatrixXd> root(shape.precision);
-  shape.inverse_root = root.matrixU().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
-  shape.log_determinant = 2.0 * root.matrixLLT().diagonal().array().log().sum();
+/// Of the deviation from the least-squares line, mean variance 1.
+Eigen::MatrixXd shape_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
+  const bool is_series = roughness == Roughness::Geometric || roughness == Roughness::Heat;
+  const Eigen::MatrixXd covariance =
+      is_series ? legendre_covariance(roughness, length, t) : stationary_covariance(roughness, length, t);
+  Eigen::MatrixXd lines(t.size(), 2);
+  lines.col(0).setOnes();
+  lines.col(1) = t;
+  const Eigen::MatrixXd along = lines * (lines.transpose() * lines).ldlt().solve(lines.transpose());
+  const Eigen::MatrixXd across = Eigen::MatrixXd::Identity(t.size(), t.size()) - along;
+  const Eigen::MatrixXd deviation = across * covariance * across;
+  return deviation * (static_cast<double>(t.size()) / deviation.trace());
+}
+
+/// `contrasts`: combinations of raw coefficients that are zero for straight lines, as columns.
+PriorShape intrinsic_shape(Roughness roughness, double length, const Eigen::MatrixXd& of_coefficients,
+                           const Eigen::MatrixXd& contrasts, const Eigen::MatrixXd& datum_basis) {
+  Eigen::MatrixXd covariance = contrasts.transpose() * of_coefficients * contrasts;
+  covariance.diagonal().array() += kNugget * covariance.diagonal().mean();
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  const Eigen::MatrixXd half = root.matrixL().solve(contrasts.transpose() * datum_basis);
+  PriorShape shape{roughness, length, half.transpose() * half, 0.0, static_cast<int>(contrasts.cols())};
+  shape.log_determinant = -2.0 * root.matrixLLT().diagonal().array().log().sum();
   return shape;
 }
 
-/// One shape's evidence as a function of lambda, in the eigenbasis of Q relative to S.
-class ShapeEvidence {
- public:
-  ShapeEvidence(const PriorShape& shape, const FunctionEvidence& evidence) {
-    const Eigen::MatrixXd relative = shape.inverse_root.transpose() * evidence.precision * shape.inverse_root;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(relative);
-    precision_ = eigen.eigenvalues().cwiseMax(0.0);
-    squares_ = (eigen.eigenvectors().transpose() * (shape.inverse_root.transpose() * evidence.right_side))
-                   .array()
-                   .square();
-  }
-
-  double operator()(double lambda) const {
-    const Eigen::ArrayXd total = precision_.array() + lambda;
-    return 0.5 * ((lambda / total).log() + squares_ / total).sum();
-  }
-
- private:
-  Eigen::VectorXd precision_;
-  Eigen::ArrayXd squares_;
-};
-
 }  // namespace
+
+std::string_view to_string(Roughness roughness) {
+  switch (roughness) {
+    case Roughness::Geometric:
+      return "geometric";
+    case Roughness::Heat:
+      return "heat";
+    case Roughness::SquaredExponential:
+      return "squared exponential";
+    case Roughness::Matern52:
+      return "Matern 5/2";
+  }
+  return "";
+}
 
 std::vector<PriorShape> prior_shapes(const Basis& basis, const Axis& axis,
                                      const Eigen::MatrixXd& datum_basis) {
   const Eigen::VectorXd points = collocation_points(basis);
+  const Eigen::ArrayXd t =
+      (2.0 * points.array() - axis.travel_min - axis.travel_max) / (axis.travel_max - axis.travel_min);
   const Eigen::MatrixXd project = projection(basis, points);
+  Eigen::MatrixXd straight(2, basis.size());
+  straight.row(0) = project.rowwise().sum().transpose();
+  straight.row(1) = (project * t.matrix()).transpose();
+  const Eigen::MatrixXd contrasts = null_space(straight);
   std::vector<PriorShape> shapes;
-  for (const Roughness roughness : {Roughness::SquaredExponential, Roughness::Matern52}) {
-    for (const double length : kLengths) {
-      shapes.push_back(conditioned(roughness, length, stationary(roughness, length, points, axis), points,
-                                   project, axis, datum_basis));
+  if (contrasts.cols() == 0) return shapes;
+  for (int kind = 0; kind < kRoughnessKinds; ++kind) {
+    const auto roughness = static_cast<Roughness>(kind);
+    for (int place = 0; place < kPriorLengths; ++place) {
+      const double length = length_at(roughness, place);
+      const Eigen::MatrixXd covariance =
+          project * shape_covariance(roughness, length, t) * project.transpose();
+      shapes.push_back(intrinsic_shape(roughness, length, covariance, contrasts, datum_basis));
     }
   }
   return shapes;
-}
-
-std::vector<ShapeChoice> best_amplitudes(const std::vector<PriorShape>& shapes,
-                                         const FunctionEvidence& evidence, double smallest_amplitude,
-                                         double largest_amplitude) {
-  const double log_low = -2.0 * std::log(largest_amplitude);
-  const double log_high = -2.0 * std::log(smallest_amplitude);
-  std::vector<ShapeChoice> choices;
-  for (const PriorShape& shape : shapes) {
-    const ShapeEvidence of_lambda(shape, evidence);
-    ShapeChoice best{0.0, -std::numeric_limits<double>::infinity()};
-    for (int k = 0; k <= kAmplitudeSteps; ++k) {
-      const double lambda = std::exp(log_low + (log_high - log_low) * k / kAmplitudeSteps);
-      const double value = of_lambda(lambda);
-      if (value > best.log_evidence) best = {lambda, value};
-    }
-    choices.push_back(best);
-  }
-  return choices;
 }
 
 }  // namespace volcal

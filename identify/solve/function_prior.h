@@ -1,16 +1,19 @@
 #pragma once
 /// Gaussian-process priors for error functions with `knots = "auto"`: how an error function may look before
-/// any reading is seen. Covariance of f between positions a and b, for unit amplitude and correlation length
-/// l,
-///   k(a, b) = shape(|a - b| / l) + 10^4 (1 + (a - home)(b - home) / L^2),
-/// shape = squared exponential or Matern 5/2 (Rasmussen and Williams 2006, eq. 4.9 and 4.17), or, not
-/// stationary, a cubic spline of L / l equal pieces with independent coefficients; the second term leaves
-/// constant and straight parts nearly free. It is projected on the basis by least squares and conditioned on
-/// the datum (Z of datum.h).
+/// any reading is seen. Constant and straight parts are free; the prior is on the deviation from them
+/// (intrinsic, flat on its null space). Its covariance between two positions a, b of the travel, t in [-1,
+/// 1], is one of
+///   geometric   sum_n (2n + 1) e^(-2 n l)      P_n(t_a) P_n(t_b)   Legendre coefficients fall geometrically,
+///               as those of every analytic function do (Davis 1963, Interpolation and Approximation, 12.4);
+///   heat        sum_n (2n + 1) e^(-2 (n l)^2)  P_n(t_a) P_n(t_b)   smoother still, the heat kernel of
+///               Legendre's operator up to the linear term;
+///   squared exponential, Matern 5/2   stationary, of |a - b| / l (Rasmussen and Williams 2006,
+///   eq. 4.9, 4.17),
+/// scaled to a mean variance of 1 over the travel, projected on the basis by least squares and expressed in
+/// the coordinates of the datum (Z of datum.h).
 
 #include <Eigen/Core>
-#include <memory>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "volcal/model/description/machine.h"
@@ -18,34 +21,24 @@
 
 namespace volcal {
 
-enum class Roughness { SquaredExponential, Matern52 };
+enum class Roughness { Geometric, Heat, SquaredExponential, Matern52 };
+inline constexpr int kRoughnessKinds = 4;
+inline constexpr int kPriorLengths = 12;  ///< per kind, ascending
+
+std::string_view to_string(Roughness roughness);
 
 struct PriorShape {
-  Roughness roughness = Roughness::SquaredExponential;
-  double length = 0.0;           ///< correlation length, share of the travel
-  Eigen::MatrixXd precision;     ///< unit amplitude, reduced coordinates
-  Eigen::MatrixXd inverse_root;  ///< R^-1 with precision = R^T R
-  double log_determinant = 0.0;  ///< of `precision`
+  Roughness roughness = Roughness::Geometric;
+  /// Share of the travel: correlation length, or 1 / degree at which Legendre coefficients have fallen by e.
+  double length = 0.0;
+  Eigen::MatrixXd precision;     ///< of unit amplitude, reduced coordinates, singular for the straight part
+  double log_determinant = 0.0;  ///< of its regular part, up to a constant common to all shapes of a function
+  int rank = 0;
 };
 
-/// All shapes that evidence chooses from, for one basis and datum.
+/// All shapes that evidence chooses from, for one basis and datum: kind by kind, lengths ascending, lengths
+/// with the same index being about as smooth. Empty when the basis holds straight lines only.
 std::vector<PriorShape> prior_shapes(const Basis& basis, const Axis& axis,
                                      const Eigen::MatrixXd& datum_basis);
-
-/// What all other parameters and the readings say about one function: log likelihood -1/2 z^T Q z + h^T z.
-struct FunctionEvidence {
-  Eigen::MatrixXd precision;   ///< Q
-  Eigen::VectorXd right_side;  ///< h
-};
-
-struct ShapeChoice {
-  double lambda = 0.0;  ///< 1 / amplitude^2 of highest evidence
-  double log_evidence = 0.0;
-};
-/// Best amplitude of every shape, by the evidence
-///   log E = 1/2 log det(lambda S) - 1/2 log det(Q + lambda S) + 1/2 h^T (Q + lambda S)^-1 h.
-std::vector<ShapeChoice> best_amplitudes(const std::vector<PriorShape>& shapes,
-                                         const FunctionEvidence& evidence, double smallest_amplitude,
-                                         double largest_amplitude);
 
 }  // namespace volcal

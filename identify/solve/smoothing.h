@@ -2,13 +2,15 @@
 /// Resolution of functions with `knots = "auto"`, and variance components, both by evidence.
 ///
 /// The knots are as fine as the readings can tell apart (resolution.h); a Gaussian-process prior per function
-/// (function_prior.h) says how rough it may be. Its correlation length, kind and amplitude, and the variance
-/// components s_g^2 (sigma of instrument g is s_g times stated), maximise the marginal likelihood of all
-/// readings: exactly, everything else held, from the function's block of the posterior (a sweep over the
-/// functions; kind and length are shared by the functions of an axis); s_g^2 <- v_g^T W_g v_g / (n_g - tr(C
-/// M_g) / s_g^2), Foerstner 1979. The posterior covariance C then contains the truncation of the basis
-/// (Nychka 1988, JASA 83, 1134: such intervals cover the truth at the stated rate on average over the
-/// positions).
+/// (function_prior.h) says how rough it may be. Its kind and length, shared by the functions of an axis,
+/// which ride on one guideway; its amplitude, one per function; and the variance components s_g^2 (sigma of
+/// instrument g is s_g times stated) maximise the marginal likelihood of all readings together (restricted
+/// likelihood: nuisance parameters and straight parts integrated out). Amplitudes follow MacKay's fixed
+/// point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural Computation 4, 415, eq. 4.9);
+/// variance components Foerstner's (1979), s_g^2 <- v_g^T W_g v_g / (n_g - tr(C M_g) / s_g^2); kinds and
+/// lengths a climb in which every step is accepted by the likelihood itself. The posterior covariance C then
+/// contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such intervals cover the truth at the
+/// stated rate on average over the positions).
 
 #include <Eigen/Core>
 #include <memory>
@@ -45,13 +47,13 @@ struct InstrumentEquations {
 
 struct EvidenceOptions {
   bool variance_components = true;
-  int max_sweeps = 12;
-  double tolerance = 0.25;  ///< on the change of the logarithm of every hyperparameter that matters
+  int threads = 1;  ///< results do not depend on it
 };
 
 struct EvidenceState {
   std::vector<double> scale;  ///< s_g per instrument
-  int sweeps = 0;
+  double log_evidence = 0.0;  ///< up to a constant
+  int evaluations = 0;        ///< of the likelihood
 };
 
 /// Updates `terms` and the instrument scales. `equations` hold stated weights, `prior` everything but
@@ -59,5 +61,11 @@ struct EvidenceState {
 EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
                                 const GaussianPrior& prior, const EvidenceOptions& options,
                                 std::vector<double> scale, std::vector<SmoothingTerm>& terms);
+
+/// What not knowing the amplitudes exactly adds to the covariance of the reduced parameters z: J V J^T with J
+/// = dz / dlog lambda and V the inverse Hessian of minus log evidence (Kass and Steffey 1989, JASA 84, 717;
+/// Wood, Pya and Saefken 2016, JASA 111, 1548, eq. 7).
+Eigen::MatrixXd amplitude_covariance(const std::vector<SmoothingTerm>& terms,
+                                     const Eigen::MatrixXd& covariance, const Eigen::VectorXd& z);
 
 }  // namespace volcal

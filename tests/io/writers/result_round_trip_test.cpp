@@ -75,6 +75,7 @@ TEST(ResultJson, ReturnsEveryBit) {
   }
   ASSERT_EQ(read.functions.size(), written.functions.size());
   for (std::size_t i = 0; i < read.functions.size(); ++i) {
+    EXPECT_EQ(read.functions[i].prior, written.functions[i].prior);
     EXPECT_EQ(read.functions[i].correlation_length, written.functions[i].correlation_length);
     EXPECT_EQ(read.functions[i].measured_max, written.functions[i].measured_max);
   }

@@ -1,0 +1,135 @@
+#include "volcal/identify/cli/studies/closed_loop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+#include <thread>
+
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/tables/error_tables.h"
+#include "volcal/sim/datum.h"
+#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/study.h"
+
+namespace volcal::cli {
+namespace {
+
+sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
+  const std::vector<Machine> machines = sim::reference_machines();
+  sim::Study study;
+  study.machine = machines[static_cast<std::size_t>(campaign) % machines.size()];
+  study.seed = options.seed + static_cast<std::uint64_t>(campaign);
+  sim::Tracking tracking;
+  tracking.grid = {options.grid[0], options.grid[1], options.grid[2]};
+  study.measurements.emplace_back().settings = tracking;
+  return study;
+}
+
+double rms_of(const sim::SimulatedCampaign& simulated, const FitResult& result) {
+  return validate(simulated.validation, result, 1).figures.rms_after;
+}
+
+FitOptions one_thread() {
+  FitOptions options;
+  options.threads = 1;
+  return options;
+}
+
+double fixed_rms(const sim::SimulatedCampaign& simulated, const std::array<int, 3>& intervals) {
+  ModelSpec model;
+  for (const Axis& axis : simulated.campaign.machine.axes) {
+    for (const Component component : kAllComponents) {
+      FunctionSpec function;
+      function.knots = KnotChoice::IntervalCount;
+      function.intervals = intervals[index_of(axis.name)];
+      model.functions[{component, axis.name}] = function;
+    }
+  }
+  return rms_of(simulated, fit(simulated.campaign, model, one_thread()));
+}
+
+double truth_of(const sim::TruthInDatum& truth, const std::array<LocationSymbol, 3>& squareness,
+                const ErrorTableRow& row) {
+  if (const auto symbol = ErrorSymbol::parse(row.symbol)) return truth.value(*symbol, row.position);
+  for (std::size_t i = 0; i < squareness.size(); ++i) {
+    if (squareness[i].name() == row.symbol) return truth.squareness()[i];
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::map<std::string, double> table_coverage(const sim::SimulatedCampaign& simulated,
+                                             const FitResult& result) {
+  const sim::TruthInDatum truth(simulated.truth);
+  const auto squareness = result.machine.datum.squareness();
+  std::map<std::string, std::pair<int, int>> counts;
+  for (const ErrorTableRow& row : error_table(result)) {
+    if (row.u == 0.0 || row.extrapolated) continue;
+    auto& [inside, all] = counts[row.symbol];
+    inside += std::abs(row.value - truth_of(truth, squareness, row)) <= row.U95 ? 1 : 0;
+    ++all;
+  }
+  std::map<std::string, double> coverage;
+  for (const auto& [symbol, count] : counts)
+    coverage[symbol] = static_cast<double>(count.first) / count.second;
+  return coverage;
+}
+
+ClosedLoopCampaign run_campaign(const ClosedLoopOptions& options, int campaign) {
+  const sim::Study study = study_of(options, campaign);
+  const sim::SimulatedCampaign simulated = sim::simulate(study);
+  const FitResult result = fit(simulated.campaign, ModelSpec{}, one_thread());
+  const Validation validation = validate(simulated.validation, result, 1);
+  ClosedLoopCampaign row;
+  row.structure = study.machine.structure.code;
+  for (const Axis& axis : study.machine.axes)
+    row.longest_travel = std::max(row.longest_travel, axis.travel());
+  row.seed = study.seed;
+  row.rms_before = validation.figures.rms_before;
+  row.rms_after = validation.figures.rms_after;
+  row.reduced_chi2 = result.chi2 / result.dof;
+  row.coverage = table_coverage(simulated, result);
+  for (std::size_t i = 0; i < kFixedKnotSets.size(); ++i) {
+    row.rms_fixed[i] = options.fixed_knots ? fixed_rms(simulated, kFixedKnotSets[i])
+                                           : std::numeric_limits<double>::quiet_NaN();
+  }
+  return row;
+}
+
+}  // namespace
+
+double ClosedLoopCampaign::best_fixed() const { return *std::ranges::min_element(rms_fixed); }
+
+double ClosedLoopCampaign::mean_coverage() const {
+  const double sum = std::accumulate(coverage.begin(), coverage.end(), 0.0,
+                                     [](double total, const auto& entry) { return total + entry.second; });
+  return sum / static_cast<double>(coverage.size());
+}
+
+std::vector<ClosedLoopCampaign> closed_loop(const ClosedLoopOptions& options) {
+  std::vector<ClosedLoopCampaign> rows(static_cast<std::size_t>(options.campaigns));
+  std::atomic<int> next = 0;
+  int done = 0;
+  std::mutex reporting;
+  const auto work = [&] {
+    for (int campaign = next++; campaign < options.campaigns; campaign = next++) {
+      rows[static_cast<std::size_t>(campaign)] = run_campaign(options, campaign);
+      const std::lock_guard lock(reporting);
+      ++done;
+      if (options.progress) options.progress(done, options.campaigns);
+    }
+  };
+  const int threads = options.threads > 0
+                          ? options.threads
+                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  std::vector<std::jthread> pool;
+  for (int i = 1; i < threads; ++i) pool.emplace_back(work);
+  work();
+  pool.clear();
+  return rows;
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,19 @@
+#include "volcal/identify/cli/studies/studies.h"
+
+#include <array>
+
+namespace volcal::cli {
+
+// One line per study, in the order of the help.
+#define VOLCAL_STUDIES(STUDY) STUDY(closed_loop_study)
+
+#define VOLCAL_DECLARE(name) const Command& name();
+#define VOLCAL_ADDRESS(name) &(name)(),
+VOLCAL_STUDIES(VOLCAL_DECLARE)
+
+std::span<const Command* const> studies() {
+  static const auto kStudies = std::to_array<const Command*>({VOLCAL_STUDIES(VOLCAL_ADDRESS)});
+  return kStudies;
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,13 @@
+#pragma once
+/// Studies that count over many simulated campaigns: `volcal study NAME`. A study is one file that defines a
+/// `Command` and one line in studies.cpp.
+
+#include <span>
+
+#include "volcal/identify/cli/command.h"
+
+namespace volcal::cli {
+
+std::span<const Command* const> studies();
+
+}  // namespace volcal::cli

@@ -1,0 +1,140 @@
+/// What the program says of campaigns that cannot see every error: exit code, text, JSON, tables.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kCirclesAndDiagonals = R"(
+[[measurements]]
+kind = "ball-bar-circles"
+tool = "short"
+points_per_turn = 60
+noise = { constant_um = 0.3, repeatability_um = 0.5 }
+[[measurements]]
+kind = "diagonals"
+diagonals = "body"
+tool = "short"
+points = 21
+noise = { constant_um = 0.25, per_metre_um = 0.3, repeatability_um = 0.5 }
+)";
+
+const std::string kOneTracerSetup = R"(
+[[measurements]]
+kind = "laser-tracer"
+grid = [6, 5, 4]
+noise = { constant_um = 0.25, per_metre_um = 0.3, repeatability_um = 0.6 }
+stations = [{ name = "P1", position_mm = [-700.0, -500.0, -600.0] }]
+runs = [{ station = "P1", tool = "short" }]
+)";
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::string, std::string>> {
+ protected:
+  int volcal(const std::string& arguments) {
+    const std::string command = std::string(VOLCAL_PROGRAM) + " " + arguments + " >" + path("output") +
+                                " 2>" + path("errors") + " </dev/null";
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
+  std::string output() const { return content(path("output")); }
+
+  /// The demo's machine with reference points at the origin: no tilt has a lever arm but the tool.
+  void write_machine() const {
+    std::ifstream demo(std::string(VOLCAL_SOURCE_DIR) + "/datasets/demo/machine.toml");
+    std::ofstream machine(path("machine.toml"));
+    for (std::string line; std::getline(demo, line);) {
+      if (!line.starts_with("reference_point_mm")) machine << line << "\n";
+    }
+  }
+
+  void simulate(const std::string& measurements) {
+    write_machine();
+    std::ofstream(path("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = 5\n"
+                                      << measurements;
+    std::ofstream(path("model.toml"))
+        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
+           "[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 1 }\n";
+    ASSERT_EQ(volcal("simulate " + path("study.toml") + " -o " + path("c")), 0) << content(path("errors"));
+  }
+  std::string fit_arguments() const {
+    return "fit " + path("c/campaign.toml") + " --model " + path("model.toml") + " -o " + path("r");
+  }
+
+ private:
+  ::volcal::testing::ScratchFolder scratch_;
+};
+
+TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
+  simulate(GetParam().second);
+  ASSERT_EQ(volcal(fit_arguments()), 1);
+  const std::string text = output();
+  EXPECT_THAT(text, HasSubstr("status rank_deficient"));
+  EXPECT_THAT(text,
+              HasSubstr("! ECZ: not visible, every tool offset lies on Z; add setups with a tool offset "
+                        "sideways to Z (100 mm or more)"));
+  EXPECT_THAT(text, ContainsRegex("! EBZ: not visible, a change of it can be exchanged with .*EXZ"));
+  EXPECT_THAT(text, ContainsRegex("Rank: the readings alone determine [0-9]+ of [0-9]+ parameters; [0-9]+ "
+                                  "combinations are not determined"));
+  EXPECT_THAT(text, ContainsRegex("EBZ +urad +- +- .*NOT VISIBLE"));
+  EXPECT_THAT(text, ContainsRegex("EZZ +um +-?[0-9.]+ +-?[0-9.]+ "));
+  EXPECT_THAT(text, Not(ContainsRegex("EZZ [^\n]*NOT VISIBLE")));
+  EXPECT_THAT(content(path("r/error_tables.csv")), ContainsRegex("EZZ,Z,-450,mm,0,-?[0-9.]+,um,"));
+}
+
+TEST_P(PartialCampaignProgram, SaysTheSameInJson) {
+  simulate(GetParam().second);
+  ASSERT_EQ(volcal(fit_arguments() + " --json"), 1);
+  const auto json = nlohmann::json::parse(output());
+  EXPECT_EQ(json.at("status"), "rank_deficient");
+  const auto& rank = json.at("rank");
+  EXPECT_LT(rank.at("rank").get<int>(), rank.at("parameters").get<int>());
+  std::size_t invisible = 0;
+  for (const auto& error : rank.at("errors")) {
+    if (error.at("visible").get<bool>()) continue;
+    ++invisible;
+    EXPECT_NE(error.at("reason"), "") << error.dump();
+    EXPECT_NE(error.at("remedy"), "") << error.dump();
+  }
+  EXPECT_EQ(rank.at("invisible").size(), invisible);
+  EXPECT_GT(invisible, 5U);
+  EXPECT_LT(invisible, 21U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, PartialCampaignProgram,
+                         ::testing::Values(std::pair("BallBarAndDiagonals", kCirclesAndDiagonals),
+                                           std::pair("OneTracerSetup", kOneTracerSetup)),
+                         [](const auto& tested) { return tested.param.first; });
+
+TEST(TablesProgram, NamesTheFormatsWhenItDoesNotKnowOne) {
+  const ::volcal::testing::ScratchFolder scratch;
+  const std::string errors = (scratch.path() / "errors").string();
+  const int status =
+      std::system((std::string(VOLCAL_PROGRAM) + " tables r -o t --format ? >/dev/null 2>" + errors).c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_THAT(content(errors), HasSubstr("csv"));
+}
+
+}  // namespace
+}  // namespace volcal

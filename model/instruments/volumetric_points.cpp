@@ -45,8 +45,8 @@ class VolumetricPointsSetup final : public EquationBase<VolumetricPointsSetup> {
       : nominal_point_w_(std::move(context.nominal_point_w)) {
     const Options& options = context.setup.options;
     for (const ColumnSchema& column : kSchema.column_sets[context.setup.readings.column_set]) {
-      const auto found = std::ranges::find(kComponentColumns, column.column);
-      component_.push_back(static_cast<int>(found - kComponentColumns.begin()));
+      const auto place = std::ranges::find(kComponentColumns, column.column) - kComponentColumns.begin();
+      component_.push_back(static_cast<int>(place));
     }
     set_channels(static_cast<int>(component_.size()));
     for (const Eigen::Vector3d& point : nominal_point_w_) centroid_w_ += point;

@@ -36,8 +36,8 @@ class StraightnessSetup final : public EquationBase<StraightnessSetup> {
     slope_sign_ = reference_sign();
     add_nuisance(scalar_nuisance(setup.name + ": offset", setup.readings.value[0].front()));
     const auto reference = setup.options.text("reference");
-    add_nuisance(scalar_nuisance(
-        reference ? "reference " + *reference + ": slope" : setup.name + ": slope", 0.0, 0.0, true));
+    add_nuisance(scalar_nuisance(reference ? "reference " + *reference + ": slope" : setup.name + ": slope",
+                                 0.0, 0.0, true));
   }
 
   template <class T>

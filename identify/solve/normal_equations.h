@@ -39,9 +39,8 @@ class ReadingIndex {
   std::size_t first_observation(std::size_t setup, std::size_t row) const {
     return first_[setup] + row * static_cast<std::size_t>(model_.bound(setup).channels());
   }
-  /// Readings sorted by knot cell, then setup; `cell_ends[i]` is one past the last reading of batch i.
+  /// Readings sorted by knot cell, then setup.
   const std::vector<Reading>& sorted() const { return sorted_; }
-  const std::vector<std::uint32_t>& batch_ends() const { return batch_ends_; }
   const MeasurementModel& model() const { return model_; }
 
  private:
@@ -49,7 +48,6 @@ class ReadingIndex {
   std::vector<std::size_t> first_;
   std::size_t observations_ = 0;
   std::vector<Reading> sorted_;
-  std::vector<std::uint32_t> batch_ends_;
 };
 
 class NormalAccumulator {
@@ -61,10 +59,10 @@ class NormalAccumulator {
   /// All readings, or only those of setups for which `include[setup]`.
   NormalEquations accumulate(const Eigen::VectorXd& parameters,
                              const std::vector<bool>* include = nullptr) const;
-  double cost(const Eigen::VectorXd& parameters) const;
 
  private:
-  struct Chunk;
+  NormalEquations accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
+                                   const std::vector<bool>* include) const;
   template <class Work>
   void for_each_chunk(const Work& work) const;
 
@@ -72,7 +70,7 @@ class NormalAccumulator {
   const std::vector<double>& weight_;
   const ceres::LossFunction* loss_;
   int threads_;
-  std::vector<std::size_t> chunk_ends_;  ///< batch index one past the end of each chunk
+  std::vector<std::size_t> chunk_ends_;  ///< reading one past the end of each chunk
 };
 
 }  // namespace volcal

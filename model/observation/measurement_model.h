@@ -4,50 +4,35 @@
 /// remainder held fixed at a given parameter vector.
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
-#include "volcal/model/effects/effect.h"
 #include "volcal/model/instruments/instrument.h"
 #include "volcal/model/kinematics/chain.h"
+#include "volcal/model/observation/campaign_binding.h"
 #include "volcal/model/observation/parameters.h"
+#include "volcal/model/observation/row_jacobian.h"
 
 namespace volcal {
 
-inline constexpr int kMaxGroups = 36;
-inline constexpr int kMaxSupport = 64;
-
-/// Derivatives of one row (all channels of one reading). Function part: coefficient j of slot s in group g
-/// has derivative basis_value[g][j - start] * weight[channel][g-th group's first weight + s].
-struct RowJacobian {
-  int channels = 0;
-  double predicted[kMaxChannels];
-  std::vector<int> start;                        ///< per group: first active basis function
-  std::vector<double> basis_value;               ///< concatenated supports of the groups
-  std::vector<double> weight[kMaxChannels];      ///< concatenated slots of the groups
-  std::vector<int> tail_index;                   ///< parameters outside the functions
-  std::vector<double> tail_value[kMaxChannels];  ///< their derivatives
-};
-
-/// Raw parameters that a row depends on, and its derivatives as a dense vector over all parameters.
-std::vector<int> touched_parameters(const ParameterLayout& layout, const RowJacobian& row);
-Eigen::VectorXd dense_row(const ParameterLayout& layout, const RowJacobian& row, int channel);
+/// Location errors and amplitudes of effects that a model can have; more are refused.
+inline constexpr std::size_t kMaxSharedTerms = 256;
 
 class MeasurementModel {
  public:
   /// `spec` must be resolved: every function that uses knots has breakpoints. Throws InputError.
   MeasurementModel(const Campaign& campaign, const ModelSpec& spec);
-  ~MeasurementModel();
   MeasurementModel(const MeasurementModel&) = delete;
   MeasurementModel& operator=(const MeasurementModel&) = delete;
 
   const Campaign& campaign() const { return campaign_; }
   const ModelSpec& spec() const { return spec_; }
   const KinematicChain& chain() const { return chain_; }
-  const ParameterLayout& layout() const { return layout_; }
-  const BoundSetup& bound(std::size_t setup) const { return *bound_[setup]; }
+  const ParameterLayout& layout() const { return binding_.layout; }
+  const BoundSetup& bound(std::size_t setup) const { return *binding_.setups[setup].bound; }
+  /// Number of parameters besides the functions' that every row depends on; they lead its tail.
+  int shared_tail_size() const { return static_cast<int>(binding_.shared_terms.size()); }
 
   /// Parameters to start from: guesses, and the model file's coefficients where it has them.
   Eigen::VectorXd initial_parameters() const;
@@ -70,21 +55,25 @@ class MeasurementModel {
   PoseErrors<double> errors_at(const AxisPosition& position, const Eigen::VectorXd& parameters) const;
 
  private:
-  struct EffectPlace;
-  struct SetupPlace;
+  struct RowState;
 
-  AxisPosition position(const Readings& readings, std::size_t row) const;
-  void build_layout();
-  void add_block(ParameterBlock block);
+  PoseErrors<double> errors_at_reading(std::size_t setup, std::size_t row, const AxisPosition& position,
+                                       const Eigen::VectorXd& parameters) const;
+  void add_functions(const Eigen::VectorXd& parameters, RowState& state, RowJacobian& out) const;
+  void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                 RowState& state) const;
+  void move_tool(RowState& state) const;
+  void resize(int channels, int own_tail, RowJacobian& out) const;
+  void fill_channel(const SetupBinding& place, const RowState& state, const Linearization& reading,
+                    int channel, RowJacobian& out) const;
 
   const Campaign& campaign_;
   ModelSpec spec_;
   KinematicChain chain_;
-  ParameterLayout layout_;
-  std::vector<std::unique_ptr<BoundSetup>> bound_;
-  std::vector<std::unique_ptr<BoundEffect>> effects_;
-  std::vector<EffectPlace> effect_places_;
-  std::vector<SetupPlace> setup_places_;
+  CampaignBinding binding_;
+  std::vector<bool> joint_turns_;  ///< whether the joint's stator frame turns with rotary axes
+  std::size_t value_count_ = 0;    ///< basis values of a row
+  std::size_t slot_count_ = 0;     ///< functions
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 

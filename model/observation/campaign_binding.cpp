@@ -1,0 +1,322 @@
+#include "volcal/model/observation/campaign_binding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
+#include "volcal/model/instruments/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kDisagreeingPriors = 5.0;  // in standard uncertainties of the difference
+
+ParameterBlock scalar_block(ParameterKind kind, std::string name, std::string unit, double si_per_unit) {
+  ParameterBlock block;
+  block.kind = kind;
+  block.name = std::move(name);
+  block.labels = {""};
+  block.units = {std::move(unit)};
+  block.si_per_unit = {si_per_unit};
+  block.guess = Eigen::VectorXd::Zero(1);
+  block.prior_mean = Eigen::VectorXd::Zero(1);
+  block.prior_sigma = Eigen::VectorXd::Zero(1);
+  return block;
+}
+
+ParameterBlock effect_block(const EffectAmplitude& amplitude) {
+  ParameterBlock block =
+      scalar_block(ParameterKind::Effect, amplitude.label, amplitude.unit, amplitude.si_per_unit);
+  block.guess[0] = amplitude.guess;
+  block.prior_mean[0] = amplitude.prior_mean;
+  block.prior_sigma[0] = amplitude.prior_sigma;
+  return block;
+}
+
+ParameterBlock tool_block(const Tool& tool) {
+  ParameterBlock block;
+  block.kind = ParameterKind::ToolOffset;
+  block.name = "tool " + tool.name;
+  block.labels = {"x", "y", "z"};
+  block.units = {"um", "um", "um"};
+  block.si_per_unit = {1e-6, 1e-6, 1e-6};
+  block.guess = block.prior_mean = Eigen::VectorXd::Zero(3);
+  block.prior_sigma = Eigen::VectorXd::Constant(3, tool.offset_sigma);
+  return block;
+}
+
+/// Printed in mm (places), urad (angles) or ppm (scales).
+ParameterBlock nuisance_block(const NuisanceBlock& nuisance) {
+  ParameterBlock block;
+  block.kind = ParameterKind::Nuisance;
+  block.name = nuisance.name;
+  block.labels = nuisance.labels;
+  block.guess = nuisance.guess;
+  block.prior_mean = nuisance.prior_mean;
+  block.prior_sigma = nuisance.prior_sigma;
+  block.weak_default_prior = nuisance.weak_default_prior;
+  const bool is_scale = block.name.starts_with("length scale");
+  for (int k = 0; k < nuisance.size(); ++k) {
+    const bool angle = nuisance.is_angle[static_cast<std::size_t>(k)];
+    block.units.push_back(is_scale ? "ppm" : angle ? "urad" : "mm");
+    block.si_per_unit.push_back(angle ? 1e-6 : 1e-3);
+  }
+  return block;
+}
+
+/// Joins a setup's nuisance block to an existing one of the same name: guesses averaged, priors multiplied.
+/// `merged` setups have joined so far.
+void merge_nuisance(ParameterBlock& block, const NuisanceBlock& other, int merged, const SourcePlace& place) {
+  for (int k = 0; k < block.size(); ++k) {
+    double& sigma = block.prior_sigma[k];
+    const double other_sigma = other.prior_sigma[k];
+    if (sigma > 0.0 && other_sigma > 0.0) {
+      const double apart =
+          std::abs(block.prior_mean[k] - other.prior_mean[k]) / std::hypot(sigma, other_sigma);
+      if (apart > kDisagreeingPriors) {
+        throw InputError(place,
+                         block.name + ": the setups that share it state priors " + std::to_string(apart) +
+                             " standard uncertainties apart",
+                         "correct the positions or their sigma, or give the stations different names");
+      }
+      if (block.name.starts_with("length scale"))
+        continue;  // one and the same statement, made in every setup
+      const double weight = 1.0 / (sigma * sigma), other_weight = 1.0 / (other_sigma * other_sigma);
+      block.prior_mean[k] =
+          (weight * block.prior_mean[k] + other_weight * other.prior_mean[k]) / (weight + other_weight);
+      sigma = 1.0 / std::sqrt(weight + other_weight);
+      block.guess[k] = block.prior_mean[k];
+    } else if (other_sigma > 0.0) {
+      block.prior_mean[k] = block.guess[k] = other.prior_mean[k];
+      sigma = other_sigma;
+    } else if (sigma == 0.0) {
+      block.guess[k] = (block.guess[k] * merged + other.guess[k]) / (merged + 1);
+      block.prior_mean[k] = block.guess[k];
+    }
+  }
+}
+
+class CampaignBinder {
+ public:
+  CampaignBinder(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain)
+      : campaign_(campaign), machine_(campaign.machine), spec_(spec), chain_(chain) {}
+
+  CampaignBinding bind() {
+    add_function_groups();
+    for (const LocationSymbol& symbol : active_locations()) add_location(symbol);
+    for (const EffectSpec& effect : spec_.effects) add_effect(effect);
+    for (const Axis& axis : machine_.axes) add_expansion(axis);
+    for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
+    for (const Setup& setup : campaign_.setups) add_setup(setup);
+    return std::move(binding_);
+  }
+
+ private:
+  ParameterLayout& layout() { return binding_.layout; }
+
+  /// Offset of the new block.
+  int add_block(ParameterBlock block) {
+    block.offset = layout().size;
+    layout().size += block.size();
+    layout().blocks.push_back(std::move(block));
+    return layout().blocks.back().offset;
+  }
+
+  int joint_of(AxisName axis) const {
+    const auto& joints = machine_.structure.joints;
+    const auto found = std::ranges::find(joints, axis, &Joint::axis);
+    if (found == joints.end()) throw std::logic_error("axis is not a joint of the chain");
+    return static_cast<int>(found - joints.begin());
+  }
+
+  MotionTerm motion_term(ErrorSymbol symbol, int parameter) const {
+    return {joint_of(symbol.axis), static_cast<int>(index_of(symbol.component)), parameter};
+  }
+
+  /// Groups the functions of an axis that have the same basis.
+  void add_function_groups() {
+    using Key = std::tuple<std::string, int, std::vector<double>>;
+    for (const Axis& axis : machine_.axes) {
+      std::map<Key, std::size_t> group_of;
+      for (const Component component : kAllComponents) {
+        const ErrorSymbol symbol{component, axis.name};
+        if (is_rotary(axis.name) && !spec_.functions.contains(symbol)) continue;
+        const FunctionSpec& function = spec_.function(symbol);
+        const BasisKind* kind = find_basis(function.basis);
+        if (kind == nullptr) throw std::invalid_argument("unknown basis " + function.basis);
+        std::shared_ptr<const Basis> basis = kind->make(function, axis);
+        if (basis->size() == 0) continue;
+        const auto [place, is_new] = group_of.try_emplace(
+            {function.basis, function.degree, function.breakpoints}, layout().groups.size());
+        if (is_new) {
+          layout().groups.push_back({axis.name, std::move(basis), {}, 0});
+          binding_.groups.push_back({axis.name, joint_of(axis.name), {}});
+        }
+        layout().groups[place->second].symbols.push_back(symbol);
+        binding_.groups[place->second].component.push_back(static_cast<int>(index_of(component)));
+      }
+    }
+    for (FunctionGroup& group : layout().groups) {
+      group.offset = layout().size;
+      layout().size += group.size();
+    }
+    layout().function_size = layout().size;
+  }
+
+  std::vector<LocationSymbol> active_locations() const {
+    std::vector<LocationSymbol> active;
+    for (const LocationSymbol& symbol : machine_.datum.squareness()) {
+      const bool off = std::ranges::find(spec_.locations_off, symbol) != spec_.locations_off.end();
+      if (!off && machine_.has_axis(symbol.axis)) active.push_back(symbol);
+    }
+    for (const auto& [symbol, value] : spec_.locations) {
+      if (is_rotary(symbol.axis) && machine_.has_axis(symbol.axis)) active.push_back(symbol);
+    }
+    return active;
+  }
+
+  void add_location(LocationSymbol symbol) {
+    const bool angle = is_rotation(symbol.component);
+    ParameterBlock block = scalar_block(ParameterKind::Location, symbol.name(), angle ? "urad" : "um", 1e-6);
+    block.location = symbol;
+    const int parameter = add_block(std::move(block));
+
+    // Which motion it is, and its sign: what it does to a lever without arm, at position 1.
+    const int joint = joint_of(symbol.axis);
+    JointLever lever;
+    lever.axis = symbol.axis;
+    lever.workpiece_side = machine_.structure.joints[static_cast<std::size_t>(joint)].workpiece_side;
+    lever.position = 1.0;
+    Eigen::Matrix<double, 6, 1> motion;
+    motion << KinematicChain::location_lever_w(lever, symbol.component),
+        KinematicChain::location_rotation_w(lever, symbol.component);
+    int component = 0;
+    motion.cwiseAbs().maxCoeff(&component);
+    const MotionTerm term{joint, component, parameter};
+    binding_.locations.push_back({term, symbol.axis, motion[component], !is_rotary(symbol.axis)});
+    binding_.shared_terms.push_back(term);
+  }
+
+  void add_effect(const EffectSpec& effect) {
+    const SourcePlace place{spec_.file, effect.source_line};
+    const EffectKind* kind = find_effect(effect.kind);
+    if (kind == nullptr) throw InputError(place, "unknown effect \"" + effect.kind + "\"", "");
+    EffectBinding binding;
+    binding.effect = kind->bind(effect, spec_.file, machine_);
+    for (const EffectAmplitude& amplitude : binding.effect->amplitudes()) {
+      if (layout().find_block(amplitude.label) != nullptr) {
+        throw InputError(place, "effect \"" + amplitude.label + "\" is given twice", "delete one of the two");
+      }
+      binding.terms.push_back(motion_term(amplitude.target, add_block(effect_block(amplitude))));
+      binding_.shared_terms.push_back(binding.terms.back());
+    }
+    binding_.effects.push_back(std::move(binding));
+  }
+
+  void add_expansion(const Axis& axis) {
+    if (!axis.expansion) return;
+    int parameter = -1;
+    if (axis.expansion->per_kelvin_sigma > 0.0) {
+      ParameterBlock block = scalar_block(ParameterKind::Expansion,
+                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", 1e-6);
+      block.prior_sigma[0] = axis.expansion->per_kelvin_sigma;
+      parameter = add_block(std::move(block));
+    }
+    ExpansionBinding expansion;
+    expansion.term = motion_term({kAllComponents[index_of(axis.name)], axis.name}, parameter);
+    expansion.axis = axis.name;
+    expansion.per_kelvin = axis.expansion->per_kelvin;
+    expansions_.push_back(expansion);
+    if (parameter >= 0) binding_.shared_terms.push_back(expansion.term);
+  }
+
+  void add_tool(std::size_t tool) {
+    if (machine_.tools[tool].offset_sigma == 0.0 || tool_parameter_.contains(tool)) return;
+    tool_parameter_[tool] = add_block(tool_block(machine_.tools[tool]));
+  }
+
+  void add_setup(const Setup& setup) {
+    SetupBinding binding;
+    binding.tool_offset = machine_.tools[setup.tool].offset;
+    const auto tool = tool_parameter_.find(setup.tool);
+    if (tool != tool_parameter_.end()) binding.tool_error = tool->second;
+    for (ExpansionBinding expansion : expansions_) {
+      expansion.temperature_degC = &temperature_of(setup, machine_.axis(expansion.axis));
+      binding.expansions.push_back(expansion);
+    }
+    binding.bound = bind_instrument(setup, binding.tool_offset);
+    for (const NuisanceBlock& nuisance : binding.bound->nuisance()) {
+      const ParameterBlock& block = add_nuisance(nuisance, setup);
+      for (int k = 0; k < block.size(); ++k) binding.nuisance.push_back(block.offset + k);
+    }
+    binding_.setups.push_back(std::move(binding));
+  }
+
+  static const std::vector<double>& temperature_of(const Setup& setup, const Axis& axis) {
+    const auto channel = setup.readings.temperature.find(axis.expansion->channel);
+    if (channel != setup.readings.temperature.end()) return channel->second;
+    throw InputError({setup.data, 1},
+                     "column T_" + axis.expansion->channel + "_degC is missing, but the expansion of axis " +
+                         letter_of(axis.name) + " needs it",
+                     "add the column or delete the axis's temperature from the machine file");
+  }
+
+  std::unique_ptr<BoundSetup> bind_instrument(const Setup& setup, const Eigen::Vector3d& tool_offset) const {
+    const Instrument* instrument = find_instrument(setup.instrument);
+    if (instrument == nullptr) {
+      throw InputError({campaign_.file, setup.source_line}, "unknown instrument \"" + setup.instrument + "\"",
+                       "");
+    }
+    SetupContext context{setup, machine_, campaign_.file, {}};
+    context.nominal_point_w.reserve(setup.readings.size());
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      context.nominal_point_w.push_back(
+          chain_.nominal_point_w(commanded_position(machine_, setup.readings, row), tool_offset));
+    }
+    return instrument->bind(std::move(context));
+  }
+
+  /// The block of this name, new or merged into.
+  const ParameterBlock& add_nuisance(const NuisanceBlock& nuisance, const Setup& setup) {
+    const auto [place, is_new] = nuisance_place_.try_emplace(nuisance.name, layout().blocks.size(), 1);
+    auto& [index, merged] = place->second;
+    if (is_new) {
+      add_block(nuisance_block(nuisance));
+    } else {
+      merge_nuisance(layout().blocks[index], nuisance, merged++, {campaign_.file, setup.source_line});
+    }
+    return layout().blocks[index];
+  }
+
+  const Campaign& campaign_;
+  const Machine& machine_;
+  const ModelSpec& spec_;
+  const KinematicChain& chain_;
+  CampaignBinding binding_;
+  std::vector<ExpansionBinding> expansions_;
+  std::map<std::size_t, int> tool_parameter_;
+  std::map<std::string, std::pair<std::size_t, int>>
+      nuisance_place_;  ///< name -> index of the block, number of setups merged into it
+};
+
+}  // namespace
+
+CampaignBinding bind_campaign(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain) {
+  return CampaignBinder(campaign, spec, chain).bind();
+}
+
+AxisPosition commanded_position(const Machine& machine, const Readings& readings, std::size_t row) {
+  AxisPosition position{};
+  for (const Axis& axis : machine.axes) {
+    position[index_of(axis.name)] = readings.position[index_of(axis.name)][row];
+  }
+  return position;
+}
+
+}  // namespace volcal

@@ -1,0 +1,88 @@
+#pragma once
+/// A model bound to a campaign: the layout of the parameter vector, and where every setup, effect and error
+/// finds its parameters. Built once; afterwards plain data.
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "volcal/model/description/campaign.h"
+#include "volcal/model/description/model_spec.h"
+#include "volcal/model/effects/effect.h"
+#include "volcal/model/instruments/instrument.h"
+#include "volcal/model/kinematics/chain.h"
+#include "volcal/model/observation/parameters.h"
+
+namespace volcal {
+
+inline constexpr double kReferenceTemperature_degC = 20.0;
+
+/// A parameter that acts as an error motion: parameter x driver is added to one component of a joint.
+struct MotionTerm {
+  int joint = 0;      ///< workpiece to tool
+  int component = 0;  ///< 0..5: EX EY EZ EA EB EC
+  int parameter = -1;
+};
+
+/// A function group's joint, and the component of each of its slots.
+struct GroupBinding {
+  AxisName axis = AxisName::X;
+  int joint = 0;
+  std::vector<int> component;
+};
+
+/// A location error as error motion; its driver is the sign, times the axis position for squareness.
+struct LocationBinding {
+  MotionTerm term;
+  AxisName axis = AxisName::X;
+  double sign = 1.0;
+  bool times_position = false;
+};
+
+struct EffectBinding {
+  std::unique_ptr<BoundEffect> effect;
+  std::vector<MotionTerm> terms;  ///< one per amplitude
+};
+
+/// Thermal expansion of a scale; `term.parameter` corrects the coefficient, -1 = exact.
+struct ExpansionBinding {
+  MotionTerm term;
+  AxisName axis = AxisName::X;
+  double per_kelvin = 0.0;  ///< 1/K
+  const std::vector<double>* temperature_degC = nullptr;
+
+  double coefficient(const Eigen::VectorXd& parameters) const {
+    return term.parameter < 0 ? per_kelvin : per_kelvin + parameters[term.parameter];
+  }
+  /// Position times the excess over the reference temperature, m K.
+  double warmed(std::size_t row, const AxisPosition& position) const {
+    return ((*temperature_degC)[row] - kReferenceTemperature_degC) * position[index_of(axis)];
+  }
+};
+
+struct SetupBinding {
+  std::unique_ptr<BoundSetup> bound;
+  std::vector<int> nuisance;  ///< global index of every parameter of the setup's concatenated blocks
+  int tool_error = -1;        ///< global index of the tool's offset error, -1 = exact
+  Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();
+  std::vector<ExpansionBinding> expansions;
+};
+
+struct CampaignBinding {
+  ParameterLayout layout;
+  std::vector<GroupBinding> groups;
+  std::vector<LocationBinding> locations;
+  std::vector<EffectBinding> effects;
+  std::vector<SetupBinding> setups;
+  /// Terms of every reading, whatever its setup: locations, effects, uncertain expansions.
+  std::vector<MotionTerm> shared_terms;
+};
+
+/// `spec` must be resolved: every function that uses knots has breakpoints. Throws InputError. The campaign
+/// must outlive the binding.
+CampaignBinding bind_campaign(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain);
+
+/// Commanded position of a reading.
+AxisPosition commanded_position(const Machine& machine, const Readings& readings, std::size_t row);
+
+}  // namespace volcal

@@ -265,7 +265,6 @@ class Identification {
   void update_hyperparameters() {
     EvidenceOptions evidence;
     evidence.variance_components = options_.variance_components;
-    evidence.threads = threads_;
     const EvidenceState state =
         maximise_evidence(instrument_equations(), z_, base_prior_, evidence, scale_, terms_);
     scale_ = state.scale;

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -20,12 +19,11 @@ constexpr double kMinimumRedundancy = 5.0;  // fewer excess readings say nothing
 constexpr double kSpreadOfLogLambda = 3.0;  // before any reading
 constexpr int kStartPlace = 6;
 constexpr int kSettlingSteps = 30;
-constexpr int kStepsPerCandidate = 2;
-constexpr int kClimbs = 24;
-constexpr int kKindRounds = 3;
-constexpr double kSettled = 0.02;     // of log evidence in one step
-constexpr double kWorthAStep = 0.02;  // of log evidence, to change a length
-constexpr double kWorthAKind = 0.5;   // of log evidence, to change the kind
+constexpr int kAmplitudeSteps = 4;
+constexpr int kSweeps = 10;
+constexpr double kSettled = 0.02;       // of log evidence in one step
+constexpr double kWorthALength = 0.02;  // of log evidence, to change a length
+constexpr double kWorthAKind = 0.5;     // of log evidence, to change the kind
 
 /// What the evidence decides.
 struct Hyperparameters {
@@ -34,15 +32,155 @@ struct Hyperparameters {
   std::vector<double> scale;       ///< per instrument
 };
 
+/// Posterior of all parameters, or of some with the others integrated out.
 struct Posterior {
   Eigen::MatrixXd covariance;
   Eigen::VectorXd mean;
   double log_evidence = 0.0;
 };
 
-struct Candidate {
-  Hyperparameters hyperparameters;
-  Posterior posterior;
+/// A quadratic cost about z0 whose smoothing is still missing.
+struct Quadratic {
+  Eigen::MatrixXd precision;
+  Eigen::VectorXd gradient;
+  double constant = 0.0;
+};
+
+/// A function within a Quadratic's coordinates.
+struct Stretch {
+  const SmoothingTerm* term;
+  int offset;
+};
+
+Posterior posterior(const Quadratic& cost, const Eigen::VectorXd& z0, const std::vector<Stretch>& stretches,
+                    const std::vector<std::size_t>& shapes, const std::vector<double>& lambda) {
+  Eigen::MatrixXd precision = cost.precision;
+  Eigen::VectorXd gradient = cost.gradient;
+  double minus_log = cost.constant;
+  for (std::size_t t = 0; t < stretches.size(); ++t) {
+    const PriorShape& shape = (*stretches[t].term->shapes)[shapes[t]];
+    const Eigen::Index n = shape.precision.rows();
+    const auto z = z0.segment(stretches[t].offset, n);
+    const Eigen::VectorXd pull = lambda[t] * (shape.precision * z);
+    precision.block(stretches[t].offset, stretches[t].offset, n, n) += lambda[t] * shape.precision;
+    gradient.segment(stretches[t].offset, n) += pull;
+    minus_log += 0.5 * (z.dot(pull) - shape.log_determinant - shape.rank * std::log(lambda[t]));
+  }
+  const auto factor = cholesky_lower(precision);
+  if (!factor)
+    throw std::runtime_error("maximise_evidence: the posterior precision is not positive definite");
+  Posterior result{inverse_from_cholesky(*factor), {}, 0.0};
+  const Eigen::VectorXd step = -(result.covariance * gradient);
+  result.mean = z0 + step;
+  result.log_evidence = -(minus_log + 0.5 * gradient.dot(step) + 0.5 * log_determinant(*factor));
+  return result;
+}
+
+double updated_lambda(const Stretch& stretch, const PriorShape& shape, double lambda, const Posterior& now) {
+  const Eigen::Index n = shape.precision.rows();
+  const auto covariance = now.covariance.block(stretch.offset, stretch.offset, n, n);
+  const Eigen::VectorXd z = now.mean.segment(stretch.offset, n);
+  const double used = shape.rank - lambda * covariance.cwiseProduct(shape.precision).sum();
+  return std::clamp(std::max(used, 1e-6) / z.dot(shape.precision * z),
+                    1.0 / (kLargestAmplitude * kLargestAmplitude),
+                    1.0 / (kSmallestAmplitude * kSmallestAmplitude));
+}
+
+/// The functions of one axis, all other parameters integrated out with their hyperparameters held.
+class AxisEvidence {
+ public:
+  struct Choice {
+    std::size_t shape = 0;
+    std::vector<double> lambda;
+    double log_evidence = 0.0;
+  };
+
+  /// `all`: everything but the smoothing of these functions; `stretches` within `all`.
+  AxisEvidence(const Quadratic& all, const Eigen::VectorXd& z0, const std::vector<Stretch>& stretches) {
+    std::vector<bool> is_mine(static_cast<std::size_t>(z0.size()), false);
+    std::vector<int> mine;
+    for (const Stretch& stretch : stretches) {
+      stretches_.push_back({stretch.term, static_cast<int>(mine.size())});
+      const int n = static_cast<int>(stretch.term->precision().rows());
+      for (int i = stretch.offset; i < stretch.offset + n; ++i) {
+        mine.push_back(i);
+        is_mine[static_cast<std::size_t>(i)] = true;
+      }
+    }
+    std::vector<int> others;
+    for (int i = 0; i < z0.size(); ++i) {
+      if (!is_mine[static_cast<std::size_t>(i)]) others.push_back(i);
+    }
+    z0_ = z0(mine);
+    cost_.precision = all.precision(mine, mine);
+    cost_.gradient = all.gradient(mine);
+    if (others.empty()) return;
+    const Eigen::MatrixXd across = all.precision(others, mine);
+    const auto factor = cholesky_lower(all.precision(others, others));
+    if (!factor)
+      throw std::runtime_error("maximise_evidence: the posterior precision is not positive definite");
+    const Eigen::MatrixXd half = factor->triangularView<Eigen::Lower>().solve(across);
+    const Eigen::VectorXd half_gradient =
+        factor->triangularView<Eigen::Lower>().solve(Eigen::VectorXd(all.gradient(others)));
+    cost_.precision -= half.transpose() * half;
+    cost_.gradient -= half.transpose() * half_gradient;
+  }
+
+  /// A shape with its amplitudes, from those given.
+  Choice with_shape(std::size_t shape, std::vector<double> lambda) const {
+    const std::vector<std::size_t> shapes(stretches_.size(), shape);
+    Posterior now = posterior(cost_, z0_, stretches_, shapes, lambda);
+    for (int step = 0; step < kAmplitudeSteps; ++step) {
+      for (std::size_t t = 0; t < lambda.size(); ++t) {
+        lambda[t] = updated_lambda(stretches_[t], (*stretches_[t].term->shapes)[shape], lambda[t], now);
+      }
+      now = posterior(cost_, z0_, stretches_, shapes, lambda);
+    }
+    return {shape, std::move(lambda), now.log_evidence};
+  }
+
+  /// Climbs from a shape: neighbouring lengths first, then the other kinds.
+  Choice best_from(std::size_t shape, const std::vector<double>& lambda) const {
+    Choice best = with_shape(shape, lambda);
+    do {
+      while (improve(best, neighbouring_lengths(best.shape), kWorthALength)) {
+      }
+    } while (improve(best, other_kinds(best.shape), kWorthAKind));
+    return best;
+  }
+
+ private:
+  static std::vector<std::size_t> neighbouring_lengths(std::size_t shape) {
+    std::vector<std::size_t> shapes;
+    if (shape % kPriorLengths > 0) shapes.push_back(shape - 1);
+    if (shape % kPriorLengths + 1 < kPriorLengths) shapes.push_back(shape + 1);
+    return shapes;
+  }
+
+  static std::vector<std::size_t> other_kinds(std::size_t shape) {
+    std::vector<std::size_t> shapes;
+    for (std::size_t kind = 0; kind < kRoughnessKinds; ++kind) {
+      if (kind != shape / kPriorLengths) shapes.push_back(kind * kPriorLengths + shape % kPriorLengths);
+    }
+    return shapes;
+  }
+
+  bool improve(Choice& best, const std::vector<std::size_t>& shapes, double worth) const {
+    const double to_beat = best.log_evidence + worth;
+    const std::vector<double> lambda = best.lambda;
+    bool improved = false;
+    for (const std::size_t shape : shapes) {
+      Choice choice = with_shape(shape, lambda);
+      if (choice.log_evidence < std::max(to_beat, best.log_evidence)) continue;
+      best = std::move(choice);
+      improved = true;
+    }
+    return improved;
+  }
+
+  std::vector<Stretch> stretches_;
+  Eigen::VectorXd z0_;
+  Quadratic cost_;
 };
 
 class EvidenceSearch {
@@ -50,168 +188,101 @@ class EvidenceSearch {
   EvidenceSearch(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
                  const GaussianPrior& prior, const EvidenceOptions& options,
                  const std::vector<SmoothingTerm>& terms)
-      : equations_(equations), z0_(z0), prior_(prior), options_(options), terms_(terms) {
+      : equations_(equations), z0_(z0), prior_(prior), options_(options) {
     for (std::size_t t = 0; t < terms.size(); ++t) {
+      stretches_.push_back({&terms[t], terms[t].offset});
       if (terms[t].estimate) axes_[terms[t].symbol.axis].push_back(t);
     }
   }
 
-  Candidate run(Hyperparameters start) {
-    Candidate best = settle(std::move(start));
-    for (int round = 0; round < kKindRounds; ++round) {
-      climb_lengths(best);
-      best = settle(std::move(best.hyperparameters));
-      if (!try_kinds(best)) break;
+  /// Returns log evidence.
+  double run(Hyperparameters& at) const {
+    double log_evidence = settle(at);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      bool changed = false;
+      for (const auto& [axis, terms] : axes_) changed |= choose_shape(terms, at);
+      if (!changed) break;
+      log_evidence = settle(at);
     }
-    return best;
+    return log_evidence;
   }
-
-  int evaluations() const { return evaluations_; }
 
  private:
-  Posterior posterior(const Hyperparameters& at) const {
-    GaussianPrior total = prior_;
-    double log_evidence = 0.0;
-    for (std::size_t t = 0; t < terms_.size(); ++t) {
-      const PriorShape& shape = (*terms_[t].shapes)[at.shape[t]];
-      const Eigen::Index n = shape.precision.rows();
-      total.precision.block(terms_[t].offset, terms_[t].offset, n, n) += at.lambda[t] * shape.precision;
-      log_evidence += 0.5 * (shape.log_determinant + shape.rank * std::log(at.lambda[t]));
-    }
-    Eigen::MatrixXd precision = total.precision;
-    Eigen::VectorXd gradient = total.gradient(z0_);
-    double cost = total.cost(z0_);
+  /// Readings at their scales and priors, without smoothing.
+  Quadratic readings_and_priors(const std::vector<double>& scale) const {
+    Quadratic total{prior_.precision, prior_.gradient(z0_), prior_.cost(z0_)};
     for (std::size_t g = 0; g < equations_.size(); ++g) {
-      const double weight = 1.0 / (at.scale[g] * at.scale[g]);
-      precision += weight * equations_[g].matrix;
-      gradient += weight * equations_[g].gradient;
-      cost += 0.5 * weight * equations_[g].squares;
-      log_evidence -= equations_[g].observations * std::log(at.scale[g]);
+      const double weight = 1.0 / (scale[g] * scale[g]);
+      total.precision += weight * equations_[g].matrix;
+      total.gradient += weight * equations_[g].gradient;
+      total.constant +=
+          0.5 * weight * equations_[g].squares + equations_[g].observations * std::log(scale[g]);
     }
-    const auto factor = cholesky_lower(precision);
-    if (!factor)
-      throw std::runtime_error("maximise_evidence: the posterior precision is not positive definite");
-    Posterior result{inverse_from_cholesky(*factor), {}, 0.0};
-    const Eigen::VectorXd step = -(result.covariance * gradient);
-    result.mean = z0_ + step;
-    result.log_evidence = log_evidence - 0.5 * log_determinant(*factor) - (cost + 0.5 * gradient.dot(step));
-    return result;
+    return total;
   }
 
-  double updated_lambda(std::size_t t, const Candidate& now) const {
-    const SmoothingTerm& term = terms_[t];
-    const PriorShape& shape = (*term.shapes)[now.hyperparameters.shape[t]];
-    const Eigen::Index n = shape.precision.rows();
-    const auto covariance = now.posterior.covariance.block(term.offset, term.offset, n, n);
-    const Eigen::VectorXd z = now.posterior.mean.segment(term.offset, n);
-    const double used =
-        shape.rank - now.hyperparameters.lambda[t] * covariance.cwiseProduct(shape.precision).sum();
-    return std::clamp(std::max(used, 1e-6) / z.dot(shape.precision * z),
-                      1.0 / (kLargestAmplitude * kLargestAmplitude),
-                      1.0 / (kSmallestAmplitude * kSmallestAmplitude));
-  }
-
-  double updated_scale(std::size_t g, const Candidate& now) const {
+  double updated_scale(std::size_t g, double scale, const Posterior& now) const {
     const InstrumentEquations& instrument = equations_[g];
-    const double scale = now.hyperparameters.scale[g];
-    const double hat = now.posterior.covariance.cwiseProduct(instrument.matrix).sum() / (scale * scale);
+    const double hat = now.covariance.cwiseProduct(instrument.matrix).sum() / (scale * scale);
     const double redundancy = instrument.observations - hat;
     if (redundancy < kMinimumRedundancy) return scale;
-    const Eigen::VectorXd step = now.posterior.mean - z0_;
+    const Eigen::VectorXd step = now.mean - z0_;
     const double squares =
         instrument.squares + 2.0 * instrument.gradient.dot(step) + step.dot(instrument.matrix * step);
     return squares > 0.0 ? std::sqrt(squares / redundancy) : scale;
   }
 
   /// All amplitudes and variance components to their common fixed point.
-  Candidate settle(Hyperparameters start) {
-    Candidate now{std::move(start), {}};
-    now.posterior = posterior(now.hyperparameters);
-    ++evaluations_;
+  double settle(Hyperparameters& at) const {
+    Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.shape, at.lambda);
     for (int step = 0; step < kSettlingSteps; ++step) {
-      Candidate next = now;
+      const double before = now.log_evidence;
       for (const auto& [axis, terms] : axes_) {
-        for (const std::size_t t : terms) next.hyperparameters.lambda[t] = updated_lambda(t, now);
+        for (const std::size_t t : terms) {
+          at.lambda[t] =
+              updated_lambda(stretches_[t], (*stretches_[t].term->shapes)[at.shape[t]], at.lambda[t], now);
+        }
       }
       for (std::size_t g = 0; options_.variance_components && g < equations_.size(); ++g)
-        next.hyperparameters.scale[g] = updated_scale(g, now);
-      next.posterior = posterior(next.hyperparameters);
-      ++evaluations_;
-      const double gain = next.posterior.log_evidence - now.posterior.log_evidence;
-      now = std::move(next);
-      if (std::abs(gain) < kSettled) break;
+        at.scale[g] = updated_scale(g, at.scale[g], now);
+      now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.shape, at.lambda);
+      if (std::abs(now.log_evidence - before) < kSettled) break;
     }
-    return now;
+    return now.log_evidence;
   }
 
-  /// The functions of one axis with another shape, their amplitudes adapted to it.
-  Candidate with_shape(const Candidate& now, const std::vector<std::size_t>& terms, std::size_t shape) const {
-    Candidate candidate{now.hyperparameters, {}};
-    for (const std::size_t t : terms) candidate.hyperparameters.shape[t] = shape;
-    candidate.posterior = posterior(candidate.hyperparameters);
-    for (int step = 0; step < kStepsPerCandidate; ++step) {
-      Hyperparameters next = candidate.hyperparameters;
-      for (const std::size_t t : terms) next.lambda[t] = updated_lambda(t, candidate);
-      candidate = {next, posterior(next)};
+  /// True when another shape is better.
+  bool choose_shape(const std::vector<std::size_t>& terms, Hyperparameters& at) const {
+    Quadratic all = readings_and_priors(at.scale);
+    std::vector<Stretch> mine;
+    std::vector<double> lambda;
+    for (const std::size_t t : terms) {
+      mine.push_back(stretches_[t]);
+      lambda.push_back(at.lambda[t]);
     }
-    return candidate;
-  }
-
-  /// Replaces `best` by the best of the shapes if it is worth it.
-  bool improve(Candidate& best, const std::vector<std::size_t>& terms, const std::vector<std::size_t>& shapes,
-               double worth) {
-    const auto policy = options_.threads > 1 ? std::launch::async : std::launch::deferred;
-    std::vector<std::future<Candidate>> futures;
-    for (const std::size_t shape : shapes) {
-      futures.push_back(
-          std::async(policy, [this, &best, &terms, shape] { return with_shape(best, terms, shape); }));
+    for (std::size_t t = 0; t < stretches_.size(); ++t) {
+      if (std::ranges::find(terms, t) != terms.end()) continue;
+      const auto& [term, offset] = stretches_[t];
+      const Eigen::MatrixXd smoothing = at.lambda[t] * (*term->shapes)[at.shape[t]].precision;
+      const Eigen::Index n = smoothing.rows();
+      all.precision.block(offset, offset, n, n) += smoothing;
+      all.gradient.segment(offset, n) += smoothing * z0_.segment(offset, n);
     }
-    std::vector<Candidate> candidates;
-    for (auto& future : futures) candidates.push_back(future.get());
-    evaluations_ += static_cast<int>(candidates.size()) * (kStepsPerCandidate + 1);
-    const auto winner = std::ranges::max_element(
-        candidates, {}, [](const Candidate& candidate) { return candidate.posterior.log_evidence; });
-    if (winner == candidates.end() || winner->posterior.log_evidence < best.posterior.log_evidence + worth)
-      return false;
-    best = std::move(*winner);
-    return true;
-  }
-
-  void climb_lengths(Candidate& best) {
-    for (int climb = 0; climb < kClimbs; ++climb) {
-      bool moved = false;
-      for (const auto& [axis, terms] : axes_) {
-        const std::size_t shape = best.hyperparameters.shape[terms.front()];
-        const std::size_t place = shape % kPriorLengths;
-        std::vector<std::size_t> neighbours;
-        if (place > 0) neighbours.push_back(shape - 1);
-        if (place + 1 < kPriorLengths) neighbours.push_back(shape + 1);
-        moved |= improve(best, terms, neighbours, kWorthAStep);
-      }
-      if (!moved) return;
+    const std::size_t before = at.shape[terms.front()];
+    const AxisEvidence::Choice best = AxisEvidence(all, z0_, mine).best_from(before, lambda);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      at.shape[terms[i]] = best.shape;
+      at.lambda[terms[i]] = best.lambda[i];
     }
-  }
-
-  bool try_kinds(Candidate& best) {
-    bool moved = false;
-    for (const auto& [axis, terms] : axes_) {
-      const std::size_t shape = best.hyperparameters.shape[terms.front()];
-      std::vector<std::size_t> others;
-      for (std::size_t kind = 0; kind < kRoughnessKinds; ++kind) {
-        if (kind != shape / kPriorLengths) others.push_back(kind * kPriorLengths + shape % kPriorLengths);
-      }
-      moved |= improve(best, terms, others, kWorthAKind);
-    }
-    return moved;
+    return best.shape != before;
   }
 
   const std::vector<InstrumentEquations>& equations_;
   const Eigen::VectorXd& z0_;
   const GaussianPrior& prior_;
   const EvidenceOptions& options_;
-  const std::vector<SmoothingTerm>& terms_;
-  std::map<AxisName, std::vector<std::size_t>> axes_;
-  int evaluations_ = 0;
+  std::vector<Stretch> stretches_;                     ///< one per term
+  std::map<AxisName, std::vector<std::size_t>> axes_;  ///< terms to estimate
 };
 
 }  // namespace
@@ -247,18 +318,17 @@ void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior
 EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
                                 const GaussianPrior& prior, const EvidenceOptions& options,
                                 std::vector<double> scale, std::vector<SmoothingTerm>& terms) {
-  Hyperparameters start{{}, {}, std::move(scale)};
+  Hyperparameters at{{}, {}, std::move(scale)};
   for (const SmoothingTerm& term : terms) {
-    start.shape.push_back(term.shape);
-    start.lambda.push_back(term.lambda);
+    at.shape.push_back(term.shape);
+    at.lambda.push_back(term.lambda);
   }
-  EvidenceSearch search(equations, z0, prior, options, terms);
-  const Candidate best = search.run(std::move(start));
+  const double log_evidence = EvidenceSearch(equations, z0, prior, options, terms).run(at);
   for (std::size_t t = 0; t < terms.size(); ++t) {
-    terms[t].shape = best.hyperparameters.shape[t];
-    terms[t].lambda = best.hyperparameters.lambda[t];
+    terms[t].shape = at.shape[t];
+    terms[t].lambda = at.lambda[t];
   }
-  return {best.hyperparameters.scale, best.posterior.log_evidence, search.evaluations()};
+  return {std::move(at.scale), log_evidence};
 }
 
 Eigen::MatrixXd amplitude_covariance(const std::vector<SmoothingTerm>& terms,

@@ -47,13 +47,11 @@ struct InstrumentEquations {
 
 struct EvidenceOptions {
   bool variance_components = true;
-  int threads = 1;  ///< results do not depend on it
 };
 
 struct EvidenceState {
   std::vector<double> scale;  ///< s_g per instrument
   double log_evidence = 0.0;  ///< up to a constant
-  int evaluations = 0;        ///< of the likelihood
 };
 
 /// Updates `terms` and the instrument scales. `equations` hold stated weights, `prior` everything but

@@ -218,18 +218,5 @@ TEST(MaximiseEvidence, FindsTheStandardDeviation) {
   EXPECT_NEAR(state.scale[0], 0.5, 0.05);
 }
 
-TEST(MaximiseEvidence, DoesNotDependOnTheNumberOfThreads) {
-  DirectReadings one(6, {4e-6, 8e-6, 2e-6});
-  DirectReadings two(6, {4e-6, 8e-6, 2e-6});
-  const Eigen::VectorXd z0 = Eigen::VectorXd::Zero(one.prior.mean.size());
-  EvidenceOptions options;
-  const EvidenceState first = maximise_evidence(one.equations, z0, one.prior, options, {1.0}, one.terms);
-  options.threads = 4;
-  const EvidenceState second = maximise_evidence(two.equations, z0, two.prior, options, {1.0}, two.terms);
-  EXPECT_EQ(first.log_evidence, second.log_evidence);
-  EXPECT_EQ(first.scale, second.scale);
-  for (std::size_t t = 0; t < one.terms.size(); ++t) EXPECT_EQ(one.terms[t].lambda, two.terms[t].lambda);
-}
-
 }  // namespace
 }  // namespace volcal

@@ -111,7 +111,8 @@ void add_functions(FitResult& result) {
       group.symbols.push_back(symbol);
       result.identified.functions[symbol] = spec;
       const double measured_max = axis.name == AxisName::Y ? 0.17 : axis.travel_max;
-      result.functions.push_back({symbol, kIntervals, true, 7.3, axis.travel_min, measured_max});
+      result.functions.push_back(
+          {symbol, kIntervals, true, "geometric", 0.15, 7.3, axis.travel_min, measured_max});
       const bool visible = symbol.name() != "ECZ";
       result.rank.errors.push_back({symbol.name(), visible, visible ? 0.8 : 0.0, visible ? 0.3e-6 : 0.0, 7.3,
                                     visible ? "" : "every tool offset lies on Z",

@@ -21,6 +21,8 @@ constexpr double kCurvatureShare =
     1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
 constexpr double kGainOfVisible = 100.0;  // variance, prior to posterior
 constexpr double kWeakPartner = 0.02;
+constexpr double kMostlyHidden = 0.5;  // share of its variance, for a partner
+constexpr std::size_t kMostPartners = 5;
 constexpr int kPositions = 33;
 
 double wide_sigma(ErrorSymbol symbol) {
@@ -169,6 +171,172 @@ std::string remedy_for_mixture(const MeasurementModel& model, const std::vector<
   return joined(remedies);
 }
 
+/// Covariances before and after the readings, and the part of the latter that hides from them.
+class RankAnalyser {
+ public:
+  RankAnalyser(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
+               const GaussianPrior& wide)
+      : model_(model),
+        datum_(datum),
+        data_(data),
+        wide_(wide),
+        stretches_(error_stretches(model, datum)),
+        posterior_(
+            inverse(data + wide.precision, "the readings' normal matrix holds values that are not finite")),
+        prior_covariance_(inverse(wide.precision, "the wide prior is not positive definite")) {
+    find_hidden();
+  }
+
+  RankAnalysis run() {
+    analysis_.report.parameters = datum_.size();
+    for (const ErrorStretch& stretch : stretches_) judge(stretch);
+    for (const auto& block : datum_.blocks()) report_held(block);
+    return std::move(analysis_);
+  }
+
+ private:
+  static Eigen::MatrixXd inverse(const Eigen::MatrixXd& precision, const std::string& problem) {
+    const auto factor = cholesky_lower(precision);
+    if (!factor) throw std::runtime_error("analyse_rank: " + problem);
+    return inverse_from_cholesky(*factor);
+  }
+
+  /// Eigenvectors of the readings' information in units of the wide prior: posterior covariance
+  /// = sum of L^-T v v^T L^-1 / (1 + gain), of which those with little gain are hidden.
+  void find_hidden() {
+    const auto root = cholesky_lower(wide_.precision);
+    const auto lower = root->triangularView<Eigen::Lower>();
+    Eigen::MatrixXd gain = lower.solve(data_);
+    gain = lower.solve(gain.transpose()).eval();
+    gain = 0.5 * (gain + gain.transpose()).eval();
+    const SymmetricEigen eigen = eigen_decomposition(gain);
+    analysis_.report.rank = static_cast<int>((eigen.values.array() > kGainOfVisible).count());
+    const int hidden = datum_.size() - analysis_.report.rank;
+    const Eigen::ArrayXd shrink = (1.0 + eigen.values.head(hidden).array().max(0.0)).rsqrt();
+    hidden_ = root->transpose().triangularView<Eigen::Upper>().solve(eigen.vectors.leftCols(hidden) *
+                                                                     shrink.matrix().asDiagonal());
+  }
+
+  void judge(const ErrorStretch& stretch) {
+    const double prior_variance = mean_variance_in(stretch, prior_covariance_);
+    const double variance = mean_variance_in(stretch, posterior_);
+    const double variance_alone = mean_variance(stretch, covariance_alone(stretch));
+    Observability figure;
+    figure.symbol = stretch.name;
+    figure.visible_fraction = std::sqrt(std::min(1.0, variance_alone / variance));
+    figure.u_rms = std::sqrt(variance);
+    figure.visible = variance * kGainOfVisible < prior_variance;
+    if (!figure.visible) {
+      analysis_.deficient = true;
+      if (stretch.function != nullptr) analysis_.invisible_functions.push_back(stretch.function->symbol);
+      const bool unseen_alone = variance_alone * kGainOfVisible >= prior_variance;
+      if (unseen_alone) figure.visible_fraction = 0.0;
+      const Explanation words = unseen_alone ? explain_alone(stretch) : explain_mixture(stretch);
+      figure.reason = words.reason;
+      figure.remedy = words.remedy;
+      analysis_.report.invisible.push_back(figure.symbol + ": not visible, " + figure.reason + "; " +
+                                           figure.remedy);
+    }
+    analysis_.report.errors.push_back(std::move(figure));
+  }
+
+  /// With everything else known.
+  Eigen::MatrixXd covariance_alone(const ErrorStretch& stretch) const {
+    return inverse(block(data_, stretch) + block(wide_.precision, stretch),
+                   "the wide prior is not positive definite");
+  }
+
+  static Eigen::MatrixXd block(const Eigen::MatrixXd& matrix, const ErrorStretch& stretch) {
+    return matrix.block(stretch.offset, stretch.offset, stretch.size, stretch.size);
+  }
+
+  Explanation explain_alone(const ErrorStretch& stretch) const {
+    if (stretch.function == nullptr || !part_is_seen(stretch))
+      return explain_unseen(model_.campaign(), stretch.name);
+    return too_few_positions(stretch);
+  }
+
+  /// Does a reading change with some combination of the error's coefficients?
+  bool part_is_seen(const ErrorStretch& stretch) const {
+    const auto root = cholesky_lower(block(wide_.precision, stretch));
+    if (!root) return false;
+    const auto lower = root->triangularView<Eigen::Lower>();
+    Eigen::MatrixXd gain = lower.solve(block(data_, stretch));
+    gain = lower.solve(gain.transpose()).eval();
+    return gain.diagonal().sum() > kGainOfVisible * static_cast<double>(stretch.size);
+  }
+
+  static Explanation too_few_positions(const ErrorStretch& stretch) {
+    const std::string axis(1, letter_of(stretch.function->symbol.axis));
+    return {"the readings stand at too few positions of axis " + axis + " to tell its course between them",
+            "add positions along axis " + axis};
+  }
+
+  Explanation explain_mixture(const ErrorStretch& stretch) const {
+    const std::vector<std::string> partners = partners_of(stretch);
+    if (partners.empty()) {
+      if (stretch.function != nullptr) return too_few_positions(stretch);
+      return {"the readings that depend on it are too few or too noisy", "add readings far from its pivot"};
+    }
+    return {"a change of it can be exchanged with " + joined(partners) + " without changing any reading",
+            remedy_for_mixture(model_, partners)};
+  }
+
+  /// Names of what changes along with an error in the directions that hide, strongest first.
+  std::vector<std::string> partners_of(const ErrorStretch& stretch) const {
+    const Eigen::MatrixXd mine = stretch.rows * hidden_.middleRows(stretch.offset, stretch.size);
+    std::map<std::string, double> share;
+    const auto compare = [&](const std::string& name, const Eigen::MatrixXd& other, double known) {
+      if (name == stretch.name || other.squaredNorm() < kMostlyHidden * known) return;
+      const double together = (mine * other.transpose()).squaredNorm();
+      double& best = share[name];
+      best = std::max(best, together / (mine.squaredNorm() * other.squaredNorm()));
+    };
+    for (const ErrorStretch& other : stretches_) {
+      compare(other.name, other.rows * hidden_.middleRows(other.offset, other.size),
+              mean_variance_in(other, posterior_) * static_cast<double>(other.rows.rows()));
+    }
+    for (const auto& block : datum_.blocks()) {
+      const std::string& name = model_.layout().blocks[block.block].name;
+      if (std::ranges::find(stretches_, name, &ErrorStretch::name) != stretches_.end()) continue;
+      for (int i = block.offset; i < block.offset + block.size; ++i)
+        compare(name, hidden_.row(i), posterior_(i, i));
+    }
+    std::vector<std::pair<double, std::string>> ranked;
+    for (const auto& [name, value] : share) {
+      if (value > kWeakPartner) ranked.emplace_back(value, name);
+    }
+    std::ranges::sort(ranked, std::greater<>());
+    std::vector<std::string> partners;
+    for (std::size_t i = 0; i < ranked.size() && i < kMostPartners; ++i) partners.push_back(ranked[i].second);
+    return partners;
+  }
+
+  void report_held(const DatumSpace::BlockCoordinates& block) {
+    const ParameterBlock& source = model_.layout().blocks[block.block];
+    if (!source.weak_default_prior) return;
+    for (int k = 0; k < block.size; ++k) {
+      const double prior_variance = std::pow(source.prior_sigma[k], 2);
+      if (posterior_(block.offset + k, block.offset + k) < 0.25 * prior_variance) continue;
+      std::ostringstream text;
+      text << source.name << " " << source.labels[static_cast<std::size_t>(k)] << ": held at its guess +- "
+           << source.prior_sigma[k] / source.si_per_unit[static_cast<std::size_t>(k)] << " "
+           << source.units[static_cast<std::size_t>(k)];
+      analysis_.report.held_by_prior.push_back(text.str());
+    }
+  }
+
+  const MeasurementModel& model_;
+  const DatumSpace& datum_;
+  const Eigen::MatrixXd& data_;
+  const GaussianPrior& wide_;
+  std::vector<ErrorStretch> stretches_;
+  Eigen::MatrixXd posterior_;
+  Eigen::MatrixXd prior_covariance_;
+  Eigen::MatrixXd hidden_;  ///< columns: hidden directions, their outer products the hidden covariance
+  RankAnalysis analysis_;
+};
+
 }  // namespace
 
 GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z) {
@@ -200,103 +368,8 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
 
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide) {
-  RankAnalysis analysis;
-  const int n = datum.size();
-  analysis.report.parameters = n;
-  if (n == 0) return analysis;
-  const auto root = cholesky_lower(wide.precision);
-  if (!root) throw std::runtime_error("analyse_rank: the wide prior is not positive definite");
-  const auto lower = root->triangularView<Eigen::Lower>();
-  Eigen::MatrixXd gain = lower.solve(data);
-  gain = lower.solve(gain.transpose()).eval();
-  gain = 0.5 * (gain + gain.transpose()).eval();
-  const SymmetricEigen eigen = eigen_decomposition(gain);
-  analysis.report.rank = static_cast<int>((eigen.values.array() > kGainOfVisible).count());
-
-  const auto factor = cholesky_lower(data + wide.precision);
-  if (!factor)
-    throw std::runtime_error("analyse_rank: the readings' normal matrix holds values that are not finite");
-  const Eigen::MatrixXd posterior = inverse_from_cholesky(*factor);
-  const Eigen::MatrixXd prior_covariance = inverse_from_cholesky(*root);
-  const auto stretches = error_stretches(model, datum);
-  // Directions that hide, in parameter space: columns of R^-T v, scaled so that the prior standard deviation
-  // is 1.
-  for (const ErrorStretch& stretch : stretches) {
-    const Eigen::MatrixXd alone_precision =
-        (data + wide.precision).block(stretch.offset, stretch.offset, stretch.size, stretch.size);
-    const Eigen::MatrixXd alone =
-        alone_precision.llt().solve(Eigen::MatrixXd::Identity(stretch.size, stretch.size));
-    const double prior_variance = mean_variance_in(stretch, prior_covariance);
-    const double variance = mean_variance_in(stretch, posterior);
-    const double variance_alone = mean_variance(stretch, alone);
-    Observability figure;
-    figure.symbol = stretch.name;
-    figure.visible_fraction = std::sqrt(std::min(1.0, variance_alone / variance));
-    figure.u_rms = std::sqrt(variance);
-    figure.visible = variance * kGainOfVisible < prior_variance;
-    if (!figure.visible) {
-      analysis.deficient = true;
-      if (stretch.function != nullptr) analysis.invisible_functions.push_back(stretch.function->symbol);
-      if (variance_alone * kGainOfVisible >= prior_variance) {
-        const Explanation words = explain_unseen(model.campaign(), stretch.name);
-        figure.reason = words.reason;
-        figure.remedy = words.remedy;
-        figure.visible_fraction = 0.0;
-      } else {
-        std::map<std::string, double> share;
-        const Eigen::MatrixXd mine =
-            posterior.middleCols(stretch.offset, stretch.size) * stretch.rows.transpose();
-        const double worst = mine.middleRows(stretch.offset, stretch.size).squaredNorm();
-        for (const ErrorStretch& other : stretches) {
-          if (other.name == stretch.name) continue;
-          const Eigen::MatrixXd shared = other.rows * mine.middleRows(other.offset, other.size);
-          const double correlation = shared.squaredNorm() /
-                                     static_cast<double>(other.rows.rows() * stretch.rows.rows()) /
-                                     (variance * mean_variance_in(other, posterior));
-          share[other.name] = correlation;
-        }
-        for (const auto& block : datum.blocks()) {
-          const ParameterBlock& source = model.layout().blocks[block.block];
-          if (share.contains(source.name)) continue;
-          for (int k = 0; k < block.size; ++k) {
-            const double correlation = mine.row(block.offset + k).squaredNorm() /
-                                       static_cast<double>(stretch.rows.rows()) /
-                                       (variance * posterior(block.offset + k, block.offset + k));
-            share[source.name] = std::max(share[source.name], correlation);
-          }
-        }
-        static_cast<void>(worst);
-        std::vector<std::pair<double, std::string>> ranked;
-        for (const auto& [name, value] : share) {
-          if (value > kWeakPartner) ranked.emplace_back(value, name);
-        }
-        std::ranges::sort(ranked, std::greater<>());
-        std::vector<std::string> partners;
-        for (std::size_t i = 0; i < ranked.size() && i < 5; ++i) partners.push_back(ranked[i].second);
-        figure.reason = partners.empty() ? "its readings are few and far between"
-                                         : "a change of it can be exchanged with " + joined(partners) +
-                                               " without changing any reading";
-        figure.remedy = remedy_for_mixture(model, partners);
-      }
-      analysis.report.invisible.push_back(figure.symbol + ": not visible, " + figure.reason + "; " +
-                                          figure.remedy);
-    }
-    analysis.report.errors.push_back(std::move(figure));
-  }
-  for (const auto& block : datum.blocks()) {
-    const ParameterBlock& source = model.layout().blocks[block.block];
-    if (!source.weak_default_prior) continue;
-    for (int k = 0; k < block.size; ++k) {
-      const double prior_variance = std::pow(source.prior_sigma[k], 2);
-      if (posterior(block.offset + k, block.offset + k) < 0.25 * prior_variance) continue;
-      std::ostringstream text;
-      text << source.name << " " << source.labels[static_cast<std::size_t>(k)] << ": held at its guess +- "
-           << source.prior_sigma[k] / source.si_per_unit[static_cast<std::size_t>(k)] << " "
-           << source.units[static_cast<std::size_t>(k)];
-      analysis.report.held_by_prior.push_back(text.str());
-    }
-  }
-  return analysis;
+  if (datum.size() == 0) return {};
+  return RankAnalyser(model, datum, data, wide).run();
 }
 
 }  // namespace volcal

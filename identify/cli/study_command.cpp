@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
 
@@ -8,14 +10,18 @@ namespace volcal::cli {
 namespace {
 
 std::function<int()> define(CLI::App& app) {
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   auto work = std::make_shared<std::map<CLI::App*, std::function<int()>>>();
   for (const Command* study : studies()) {
     CLI::App* sub = app.add_subcommand(std::string(study->name), std::string(study->summary));
     sub->footer("Examples:\n" + std::string(study->examples));
     (*work)[sub] = study->define(*sub);
   }
-  return [&app, work] { return work->at(app.get_subcommands().front())(); };
+  return [&app, work] {
+    if (!app.get_subcommands().empty()) return work->at(app.get_subcommands().front())();
+    fmt::print(stderr, "volcal study: name a study\n\n{}", app.help());
+    return kBadInput;
+  };
 }
 
 }  // namespace

@@ -72,9 +72,9 @@ struct Machine {
   std::vector<Axis> axes;  ///< in the structure's order
   std::vector<Tool> tools;
 
-  const Axis& axis(AxisName name) const;  ///< throws std::out_of_range
-  bool has_axis(AxisName name) const;
-  std::optional<std::size_t> tool_index(const std::string& name) const;
+  const Axis& axis(AxisName wanted) const;  ///< throws std::out_of_range
+  bool has_axis(AxisName wanted) const;
+  std::optional<std::size_t> tool_index(const std::string& wanted) const;
 };
 
 }  // namespace volcal

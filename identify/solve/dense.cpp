@@ -73,10 +73,10 @@ SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric) {
   return result;
 }
 
-void add_outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
-  const double one = 1.0;
+void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
+  const double one = 1.0, zero = 0.0;
   const int ldc = static_cast<int>(c.rows());
-  dsyrk_("U", "N", &n, &k, &one, a, &n, &one, c.data(), &ldc);
+  dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 
 void symmetrise_from_upper(Eigen::MatrixXd& matrix) {

@@ -29,6 +29,20 @@ double* outer_product(const double* basis, int support, const double* weight, in
   return out;
 }
 
+// Compiled for several processors, chosen at run time. No sum is reordered and nothing contracted
+// (-ffp-contract=off): all versions round alike.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define VOLCAL_PROCESSOR_VERSIONS __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define VOLCAL_PROCESSOR_VERSIONS
+#endif
+
+/// sum += factor * values
+VOLCAL_PROCESSOR_VERSIONS
+void add_scaled(const double* values, double factor, int size, double* sum) {
+  for (int i = 0; i < size; ++i) sum[i] += factor * values[i];
+}
+
 }  // namespace
 
 NormalTile::NormalTile(const ParameterLayout& layout, int shared_tail, Eigen::MatrixXd& matrix,
@@ -89,11 +103,17 @@ void NormalTile::begin_run(const RowJacobian& row) {
 
 /// Products of the run's own parameters with themselves and with everything else.
 void NormalTile::flush_run() {
-  const auto own = own_.middleCols(run_begin_, columns_ - run_begin_);
-  const auto rows = rows_.middleCols(run_begin_, columns_ - run_begin_);
-  product_.noalias() = rows.lazyProduct(own.transpose());
-  square_.noalias() = own.lazyProduct(own.transpose());
-  for (Eigen::Index k = 0; k < own.rows(); ++k) {
+  const auto own_size = own_.rows();
+  product_.setZero(size_ + 1, own_size);
+  square_.setZero(own_size, own_size);
+  for (int column = run_begin_; column < columns_; ++column) {
+    const double* own = own_.col(column).data();
+    for (Eigen::Index k = 0; k < own_size; ++k) {
+      add_scaled(rows_.col(column).data(), own[k], size_ + 1, product_.col(k).data());
+      for (Eigen::Index i = 0; i <= k; ++i) square_(i, k) += own[i] * own[k];
+    }
+  }
+  for (Eigen::Index k = 0; k < own_size; ++k) {
     const int column = own_index_[static_cast<std::size_t>(k)];
     const double* value = product_.col(k).data();
     for (const Segment& segment : segments_) {
@@ -101,9 +121,9 @@ void NormalTile::flush_run() {
       for (int i = 0; i < segment.size; ++i) sum[i] += *value++;
     }
     gradient_[column] += *value;
-    for (Eigen::Index other = 0; other < own.rows(); ++other) {
+    for (Eigen::Index other = 0; other < own_size; ++other) {
       const int row = own_index_[static_cast<std::size_t>(other)];
-      if (row <= column) matrix_(row, column) += square_(other, k);
+      if (row <= column) matrix_(row, column) += square_(std::min(other, k), std::max(other, k));
     }
   }
 }
@@ -111,8 +131,7 @@ void NormalTile::flush_run() {
 void NormalTile::flush() {
   if (columns_ == 0) return;
   flush_run();
-  tile_.setZero();
-  add_outer_product_upper(rows_.data(), size_ + 1, columns_, tile_);
+  outer_product_upper(rows_.data(), size_ + 1, columns_, tile_);
   int column = 0;
   for (std::size_t g = 0; g < segments_.size(); ++g) {
     for (int c = 0; c < segments_[g].size; ++c, ++column) {

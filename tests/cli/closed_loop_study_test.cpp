@@ -2,39 +2,22 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/support/scratch_folder.h"
+#include "tests/support/program.h"
 
 namespace volcal {
 namespace {
 
-class ClosedLoopStudy : public ::testing::Test {
- protected:
-  int volcal(const std::string& arguments) {
-    const std::string command = std::string(VOLCAL_PROGRAM) + " " + arguments + " >" + path("output") +
-                                " 2>" + path("errors") + " </dev/null";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
-  std::string content(const std::string& name) const {
-    std::ifstream file(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
+using testing::run_program;
 
-  testing::ScratchFolder scratch_;
-};
-
-TEST_F(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHold) {
-  ASSERT_EQ(volcal("study closed-loop -n 8 --seed 301 --small --fixed --json"), 0) << content("errors");
-  const auto json = nlohmann::json::parse(content("output"));
+TEST(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHold) {
+  const auto run = run_program("study closed-loop -n 8 --seed 301 --small --fixed --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
   ASSERT_EQ(json.at("campaigns").size(), 8U);
   SCOPED_TRACE(json.at("summary").back().dump(1));
   for (const auto& campaign : json.at("campaigns")) {
@@ -47,16 +30,17 @@ TEST_F(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHol
   EXPECT_GT(json.at("summary").back().at("mean_coverage95").get<double>(), 0.88);
 }
 
-TEST_F(ClosedLoopStudy, DoesNotDependOnTheNumberOfThreads) {
-  ASSERT_EQ(volcal("study closed-loop -n 2 --small --json --threads 1"), 0) << content("errors");
-  const std::string one = content("output");
-  ASSERT_EQ(volcal("study closed-loop -n 2 --small --json --threads 2"), 0) << content("errors");
-  EXPECT_EQ(one, content("output"));
+TEST(ClosedLoopStudy, DoesNotDependOnTheNumberOfThreads) {
+  const auto one = run_program("study closed-loop -n 2 --small --json --threads 1");
+  const auto two = run_program("study closed-loop -n 2 --small --json --threads 2");
+  ASSERT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_EQ(one.output, two.output);
 }
 
-TEST_F(ClosedLoopStudy, NamesAnUnknownStudy) {
-  EXPECT_EQ(volcal("study no-such-study"), 2);
-  EXPECT_THAT(content("errors"), ::testing::HasSubstr("no-such-study"));
+TEST(ClosedLoopStudy, NamesAnUnknownStudy) {
+  const auto run = run_program("study no-such-study");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, ::testing::HasSubstr("no-such-study"));
 }
 
 }  // namespace

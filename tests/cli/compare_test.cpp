@@ -12,39 +12,23 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/support/scratch_folder.h"
+#include "tests/support/program.h"
 
 namespace volcal {
 namespace {
 
+using testing::content;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 const std::string kExample = std::string(VOLCAL_SOURCE_DIR) + "/datasets/examples/mixed-1/";
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output;
-  std::string errors;
-};
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-Outcome compare(const std::string& arguments) {
-  const ::volcal::testing::ScratchFolder folder;
-  const std::string output = (folder.path() / "output").string(),
-                    errors = (folder.path() / "errors").string();
-  const std::string command =
-      std::string(VOLCAL_PROGRAM) + " compare " + arguments + " >" + output + " 2>" + errors + " </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(output), content(errors)};
+testing::ProgramRun compare(const std::string& arguments) {
+  return testing::run_program("compare " + arguments);
 }
 
 TEST(Compare, AnswersFirstWhereTheNominalMachineFails) {
-  const Outcome outcome = compare(kExample + "campaign.toml nominal");
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(outcome.errors, "");
   EXPECT_THAT(outcome.output, StartsWith("nominal machine: does not explain the readings, chi2/dof "));
@@ -55,14 +39,14 @@ TEST(Compare, AnswersFirstWhereTheNominalMachineFails) {
 }
 
 TEST(Compare, AModelWithoutCoefficientsIsTheNominalMachineAndSaysSo) {
-  const Outcome outcome = compare(kExample + "campaign.toml " + kExample + "model.toml");
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml " + kExample + "model.toml");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, StartsWith("nominal machine ("));
   EXPECT_THAT(outcome.output, HasSubstr("model.toml holds no coefficients"));
 }
 
 TEST(Compare, JsonIsOneDocumentAndNothingElse) {
-  const Outcome outcome = compare(kExample + "campaign.toml nominal nominal --json");
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal nominal --json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const auto json = nlohmann::json::parse(outcome.output);
   ASSERT_EQ(json.at("models").size(), 2U);
@@ -76,7 +60,7 @@ TEST(Compare, JsonIsOneDocumentAndNothingElse) {
 TEST(Compare, WritesEveryResidual) {
   const ::volcal::testing::ScratchFolder folder;
   const auto target = folder.path() / "comparison";
-  const Outcome outcome = compare(kExample + "campaign.toml nominal -o " + target.string());
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal -o " + target.string());
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const std::string residuals = content(target / "residuals.csv");
   EXPECT_THAT(residuals, StartsWith("setup,row,reading,predicted,residual_um,sigma_um,standardized,"));
@@ -86,16 +70,16 @@ TEST(Compare, WritesEveryResidual) {
 }
 
 TEST(Compare, BadArgumentsAreExitCodeTwo) {
-  const Outcome missing = compare(kExample + "campaign.toml no-such-model.toml");
+  const testing::ProgramRun missing = compare(kExample + "campaign.toml no-such-model.toml");
   EXPECT_EQ(missing.exit_code, 2);
   EXPECT_THAT(missing.errors, HasSubstr("no-such-model.toml"));
   EXPECT_EQ(missing.output, "");
 
-  const Outcome no_result = compare(kExample + "campaign.toml " + kExample);
+  const testing::ProgramRun no_result = compare(kExample + "campaign.toml " + kExample);
   EXPECT_EQ(no_result.exit_code, 2);
   EXPECT_THAT(no_result.errors, HasSubstr("holds no result.json"));
 
-  const Outcome three = compare(kExample + "campaign.toml nominal nominal nominal");
+  const testing::ProgramRun three = compare(kExample + "campaign.toml nominal nominal nominal");
   EXPECT_EQ(three.exit_code, 2);
   EXPECT_EQ(compare(kExample + "campaign.toml").exit_code, 2);
 }

@@ -2,24 +2,23 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tests/support/scratch_folder.h"
+#include "tests/support/program.h"
 
 namespace volcal {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::ContainsRegex;
+using testing::content;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using testing::run_program;
 
 const std::string kCirclesAndDiagonals = R"(
 [[measurements]]
@@ -44,21 +43,9 @@ stations = [{ name = "P1", position_mm = [-700.0, -500.0, -600.0] }]
 runs = [{ station = "P1", tool = "short" }]
 )";
 
-std::string content(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::string, std::string>> {
  protected:
-  int volcal(const std::string& arguments) {
-    const std::string command = std::string(VOLCAL_PROGRAM) + " " + arguments + " >" + path("output") +
-                                " 2>" + path("errors") + " </dev/null";
-    const int status = std::system(command.c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
-  std::string output() const { return content(path("output")); }
 
   /// The demo's machine with reference points at the origin: no tilt has a lever arm but the tool.
   void write_machine() const {
@@ -76,7 +63,8 @@ class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::st
     std::ofstream(path("model.toml"))
         << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
            "[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 1 }\n";
-    ASSERT_EQ(volcal("simulate " + path("study.toml") + " -o " + path("c")), 0) << content(path("errors"));
+    const auto run = run_program("simulate " + path("study.toml") + " -o " + path("c"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
   }
   std::string fit_arguments() const {
     return "fit " + path("c/campaign.toml") + " --model " + path("model.toml") + " -o " + path("r");
@@ -88,8 +76,9 @@ class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::st
 
 TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
   simulate(GetParam().second);
-  ASSERT_EQ(volcal(fit_arguments()), 1);
-  const std::string text = output();
+  const auto run = run_program(fit_arguments());
+  ASSERT_EQ(run.exit_code, 1) << run.errors;
+  const std::string& text = run.output;
   EXPECT_THAT(text, HasSubstr("status rank_deficient"));
   EXPECT_THAT(text,
               HasSubstr("! ECZ: not visible, every tool offset lies on Z; add setups with a tool offset "
@@ -105,8 +94,9 @@ TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
 
 TEST_P(PartialCampaignProgram, SaysTheSameInJson) {
   simulate(GetParam().second);
-  ASSERT_EQ(volcal(fit_arguments() + " --json"), 1);
-  const auto json = nlohmann::json::parse(output());
+  const auto run = run_program(fit_arguments() + " --json");
+  ASSERT_EQ(run.exit_code, 1) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
   EXPECT_EQ(json.at("status"), "rank_deficient");
   const auto& rank = json.at("rank");
   EXPECT_LT(rank.at("rank").get<int>(), rank.at("parameters").get<int>());
@@ -128,12 +118,9 @@ INSTANTIATE_TEST_SUITE_P(All, PartialCampaignProgram,
                          [](const auto& tested) { return tested.param.first; });
 
 TEST(TablesProgram, NamesTheFormatsWhenItDoesNotKnowOne) {
-  const ::volcal::testing::ScratchFolder scratch;
-  const std::string errors = (scratch.path() / "errors").string();
-  const int status =
-      std::system((std::string(VOLCAL_PROGRAM) + " tables r -o t --format ? >/dev/null 2>" + errors).c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 2);
-  EXPECT_THAT(content(errors), HasSubstr("csv"));
+  const auto run = run_program("tables r -o t --format ?");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("csv"));
 }
 
 }  // namespace

@@ -5,13 +5,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
-#include "tests/support/scratch_folder.h"
+#include "tests/support/program.h"
 
 namespace volcal {
 namespace {
@@ -21,20 +19,9 @@ using testing::BrokenCampaign;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-struct ProgramRun {
-  int exit_code = -1;
-  std::string output;
-  std::string errors;
-};
-
-ProgramRun run_fit(const fs::path& folder, const fs::path& scratch) {
-  const std::string command = std::string(VOLCAL_PROGRAM) + " fit " + (folder / "campaign.toml").string() +
-                              " --model " + (folder / "model.toml").string() + " -o " +
-                              (scratch / "result").string() + " > " + (scratch / "out").string() + " 2> " +
-                              (scratch / "err").string();
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, testing::slurp(scratch / "out"),
-          testing::slurp(scratch / "err")};
+testing::ProgramRun run_fit(const fs::path& folder, const fs::path& scratch) {
+  return testing::run_program("fit " + (folder / "campaign.toml").string() + " --model " +
+                              (folder / "model.toml").string() + " -o " + (scratch / "result").string());
 }
 
 class ProgramRefuses : public ::testing::TestWithParam<BrokenCampaign> {};
@@ -45,7 +32,7 @@ TEST_P(ProgramRefuses, WithExitCode2AndAMessage) {
   const fs::path folder = scratch.path() / "campaign";
   fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "tests/data/small", folder);
   testing::break_campaign(broken, folder);
-  const ProgramRun run = run_fit(folder, scratch.path());
+  const testing::ProgramRun run = run_fit(folder, scratch.path());
   EXPECT_EQ(run.exit_code, 2) << run.errors;
   EXPECT_THAT(run.output, IsEmpty());
   const std::string place =
@@ -63,7 +50,7 @@ TEST(Program, DoesNotReplaceAForeignFolder) {
   const testing::ScratchFolder scratch;
   fs::create_directory(scratch.path() / "result");
   testing::spill(scratch.path() / "result" / "thesis.txt", "years of work");
-  const ProgramRun run = run_fit(fs::path(VOLCAL_SOURCE_DIR) / "tests/data/small", scratch.path());
+  const testing::ProgramRun run = run_fit(fs::path(VOLCAL_SOURCE_DIR) / "tests/data/small", scratch.path());
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.errors, HasSubstr("holds files that volcal did not write"));
   EXPECT_EQ(testing::slurp(scratch.path() / "result" / "thesis.txt"), "years of work");

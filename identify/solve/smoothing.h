@@ -6,7 +6,7 @@
 /// which ride on one guideway; its amplitude, one per function; and the variance components s_g^2 (sigma of
 /// instrument g is s_g times stated) maximise the marginal likelihood of all readings together (restricted
 /// likelihood: nuisance parameters and straight parts integrated out). Amplitudes follow MacKay's fixed
-/// point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural Computation 4, 415, eq. 4.9);
+/// point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural Computation 4, 415);
 /// variance components Foerstner's (1979), s_g^2 <- v_g^T W_g v_g / (n_g - tr(C M_g) / s_g^2); kinds and
 /// lengths a climb in which every step is accepted by the likelihood itself. The posterior covariance C then
 /// contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such intervals cover the truth at the
@@ -62,7 +62,7 @@ EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equation
 
 /// What not knowing the amplitudes exactly adds to the covariance of the reduced parameters z: J V J^T with J
 /// = dz / dlog lambda and V the inverse Hessian of minus log evidence (Kass and Steffey 1989, JASA 84, 717;
-/// Wood, Pya and Saefken 2016, JASA 111, 1548, eq. 7).
+/// Wood, Pya and Saefken 2016, JASA 111, 1548).
 Eigen::MatrixXd amplitude_covariance(const std::vector<SmoothingTerm>& terms,
                                      const Eigen::MatrixXd& covariance, const Eigen::VectorXd& z);
 

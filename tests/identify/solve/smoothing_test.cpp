@@ -218,5 +218,31 @@ TEST(MaximiseEvidence, FindsTheStandardDeviation) {
   EXPECT_NEAR(state.scale[0], 0.5, 0.05);
 }
 
+TEST(AmplitudeCovariance, IsThatOfDifferencesOfTheDenseLikelihood) {
+  DirectReadings readings(6, {4e-6});
+  SmoothingTerm& term = readings.terms[0];
+  const auto posterior = [&](double lambda) {
+    return Eigen::MatrixXd((readings.equations[0].matrix + lambda * term.precision()).inverse());
+  };
+  const auto mean = [&](double lambda) {
+    return Eigen::VectorXd(-posterior(lambda) * readings.equations[0].gradient);
+  };
+  const double step = 0.05;
+  const double up = term.lambda * std::exp(step), down = term.lambda * std::exp(-step);
+  const Eigen::VectorXd change = (mean(up) - mean(down)) / (2.0 * step);
+  const PriorShape& shape = term.prior_shape();
+  const double curvature =
+      -(readings.log_density(shape, {up}) - 2.0 * readings.log_density(shape, {term.lambda}) +
+        readings.log_density(shape, {down})) /
+      (step * step);
+  ASSERT_GT(curvature, 0.5);
+  const Eigen::MatrixXd expected = change * change.transpose() / (curvature + 1.0 / 9.0);
+  const Eigen::MatrixXd added =
+      amplitude_covariance(readings.terms, posterior(term.lambda), mean(term.lambda));
+  EXPECT_NEAR(added.trace() / expected.trace(), 1.0, 0.05);
+  term.estimate = false;
+  EXPECT_EQ(amplitude_covariance(readings.terms, posterior(term.lambda), mean(term.lambda)).norm(), 0.0);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -1,0 +1,317 @@
+#include "volcal/identify/criticism/noise_model.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <unordered_map>
+
+#include "volcal/identify/solve/dense.h"
+
+namespace volcal {
+namespace {
+
+constexpr Eigen::Index kBlock = 64;        // columns whitened together
+constexpr std::size_t kTile = 64;          // steps of them that stay in the cache
+constexpr std::size_t kGramTile = 384;     // steps per matrix product
+constexpr std::size_t kGramParts = 8;      // fixed: sums do not depend on the number of threads
+constexpr std::size_t kFactorsPerLog = 8;  // variances multiplied before a logarithm is taken
+
+void require(bool condition, const char* problem) {
+  if (!condition) throw std::invalid_argument(std::string("noise model: ") + problem);
+}
+
+template <class Work>
+void run_parallel(std::size_t items, int threads, const Work& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run = [&] {
+    for (std::size_t item = next++; item < items; item = next++) work(item);
+  };
+  std::vector<std::thread> workers;
+  const int extra = std::min(threads, static_cast<int>(items)) - 1;
+  for (int i = 0; i < extra; ++i) workers.emplace_back(run);
+  run();
+  for (std::thread& worker : workers) worker.join();
+}
+
+void check(const NoiseData& data) {
+  const std::size_t n = data.sigma.size();
+  require(data.length.empty() || data.length.size() == n, "one length per observation, or none");
+  require(std::ranges::all_of(data.sigma, [](double sigma) { return sigma > 0.0; }),
+          "every sigma must be positive (infinite = left out)");
+  std::vector<int> visits(n, 0);
+  for (const NoiseSequence& sequence : data.sequences) {
+    const std::size_t size = sequence.observation.size();
+    require(sequence.time.empty() || sequence.time.size() == size, "one time per observation, or none");
+    require(sequence.line.empty() || sequence.line.size() == size, "one line per observation, or none");
+    require(std::ranges::all_of(sequence.time, [](double t) { return std::isfinite(t); }),
+            "times must be finite");
+    for (const std::size_t i : sequence.observation) {
+      require(i < n, "a sequence names an observation that does not exist");
+      ++visits[i];
+    }
+  }
+  require(std::ranges::all_of(visits, [](int count) { return count == 1; }),
+          "every observation must be in exactly one sequence");
+}
+
+void check(const NoiseParameters& noise) {
+  const auto valid = [](double value) { return value >= 0.0 && std::isfinite(value); };
+  require(valid(noise.white) && valid(noise.wander) && valid(noise.line) && valid(noise.per_metre),
+          "parameters must be finite and not negative");
+  require(noise.wander == 0.0 || noise.tau > 0.0, "tau must be positive");
+}
+
+}  // namespace
+
+Whitener::Whitener(const NoiseData& data, std::span<const NoiseParameters> parameters)
+    : rows_(data.sigma.size()) {
+  check(data);
+  for (std::size_t i = 0; i < rows_; ++i) {
+    if (!std::isfinite(data.sigma[i])) missing_.push_back(i);
+  }
+  observations_ = rows_ - missing_.size();
+  for (const NoiseSequence& sequence : data.sequences) {
+    tracks_.push_back(make_track(data, sequence));
+    groups_ = std::max(groups_, sequence.group + 1);
+  }
+  set_parameters(parameters);
+}
+
+Whitener::Track Whitener::make_track(const NoiseData& data, const NoiseSequence& sequence) {
+  Track track;
+  track.group = sequence.group;
+  track.timed = !sequence.time.empty();
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
+    if (std::isfinite(data.sigma[sequence.observation[k]])) order.push_back(k);
+  }
+  if (track.timed) {
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.time[k]; });
+  } else if (!sequence.line.empty()) {
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.line[k]; });
+  }
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::size_t observation = sequence.observation[order[i]];
+    Step step{observation, std::numeric_limits<double>::infinity(), 0, false, data.sigma[observation], 0.0};
+    if (track.timed && i > 0) step.gap = sequence.time[order[i]] - sequence.time[order[i - 1]];
+    if (!data.length.empty()) step.length = data.length[observation];
+    track.steps.push_back(step);
+  }
+  if (!sequence.line.empty()) assign_slots(sequence, order, track);
+  const std::size_t steps = track.steps.size();
+  track.decay.resize(steps);
+  track.scale.resize(steps);
+  track.gain.resize(steps * static_cast<std::size_t>(track.states));
+  return track;
+}
+
+void Whitener::assign_slots(const NoiseSequence& sequence, const std::vector<std::size_t>& order,
+                            Track& track) {
+  std::unordered_map<std::int32_t, std::size_t> last;
+  for (std::size_t i = 0; i < order.size(); ++i) last[sequence.line[order[i]]] = i;
+  std::unordered_map<std::int32_t, int> open;
+  std::vector<int> free;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const std::int32_t line = sequence.line[order[i]];
+    Step& step = track.steps[i];
+    const auto found = open.find(line);
+    step.opens = found == open.end();
+    if (!step.opens) {
+      step.slot = found->second;
+    } else if (!free.empty()) {
+      step.slot = free.back();
+      free.pop_back();
+    } else {
+      step.slot = track.states++;
+    }
+    open[line] = step.slot;
+    if (last[line] == i) {
+      open.erase(line);
+      free.push_back(step.slot);
+    }
+  }
+}
+
+void Whitener::set_parameters(std::span<const NoiseParameters> parameters) {
+  require(parameters.size() >= groups_, "parameters for every group");
+  for (const NoiseParameters& noise : parameters) check(noise);
+  log_determinant_ = 0.0;
+  for (Track& track : tracks_) {
+    NoiseParameters noise = parameters[track.group];
+    if (!track.timed) noise.wander = 0.0;
+    log_determinant_ +=
+        track.states == 2 ? compute_gains<2>(noise, track) : compute_gains<Eigen::Dynamic>(noise, track);
+  }
+}
+
+template <int kStates>
+double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
+  using Matrix = Eigen::Matrix<double, kStates, kStates>;
+  using Vector = Eigen::Matrix<double, kStates, 1>;
+  const double wander2 = noise.wander * noise.wander;
+  Matrix covariance = Matrix::Zero(track.states, track.states);
+  Vector towards(track.states);  // covariance of the states with the observation
+  double log_determinant = 0.0, product = 1.0, gap = -1.0, decay = 0.0;
+  for (std::size_t i = 0; i < track.steps.size(); ++i) {
+    const Step& step = track.steps[i];
+    if (step.gap != gap) {
+      gap = step.gap;
+      decay = wander2 > 0.0 ? std::exp(-gap / noise.tau) : 0.0;
+    }
+    track.decay[i] = decay;
+    covariance.row(0) *= decay;
+    covariance.col(0) *= decay;
+    covariance(0, 0) += (1.0 - decay * decay) * wander2;
+    towards = covariance.col(0);
+    if (step.slot > 0) {
+      if (step.opens) {
+        covariance.row(step.slot).setZero();
+        covariance.col(step.slot).setZero();
+        covariance(step.slot, step.slot) = noise.line * noise.line;
+        towards(step.slot) = 0.0;
+      }
+      towards += covariance.col(step.slot);
+    }
+    const double white = noise.white * step.sigma, proportional = noise.per_metre * step.length;
+    const double variance =
+        white * white + proportional * proportional + towards(0) + (step.slot > 0 ? towards(step.slot) : 0.0);
+    if (!(variance > 0.0)) throw std::invalid_argument("noise model: an observation without any noise");
+    Eigen::Map<Vector> gain(track.gain.data() + i * static_cast<std::size_t>(track.states), track.states);
+    gain = towards / variance;
+    covariance.noalias() -= gain * towards.transpose();
+    track.scale[i] = 1.0 / std::sqrt(variance);
+    product *= variance;
+    if ((i + 1) % kFactorsPerLog == 0) {
+      log_determinant += std::log(product);
+      product = 1.0;
+    }
+  }
+  return log_determinant + std::log(product);
+}
+
+void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width,
+                      double* tile, double* state) {
+  double* const wander = state;
+  for (std::size_t i = begin; i < end; ++i) {
+    const Step& step = track.steps[i];
+    double* __restrict const v = tile + static_cast<Eigen::Index>(i - begin) * width;
+    const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
+    const double decay = track.decay[i], scale = track.scale[i];
+    double* __restrict const w = wander;
+    if (step.slot == 0) {
+      for (Eigen::Index c = 0; c < width; ++c) {
+        const double predicted = decay * w[c];
+        const double innovation = v[c] - predicted;
+        w[c] = predicted + gain[0] * innovation;
+        v[c] = scale * innovation;
+      }
+    } else {
+      double* __restrict const offset = state + step.slot * width;
+      if (step.opens) std::fill(offset, offset + width, 0.0);
+      const double gain0 = gain[0], own_gain = gain[step.slot];
+      for (Eigen::Index c = 0; c < width; ++c) {
+        const double predicted = decay * w[c];
+        const double innovation = v[c] - predicted - offset[c];
+        w[c] = predicted + gain0 * innovation;
+        offset[c] += own_gain * innovation;
+        v[c] = scale * innovation;
+      }
+    }
+    for (int other = 1; other < track.states; ++other) {
+      if (other == step.slot || gain[other] == 0.0) continue;
+      double* __restrict const offset = state + other * width;
+      const double factor = gain[other] / scale;
+      for (Eigen::Index c = 0; c < width; ++c) offset[c] += factor * v[c];
+    }
+  }
+}
+
+void Whitener::whiten_block(const Track& track, Eigen::Index first, Eigen::Index width,
+                            const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened) const {
+  std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
+  std::vector<double> tile(static_cast<std::size_t>(width) * kTile);
+  for (std::size_t begin = 0; begin < track.steps.size(); begin += kTile) {
+    const std::size_t end = std::min(begin + kTile, track.steps.size());
+    for (Eigen::Index c = 0; c < width; ++c) {
+      const double* const in = columns.col(first + c).data();
+      for (std::size_t i = begin; i < end; ++i) {
+        tile[(i - begin) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c)] =
+            in[track.steps[i].observation];
+      }
+    }
+    filter(track, begin, end, width, tile.data(), state.data());
+    for (Eigen::Index c = 0; c < width; ++c) {
+      double* const out = whitened.col(first + c).data();
+      for (std::size_t i = begin; i < end; ++i) {
+        out[track.steps[i].observation] =
+            tile[(i - begin) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c)];
+      }
+    }
+  }
+}
+
+void Whitener::whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const {
+  require(columns.rows() == static_cast<Eigen::Index>(rows_), "one row per observation");
+  if (&columns != &whitened) whitened.resize(columns.rows(), columns.cols());
+  const auto blocks = static_cast<std::size_t>((columns.cols() + kBlock - 1) / kBlock);
+  run_parallel(blocks * tracks_.size(), threads, [&](std::size_t item) {
+    const auto first = static_cast<Eigen::Index>(item / tracks_.size()) * kBlock;
+    whiten_block(tracks_[item % tracks_.size()], first, std::min(kBlock, columns.cols() - first), columns,
+                 whitened);
+  });
+  for (const std::size_t i : missing_) whitened.row(static_cast<Eigen::Index>(i)).setZero();
+}
+
+Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
+  Eigen::MatrixXd whitened = column;
+  whiten(whitened, whitened, 1);
+  return whitened;
+}
+
+void Whitener::add_gram(const Track& track, const Eigen::MatrixXd& rows, Eigen::MatrixXd& sum) const {
+  const Eigen::Index width = rows.rows();
+  std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
+  Eigen::MatrixXd tile(width, static_cast<Eigen::Index>(kGramTile));
+  Eigen::MatrixXd product(width, width);
+  for (std::size_t begin = 0; begin < track.steps.size(); begin += kGramTile) {
+    const std::size_t end = std::min(begin + kGramTile, track.steps.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      tile.col(static_cast<Eigen::Index>(i - begin)) =
+          rows.col(static_cast<Eigen::Index>(track.steps[i].observation));
+    }
+    filter(track, begin, end, width, tile.data(), state.data());
+    outer_product_upper(tile.data(), static_cast<int>(width), static_cast<int>(end - begin), product);
+    sum.triangularView<Eigen::Upper>() += product;
+  }
+}
+
+Eigen::MatrixXd Whitener::gram(const Eigen::MatrixXd& rows, int threads) const {
+  require(rows.cols() == static_cast<Eigen::Index>(rows_), "one column per observation");
+  use_single_threaded_blas();
+  std::vector<Eigen::MatrixXd> sums;
+  std::vector<std::vector<const Track*>> parts;
+  std::size_t in_part = 0;
+  for (const Track& track : tracks_) {
+    if (parts.empty() || in_part * kGramParts >= observations_) {
+      parts.emplace_back();
+      in_part = 0;
+    }
+    parts.back().push_back(&track);
+    in_part += track.steps.size();
+  }
+  sums.assign(parts.size(), Eigen::MatrixXd::Zero(rows.rows(), rows.rows()));
+  run_parallel(parts.size(), threads, [&](std::size_t part) {
+    for (const Track* const track : parts[part]) add_gram(*track, rows, sums[part]);
+  });
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
+  for (const Eigen::MatrixXd& sum : sums) total += sum;
+  symmetrise_from_upper(total);
+  return total;
+}
+
+}  // namespace volcal

@@ -1,0 +1,116 @@
+#pragma once
+/// Correlated noise of measurements, and the filter that makes it white.
+///
+/// A sequence holds the observations of one setup, run and channel in time order; different sequences are
+/// independent. Within a sequence
+///
+///   Sigma_ij = delta_ij (white^2 sigma_i^2 + per_metre^2 L_i^2) + wander^2 exp(-|t_i - t_j| / tau)
+///            + line^2 [i and j belong to the same line]
+///
+/// The exponential is an Ornstein-Uhlenbeck process, hence Markovian (Rasmussen and Williams 2006, Gaussian
+/// Processes for Machine Learning, appendix B), and the offset of a line is constant while the line lasts. A
+/// Kalman filter with these states therefore gives the innovations of Sigma exactly: divided by their
+/// standard deviations they are L^-1 v with Sigma = L L^T in the order of the filter, and log|Sigma| is the
+/// sum of log F_i (Harvey 1989, Forecasting, Structural Time Series Models and the Kalman Filter, 3.4).
+///
+/// Two states suffice while lines follow one another. A line that is resumed after another began keeps its
+/// state until its last observation: exact as well, with cost growing with the number m of lines open at
+/// once, O(N m^2) for the gains and O(N m) per column. A sequence without times has no wander and is taken
+/// line by line.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace volcal {
+
+/// Of one instrument. SI: lengths in m (angles in rad), tau in s.
+struct NoiseParameters {
+  double white = 1.0;      ///< factor on the stated sigma
+  double wander = 0.0;     ///< standard deviation; 0 = off
+  double tau = 600.0;      ///< correlation time of the wander, s
+  double line = 0.0;       ///< standard deviation of the offset that the readings of a line share; 0 = off
+  double per_metre = 0.0;  ///< m/m, independent per reading
+};
+
+/// Observations of one setup, run and channel. Need not be sorted.
+struct NoiseSequence {
+  std::vector<std::size_t> observation;  ///< rows of the columns to whiten
+  std::vector<double> time;              ///< s, per observation; empty = not known: no wander
+  std::vector<std::int32_t> line;        ///< per observation; empty = not known: no line offsets
+  std::size_t group = 0;                 ///< instrument: index of its parameters
+};
+
+/// What the noise model knows about N observations.
+struct NoiseData {
+  std::vector<NoiseSequence> sequences;  ///< every observation in exactly one
+  std::vector<double> sigma;   ///< stated standard deviation, m or rad; infinite = left out (missing)
+  std::vector<double> length;  ///< m, for the part proportional to length; empty = none
+};
+
+/// L^-1 of a noise model. Errors: std::invalid_argument for sizes that do not agree, an observation in no or
+/// in two sequences, a sigma that is not positive, negative parameters, tau <= 0 with wander.
+class Whitener {
+ public:
+  Whitener(const NoiseData& data, std::span<const NoiseParameters> parameters);
+
+  /// New parameters for the same observations: O(N).
+  void set_parameters(std::span<const NoiseParameters> parameters);
+
+  /// whitened = L^-1 columns, rows = observations; rows of missing observations become 0. Exact to rounding,
+  /// O(N) per column, the same for any number of threads. Both may be the same matrix.
+  void whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const;
+  Eigen::VectorXd whiten(const Eigen::VectorXd& column) const;
+
+  /// rows Sigma^-1 rows^T, full symmetric, for `rows` (columns x observations, the transpose of what whiten()
+  /// takes), without storing the whitened matrix.
+  Eigen::MatrixXd gram(const Eigen::MatrixXd& rows, int threads) const;
+
+  /// log|Sigma| of the observations that are not missing.
+  double log_determinant() const { return log_determinant_; }
+  /// Not missing.
+  std::size_t observations() const { return observations_; }
+
+ private:
+  struct Step {
+    std::size_t observation;
+    double gap;     ///< s since the step before; infinite at the start of a sequence
+    int slot;       ///< state that holds the offset of its line, 0 = no line
+    bool opens;     ///< first observation of its line
+    double sigma;   ///< stated
+    double length;  ///< m
+  };
+  /// A sequence in the order of its filter; state 0 is the wander, the others offsets of open lines.
+  struct Track {
+    std::vector<Step> steps;
+    std::size_t group = 0;
+    int states = 1;
+    bool timed = false;
+    std::vector<double> decay;  ///< of the wander since the step before
+    std::vector<double> scale;  ///< 1 / sqrt(F)
+    std::vector<double> gain;   ///< states x steps
+  };
+
+  static Track make_track(const NoiseData& data, const NoiseSequence& sequence);
+  static void assign_slots(const NoiseSequence& sequence, const std::vector<std::size_t>& order,
+                           Track& track);
+  template <int kStates>
+  static double compute_gains(const NoiseParameters& noise, Track& track);
+  /// In place on a tile of steps [begin, end): `width` values per step.
+  static void filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width, double* tile,
+                     double* state);
+  void whiten_block(const Track& track, Eigen::Index first, Eigen::Index width,
+                    const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened) const;
+  void add_gram(const Track& track, const Eigen::MatrixXd& rows, Eigen::MatrixXd& sum) const;
+
+  std::vector<Track> tracks_;
+  std::vector<std::size_t> missing_;
+  std::size_t rows_ = 0;
+  std::size_t observations_ = 0;
+  std::size_t groups_ = 0;
+  double log_determinant_ = 0.0;
+};
+
+}  // namespace volcal

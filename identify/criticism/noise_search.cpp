@@ -1,0 +1,416 @@
+#include "volcal/identify/criticism/noise_search.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace volcal {
+namespace {
+
+enum Parameter { kWhite, kWander, kTau, kLine, kPerMetre, kParameters };
+
+constexpr std::size_t kLeastObservations = 30;  // fewer: white alone
+constexpr std::size_t kLeastLines = 4;
+constexpr double kLeastSpreadOfLength = 1.05;
+constexpr double kBendOfScale = 0.1;  // of the residuals' standard deviation: where log1p turns from linear
+constexpr double kLargestShare = 30.0;
+constexpr double kWhiteDown = 1e-2, kWhiteUp = 10.0;  // of the factor that explains the residuals alone
+constexpr double kTauDown = 0.5, kTauUp = 3.0;        // of the usual gap, of the longest sequence
+constexpr int kTauStarts = 6;
+constexpr std::size_t kRefinedStarts = 3;
+constexpr double kSlopeStep = 0.01;
+constexpr double kBendStep = 0.05;
+constexpr double kFirstReach = 1.5;  // logarithm, how far the surrogate is trusted
+constexpr double kLeastReach = 0.02;
+constexpr double kCurvedInformation = 0.5;  // error of its linear model that asks for a new slope
+constexpr double kSettled = 0.01;           // of -2 l
+constexpr int kRefinements = 6;
+constexpr double kHopeless = 30.0;  // above the better model: not refined
+constexpr double kSurrogateTolerance = 1e-3;
+constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
+
+constexpr int parameter_of(int term) { return term == 0 ? kWander : term == 1 ? kLine : kPerMetre; }
+
+struct TimeScale {
+  double usual_gap = 0.0;
+  double longest = 0.0;
+};
+
+TimeScale time_scale(const NoiseData& data) {
+  TimeScale scale;
+  std::vector<double> gaps;
+  for (const NoiseSequence& sequence : data.sequences) {
+    std::vector<double> time = sequence.time;
+    std::ranges::sort(time);
+    if (time.size() < 2) continue;
+    scale.longest = std::max(scale.longest, time.back() - time.front());
+    for (std::size_t i = 1; i < time.size(); ++i) {
+      if (time[i] > time[i - 1]) gaps.push_back(time[i] - time[i - 1]);
+    }
+  }
+  if (gaps.empty()) return {};
+  std::ranges::nth_element(gaps, gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2));
+  scale.usual_gap = gaps[gaps.size() / 2];
+  return scale;
+}
+
+/// Lines of several readings in sequences of several lines.
+bool has_lines(const NoiseData& data) {
+  std::size_t useful = 0;
+  for (const NoiseSequence& sequence : data.sequences) {
+    std::map<std::int32_t, std::size_t> readings;
+    for (const std::int32_t line : sequence.line) ++readings[line];
+    useful += static_cast<std::size_t>(
+        std::ranges::count_if(readings, [](const auto& entry) { return entry.second > 1; }));
+  }
+  return useful >= kLeastLines;
+}
+
+/// Half the mean squared difference of successive readings, or of successive visits of a point.
+double half_squared_difference(const NoiseData& data, const std::vector<std::int64_t>& point,
+                               const Eigen::VectorXd& residual) {
+  double successive = 0.0, returning = 0.0;
+  std::size_t successions = 0, returns = 0;
+  for (const NoiseSequence& sequence : data.sequences) {
+    std::vector<std::size_t> order(sequence.observation.size());
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+    if (!sequence.time.empty()) {
+      std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.time[k]; });
+    }
+    std::map<std::int64_t, double> last;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const std::size_t observation = sequence.observation[order[i]];
+      const double now = residual(static_cast<Eigen::Index>(observation));
+      if (i > 0) {
+        const std::size_t before = sequence.observation[order[i - 1]];
+        successive += std::pow(now - residual(static_cast<Eigen::Index>(before)), 2);
+        ++successions;
+      }
+      if (point.empty() || point[observation] < 0) continue;
+      const auto visited = last.find(point[observation]);
+      if (visited != last.end()) {
+        returning += std::pow(now - visited->second, 2);
+        ++returns;
+      }
+      last[point[observation]] = now;
+    }
+  }
+  if (returns >= kLeastObservations) return 0.5 * returning / static_cast<double>(returns);
+  return successions > 0 ? 0.5 * successive / static_cast<double>(successions) : 0.0;
+}
+
+}  // namespace
+
+NoiseSearch::NoiseSearch(RestrictedLikelihood& likelihood, std::size_t group, const NoiseOptions& options,
+                         Eigen::MatrixXd rest, const Eigen::VectorXd& solution, double white, double taken)
+    : likelihood_(likelihood), group_(group), options_(options), rest_(std::move(rest)) {
+  white_.residual = likelihood.residual(group, solution);
+  set_limits(white, white_.residual);
+  set_moments(white_.residual);
+  white_.at = lower_;
+  white_.at(kWhite) = std::log(white);
+  white_.at(kTau) = 0.5 * (lower_(kTau) + upper_(kTau));
+  white_.slope = Eigen::VectorXd::Zero(kParameters);
+  white_.slope(kWhite) = -2.0 * taken;
+}
+
+void NoiseSearch::set_limits(double white, const Eigen::VectorXd& residual) {
+  const NoiseData& data = likelihood_.group_data(group_);
+  const auto n = static_cast<double>(data.sigma.size());
+  total_ = std::sqrt(residual.squaredNorm() / n);
+  const TimeScale time = time_scale(data);
+  double shortest = 0.0, longest = 0.0, squares = 0.0;
+  if (!data.length.empty()) {
+    const auto [low, high] = std::ranges::minmax(data.length);
+    shortest = std::abs(low);
+    longest = std::abs(high);
+    for (const double length : data.length) squares += length * length;
+  }
+  mean_length_ = std::sqrt(squares / n);
+  const bool enough = data.sigma.size() >= kLeastObservations;
+  possible_[0] = options_.wander && enough && time.longest > 2.0 * time.usual_gap;
+  possible_[1] = options_.line && enough && has_lines(data);
+  possible_[2] = options_.per_metre && enough && longest > kLeastSpreadOfLength * shortest;
+
+  lower_.resize(kParameters);
+  upper_.resize(kParameters);
+  const double large = coordinate(kLargestShare * total_);
+  lower_ << std::log(kWhiteDown * white), 0.0, 0.0, 0.0, 0.0;
+  upper_ << std::log(kWhiteUp * white), large, 0.0, large, large;
+  if (possible_[0]) {
+    lower_(kTau) = std::log(kTauDown * time.usual_gap);
+    upper_(kTau) = std::log(kTauUp * time.longest);
+  }
+}
+
+void NoiseSearch::set_moments(const Eigen::VectorXd& residual) {
+  const double independent =
+      half_squared_difference(likelihood_.group_data(group_), likelihood_.group_points(group_), residual);
+  correlated_ = std::clamp(1.0 - independent / (total_ * total_), 0.05, 0.95);
+}
+
+double NoiseSearch::coordinate(double deviation) const {
+  return std::log1p(std::pow(deviation / (kBendOfScale * total_), 2));
+}
+
+double NoiseSearch::deviation(double coordinate) const {
+  return kBendOfScale * total_ * std::sqrt(std::expm1(coordinate));
+}
+
+NoiseParameters NoiseSearch::parameters(const Eigen::VectorXd& at, const Active& active) const {
+  NoiseParameters noise;
+  noise.white = std::exp(at(kWhite));
+  if (active[0]) {
+    noise.wander = deviation(at(kWander));
+    noise.tau = std::exp(at(kTau));
+  }
+  if (active[1]) noise.line = deviation(at(kLine));
+  if (active[2]) noise.per_metre = deviation(at(kPerMetre)) / mean_length_;
+  return noise;
+}
+
+Box NoiseSearch::box(const Active& active) const {
+  Box limits{lower_, upper_};
+  for (int term = 0; term < kTerms; ++term) {
+    if (!active[static_cast<std::size_t>(term)])
+      limits.upper(parameter_of(term)) = lower_(parameter_of(term));
+  }
+  if (!active[0]) limits.upper(kTau) = lower_(kTau);
+  return limits;
+}
+
+void NoiseSearch::evaluate(Point& point) {
+  const auto share = likelihood_.share(group_, parameters(point.at, point.active));
+  const auto solution = RestrictedLikelihood::solve(rest_ + share.gram);
+  ++evaluations_;
+  point.value = share.log_determinant + solution.log_information + solution.quadratic;
+  point.log_information = solution.log_information;
+  point.residual = likelihood_.residual(group_, solution.at);
+}
+
+void NoiseSearch::find_slope(Point& point) {
+  const Box limits = box(point.active);
+  point.slope.setZero(kParameters);
+  for (Eigen::Index i = 0; i < kParameters; ++i) {
+    if (limits.lower(i) >= limits.upper(i)) continue;
+    Point moved;
+    moved.at = point.at;
+    moved.at(i) += kSlopeStep;
+    const auto share = likelihood_.share(group_, parameters(moved.at, point.active));
+    const double log_information = RestrictedLikelihood::solve(rest_ + share.gram).log_information;
+    ++evaluations_;
+    point.slope(i) = (log_information - point.log_information) / kSlopeStep;
+  }
+}
+
+/// -2 l up to a constant, with the solution of `from` held and its log information linear.
+double NoiseSearch::surrogate(const Point& from, const Eigen::VectorXd& at, const Active& active) {
+  double value = likelihood_.misfit(group_, parameters(at, active), from.residual);
+  value += from.slope(kWhite) * (at(kWhite) - from.at(kWhite));
+  for (int term = 0; term < kTerms; ++term) {
+    const Eigen::Index i = parameter_of(term);
+    if (active[static_cast<std::size_t>(term)]) value += from.slope(i) * (at(i) - from.at(i));
+  }
+  return active[0] ? value + from.slope(kTau) * (at(kTau) - from.at(kTau)) : value;
+}
+
+std::vector<Eigen::VectorXd> NoiseSearch::starts(const Active& active) const {
+  std::vector<Eigen::VectorXd> result;
+  const int taus = active[0] ? kTauStarts : 1;
+  const std::vector<double> shares = active[0] && active[1] ? std::vector<double>{0.1, 0.5, 0.9}
+                                                            : std::vector<double>{1.0};  // of the wander
+  for (const double correlated : {correlated_, 0.2 * correlated_}) {
+    for (const double share : shares) {
+      for (int k = 0; k < taus; ++k) {
+        Eigen::VectorXd at = white_.at;
+        const double independent = active[2] ? 0.5 * (1.0 - correlated) : 1.0 - correlated;
+        const double of_wander = active[0] ? correlated * share : 0.0;
+        at(kWhite) += 0.5 * std::log(independent);
+        at(kTau) = lower_(kTau) + (upper_(kTau) - lower_(kTau)) * (k + 0.5) / taus;
+        at(kWander) = coordinate(total_ * std::sqrt(of_wander));
+        at(kLine) = coordinate(total_ * std::sqrt(correlated - of_wander));
+        at(kPerMetre) = coordinate(total_ * std::sqrt(independent));
+        result.push_back(at);
+      }
+    }
+  }
+  return result;
+}
+
+NoiseSearch::Point NoiseSearch::best_start(const Point& from, const Active& active) {
+  std::vector<std::pair<double, Eigen::VectorXd>> candidates;
+  for (const Eigen::VectorXd& at : starts(active)) candidates.emplace_back(surrogate(from, at, active), at);
+  std::ranges::sort(candidates, {}, &std::pair<double, Eigen::VectorXd>::first);
+  std::set<double> taus;  // the refined ones differ in it, or are the best alone
+  std::erase_if(candidates,
+                [&](const auto& candidate) { return !taus.insert(candidate.second(kTau)).second; });
+  if (candidates.size() > kRefinedStarts) candidates.resize(kRefinedStarts);
+  candidates.emplace_back(0.0, from.at);
+  const Box limits = box(active);
+  Minimum best{{}, std::numeric_limits<double>::infinity()};
+  for (const auto& candidate : candidates) {
+    Minimum found = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(from, at, active); },
+                                    candidate.second, limits, kSurrogateTolerance);
+    if (found.value < best.value) best = std::move(found);
+  }
+  Point point;
+  point.at = best.at;
+  point.active = active;
+  point.slope = from.slope;
+  evaluate(point);
+  return point;
+}
+
+void NoiseSearch::refine(Point& point) {
+  const Box limits = box(point.active);
+  double reach = kFirstReach;
+  bool fresh = false;
+  for (int k = 0; k < kRefinements && reach > kLeastReach; ++k) {
+    const Box near{limits.lower.cwiseMax((point.at.array() - reach).matrix()).cwiseMin(limits.upper),
+                   limits.upper.cwiseMin((point.at.array() + reach).matrix()).cwiseMax(limits.lower)};
+    Point next;
+    next.active = point.active;
+    next.at = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(point, at, point.active); },
+                              point.at, near, kSurrogateTolerance)
+                  .at;
+    evaluate(next);
+    const Eigen::VectorXd step = next.at - point.at;
+    const double error = next.log_information - point.log_information - point.slope.dot(step);
+    if (next.value < point.value) {
+      const double gain = point.value - next.value;
+      next.slope = point.slope;
+      if (step.squaredNorm() > 0.0) next.slope += (2.0 * error / step.squaredNorm()) * step;
+      point = std::move(next);
+      fresh = false;
+      if (gain < kSettled && std::abs(error) < kCurvedInformation) return;
+      if (std::abs(error) > kCurvedInformation) {
+        find_slope(point);
+        fresh = true;
+      }
+    } else if (!fresh) {
+      if (point.value > next.value - kSettled && std::abs(error) < kSettled) return;
+      find_slope(point);
+      fresh = true;
+    } else {
+      if (point.value > next.value - kSettled) return;
+      reach = std::min(reach, step.cwiseAbs().maxCoeff()) / 4.0;
+    }
+  }
+}
+
+/// To the maximum, with a slope found there.
+void NoiseSearch::settle(Point& point) {
+  for (int k = 0; k < kRefinements; ++k) {
+    const double before = point.value;
+    find_slope(point);
+    refine(point);
+    if (before - point.value < kSettled) return;
+  }
+}
+
+NoiseSearch::Point NoiseSearch::without(const Point& point, int term) {
+  Active active = point.active;
+  active[static_cast<std::size_t>(term)] = false;
+  Point reduced = best_start(point, active);
+  if (reduced.value - point.value < kHopeless) refine(reduced);
+  return reduced;
+}
+
+void NoiseSearch::run(InstrumentNoise& result) {
+  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
+  for (std::size_t term = 0; term < kTerms; ++term) {
+    *evidence[term] = {possible_[term], false, 0.0,
+                       term == 0 ? options_.wander_threshold : options_.threshold};
+  }
+  Point best = best_start(white_, possible_);
+  settle(best);
+  for (bool dropped = true; dropped;) {
+    dropped = false;
+    Point next;
+    std::size_t weakest = 0;
+    double least = 1.0;
+    for (std::size_t term = 0; term < kTerms; ++term) {
+      if (!best.active[term]) continue;
+      Point reduced = without(best, static_cast<int>(term));
+      evidence[term]->likelihood_ratio = reduced.value - best.value;
+      const double support = evidence[term]->likelihood_ratio / evidence[term]->threshold;
+      if (support >= least) continue;
+      least = support;
+      weakest = term;
+      next = std::move(reduced);
+      dropped = true;
+    }
+    if (dropped) {
+      evidence[weakest]->likelihood_ratio = std::max(evidence[weakest]->likelihood_ratio, 0.0);
+      best = std::move(next);
+    }
+  }
+  settle(best);
+  for (std::size_t term = 0; term < kTerms; ++term) evidence[term]->on = best.active[term];
+  result.parameters = parameters(best.at, best.active);
+  find_uncertainty(best, result.log_uncertainty);
+}
+
+/// The logarithm of a parameter moved by `shift`.
+Eigen::VectorXd NoiseSearch::moved(const Eigen::VectorXd& at, Eigen::Index parameter, double shift) const {
+  Eigen::VectorXd result = at;
+  const bool logarithm = parameter == kWhite || parameter == kTau;
+  result(parameter) =
+      logarithm ? at(parameter) + shift : coordinate(deviation(at(parameter)) * std::exp(shift));
+  return result;
+}
+
+/// Second differences of -2 l over about half a standard uncertainty.
+void NoiseSearch::find_uncertainty(const Point& point, NoiseParameters& log_uncertainty) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  log_uncertainty = {kNone, kNone, kNone, kNone, kNone};
+  const std::array<double*, kParameters> targets{&log_uncertainty.white, &log_uncertainty.wander,
+                                                 &log_uncertainty.tau, &log_uncertainty.line,
+                                                 &log_uncertainty.per_metre};
+  const Box limits = box(point.active);
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < kParameters; ++i) {
+    if (limits.lower(i) < limits.upper(i) && (i == kWhite || i == kTau || point.at(i) > 0.0))
+      free.push_back(i);
+  }
+  const std::size_t count = free.size();
+  const auto value = [&](const Eigen::VectorXd& at) {
+    Point there;
+    there.at = at;
+    there.active = point.active;
+    evaluate(there);
+    return there.value;
+  };
+  std::vector<double> width(count), above(count);
+  Eigen::MatrixXd hessian(count, count);
+  for (std::size_t a = 0; a < count; ++a) {
+    const double bend = (surrogate(point, moved(point.at, free[a], kBendStep), point.active) -
+                         2.0 * surrogate(point, point.at, point.active) +
+                         surrogate(point, moved(point.at, free[a], -kBendStep), point.active)) /
+                        (kBendStep * kBendStep);
+    width[a] = std::clamp(0.5 * std::sqrt(2.0 / std::max(bend, 1e-9)), 0.005, 0.3);
+    const Eigen::VectorXd up = moved(point.at, free[a], width[a]);
+    above[a] = value(up);
+    const double below = value(moved(point.at, free[a], -width[a]));
+    const auto i = static_cast<Eigen::Index>(a);
+    hessian(i, i) = (above[a] - 2.0 * point.value + below) / (width[a] * width[a]);
+    for (std::size_t b = 0; b < a; ++b) {
+      const double both = value(moved(up, free[b], width[b]));
+      const auto j = static_cast<Eigen::Index>(b);
+      hessian(i, j) = (both - above[a] - above[b] + point.value) / (width[a] * width[b]);
+      hessian(j, i) = hessian(i, j);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * hessian);
+  const Eigen::ArrayXd information = eigen.eigenvalues().array().max(0.0) + 1.0 / (kSpread * kSpread);
+  const Eigen::VectorXd inverse = information.inverse().matrix();
+  const Eigen::VectorXd variance = eigen.eigenvectors().cwiseAbs2() * inverse;
+  for (std::size_t a = 0; a < count; ++a)
+    *targets[static_cast<std::size_t>(free[a])] = std::sqrt(variance(static_cast<Eigen::Index>(a)));
+}
+
+}  // namespace volcal

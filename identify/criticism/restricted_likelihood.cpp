@@ -1,0 +1,178 @@
+#include "volcal/identify/criticism/restricted_likelihood.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "volcal/identify/solve/dense.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kSingular = 1e-12;  // of the largest eigenvalue, columns scaled to one
+
+void require(bool condition, const char* problem) {
+  if (!condition) throw std::invalid_argument(std::string("restricted likelihood: ") + problem);
+}
+
+Eigen::MatrixXd prior_precision(const NoiseProblem& problem) {
+  const Eigen::Index p = problem.jacobian.cols();
+  return problem.prior_precision.size() > 0 ? problem.prior_precision : Eigen::MatrixXd::Zero(p, p);
+}
+
+struct LogPseudoDeterminant {
+  double value = 0.0;
+  int rank = 0;
+};
+
+LogPseudoDeterminant log_pseudo_determinant(const Eigen::MatrixXd& symmetric) {
+  LogPseudoDeterminant result;
+  if (symmetric.size() == 0 || symmetric.isZero(0.0)) return result;
+  const Eigen::VectorXd values = eigen_decomposition(symmetric).values;
+  for (const double value : values) {
+    if (value <= kSingular * values.maxCoeff()) continue;
+    result.value += std::log(value);
+    ++result.rank;
+  }
+  return result;
+}
+
+}  // namespace
+
+RestrictedLikelihood::RestrictedLikelihood(const NoiseProblem& problem, int threads) : threads_(threads) {
+  const Eigen::Index n = problem.jacobian.rows(), p = problem.jacobian.cols();
+  const auto count = static_cast<std::size_t>(n);
+  require(problem.residual.size() == n && problem.data.sigma.size() == count,
+          "one residual and sigma per row");
+  require(problem.point.empty() || problem.point.size() == count, "one point per row, or none");
+  require(problem.prior_precision.size() == 0 ||
+              (problem.prior_precision.rows() == p && problem.prior_precision.cols() == p),
+          "the prior precision is p x p, or empty");
+  require(problem.prior_mean.size() == 0 || problem.prior_mean.size() == p, "the prior mean has p elements");
+  use_single_threaded_blas();
+  split(problem);
+  transform(problem);
+}
+
+void RestrictedLikelihood::split(const NoiseProblem& problem) {
+  for (const NoiseSequence& sequence : problem.data.sequences) {
+    if (sequence.group >= groups_.size()) groups_.resize(sequence.group + 1);
+    Group& group = groups_[sequence.group];
+    NoiseSequence own;
+    for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
+      const std::size_t i = sequence.observation[k];
+      require(i < problem.data.sigma.size(), "a sequence names an observation that does not exist");
+      if (!std::isfinite(problem.data.sigma[i])) continue;
+      own.observation.push_back(group.observation.size());
+      if (!sequence.time.empty()) own.time.push_back(sequence.time[k]);
+      if (!sequence.line.empty()) own.line.push_back(sequence.line[k]);
+      group.observation.push_back(i);
+      group.data.sigma.push_back(problem.data.sigma[i]);
+      if (!problem.data.length.empty()) group.data.length.push_back(problem.data.length[i]);
+      if (!problem.point.empty()) group.point.push_back(problem.point[i]);
+    }
+    group.data.sequences.push_back(std::move(own));
+  }
+  const Eigen::Index p = problem.jacobian.cols();
+  for (Group& group : groups_) {
+    group.rows.resize(p + 1, static_cast<Eigen::Index>(group.observation.size()));
+    for (Eigen::Index k = 0; k < group.rows.cols(); ++k) {
+      const auto i = static_cast<Eigen::Index>(group.observation[static_cast<std::size_t>(k)]);
+      group.rows.col(k).head(p) = problem.jacobian.row(i).transpose();
+      group.rows(p, k) = problem.residual(i);
+    }
+    group.whitener.emplace_back(group.data, std::vector<NoiseParameters>(1));
+  }
+}
+
+/// Variables in which the information of white noise is the identity, measured from their white estimate.
+void RestrictedLikelihood::transform(const NoiseProblem& problem) {
+  const Eigen::Index p = problem.jacobian.cols();
+  const Eigen::MatrixXd precision = prior_precision(problem);
+  Eigen::MatrixXd information = precision;
+  for (std::size_t g = 0; g < groups_.size(); ++g) information += share(g, {}).gram.topLeftCorner(p, p);
+  const Eigen::VectorXd scale =
+      information.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+  const SymmetricEigen eigen = eigen_decomposition(scale.asDiagonal() * information * scale.asDiagonal());
+  const double least = p > 0 ? kSingular * eigen.values.maxCoeff() : 0.0;
+  const auto kept = static_cast<Eigen::Index>((eigen.values.array() > least).count());
+  transform_ = scale.asDiagonal() * eigen.vectors.rightCols(kept) *
+               eigen.values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+  double log_transform = -0.5 * eigen.values.tail(kept).array().log().sum();
+  for (const double s : scale) log_transform += s > 0.0 ? std::log(s) : 0.0;
+
+  const Eigen::VectorXd mean = problem.prior_mean.size() > 0 ? problem.prior_mean : Eigen::VectorXd::Zero(p);
+  Eigen::VectorXd right = transform_.transpose() * (precision * mean);
+  for (Group& group : groups_) {
+    Eigen::MatrixXd rows(kept + 1, group.rows.cols());
+    rows.topRows(kept).noalias() = transform_.transpose() * group.rows.topRows(p);
+    rows.row(kept) = group.rows.row(p);
+    group.rows = std::move(rows);
+    const Eigen::Map<const Eigen::ArrayXd> sigma(group.data.sigma.data(), group.rows.cols());
+    right += group.rows.topRows(kept) * (group.rows.row(kept).transpose().array() / sigma.square()).matrix();
+  }
+  first_ = right;  // information = identity
+  for (Group& group : groups_) group.rows.row(kept) -= first_.transpose() * group.rows.topRows(kept);
+
+  const Eigen::VectorXd pull = mean - transform_ * first_;
+  prior_.gram.resize(kept + 1, kept + 1);
+  prior_.gram.topLeftCorner(kept, kept) = transform_.transpose() * precision * transform_;
+  prior_.gram.col(kept).head(kept) = transform_.transpose() * (precision * pull);
+  prior_.gram.row(kept).head(kept) = prior_.gram.col(kept).head(kept).transpose();
+  prior_.gram(kept, kept) = pull.dot(precision * pull);
+
+  const LogPseudoDeterminant of_prior = log_pseudo_determinant(precision);
+  double freedom = static_cast<double>(of_prior.rank - kept);
+  for (const Group& group : groups_) freedom += static_cast<double>(group.observation.size());
+  constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
+}
+
+RestrictedLikelihood::Share RestrictedLikelihood::share(std::size_t group, const NoiseParameters& noise) {
+  Whitener& whitener = groups_[group].whitener.front();
+  whitener.set_parameters({&noise, 1});
+  return {whitener.gram(groups_[group].rows, threads_), whitener.log_determinant()};
+}
+
+Eigen::VectorXd RestrictedLikelihood::residual(std::size_t group, const Eigen::VectorXd& at) const {
+  const Eigen::MatrixXd& rows = groups_[group].rows;
+  return rows.row(at.size()).transpose() - rows.topRows(at.size()).transpose() * at;
+}
+
+double RestrictedLikelihood::misfit(std::size_t group, const NoiseParameters& noise,
+                                    const Eigen::VectorXd& residual) {
+  Whitener& whitener = groups_[group].whitener.front();
+  whitener.set_parameters({&noise, 1});
+  return whitener.log_determinant() + whitener.whiten(residual).squaredNorm();
+}
+
+RestrictedLikelihood::Solution RestrictedLikelihood::solve(const Eigen::MatrixXd& gram) {
+  const Eigen::Index p = gram.rows() - 1;
+  const auto lower = cholesky_lower(gram);
+  if (!lower) return {Eigen::VectorXd::Zero(p), 0.0, std::numeric_limits<double>::infinity()};
+  const double last = (*lower)(p, p);
+  return {lower->topLeftCorner(p, p).triangularView<Eigen::Lower>().transpose().solve(
+              Eigen::VectorXd(lower->row(p).head(p))),
+          2.0 * lower->diagonal().head(p).array().log().sum(), last * last};
+}
+
+double RestrictedLikelihood::log_likelihood(const Share& total) const {
+  const Solution solution = solve(total.gram);
+  return -0.5 * (total.log_determinant + solution.log_information + solution.quadratic + constant_);
+}
+
+double RestrictedLikelihood::log_likelihood(const std::vector<NoiseParameters>& noise) {
+  require(noise.size() >= groups_.size(), "parameters for every group");
+  Share total = prior_;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const Share own = share(g, noise[g]);
+    total.gram += own.gram;
+    total.log_determinant += own.log_determinant;
+  }
+  return log_likelihood(total);
+}
+
+}  // namespace volcal

@@ -1,0 +1,150 @@
+#include "volcal/identify/criticism/noise_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/noise_campaigns.h"
+#include "volcal/identify/criticism/bounded_minimum.h"
+
+namespace volcal {
+namespace {
+
+NoiseProblem grid(std::mt19937_64& generator, const NoiseParameters& noise, Eigen::Vector3i points,
+                  int stations) {
+  NoiseProblem problem;
+  test::GridPlan plan;
+  plan.stations = stations;
+  plan.points = points;
+  plan.terms = 1;
+  test::add_grid(plan, generator, problem);
+  problem.residual = test::draw_noise(problem.data, {noise}, generator);
+  return problem;
+}
+
+/// Rosenbrock's valley, and its lowest point in a box that leaves the minimum out: x = 0.5, y = x^2.
+TEST(BoundedMinimum, ValleyAndBound) {
+  const auto valley = [](const Eigen::VectorXd& x) {
+    return 100.0 * std::pow(x(1) - x(0) * x(0), 2) + std::pow(1.0 - x(0), 2);
+  };
+  Box box{Eigen::Vector2d(-2.0, -2.0), Eigen::Vector2d(2.0, 2.0)};
+  const Minimum free = bounded_minimum(valley, Eigen::Vector2d(-1.2, 1.0), box, 1e-10, 200);
+  EXPECT_LT((free.at - Eigen::Vector2d(1.0, 1.0)).norm(), 2e-3);
+  box.upper(0) = 0.5;
+  const Minimum bound = bounded_minimum(valley, Eigen::Vector2d(-1.2, 1.0), box, 1e-10, 200);
+  EXPECT_LT((bound.at - Eigen::Vector2d(0.5, 0.25)).norm(), 2e-3);
+}
+
+/// No point that a direct search of the dense formula finds is better.
+TEST(NoiseEstimate, IsTheMaximumOfTheDenseLikelihood) {
+  std::mt19937_64 generator(1);
+  for (int k = 0; k < 3; ++k) {
+    const NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 60.0, 0.4e-6, 0.0}, {6, 4, 3}, 2);
+    NoiseOptions options;
+    options.threshold = options.wander_threshold = 0.0;
+    options.per_metre = false;
+    const NoiseEstimate estimate = estimate_noise(problem, options);
+    const NoiseParameters& found = estimate.instruments[0].parameters;
+    EXPECT_NEAR(estimate.log_likelihood, test::dense_log_likelihood(problem, estimate.parameters()), 1e-6);
+
+    const auto dense = [&](const Eigen::VectorXd& at) {
+      const NoiseParameters noise{std::exp(at(0)), std::exp(at(1)), std::exp(at(2)), std::exp(at(3)), 0.0};
+      return -2.0 * test::dense_log_likelihood(problem, {noise});
+    };
+    Eigen::VectorXd at(4);
+    at << std::log(found.white), std::log(std::max(found.wander, 1e-8)), std::log(found.tau),
+        std::log(std::max(found.line, 1e-8));
+    Box box{at.array() - 2.0, at.array() + 2.0};
+    box.lower(2) =
+        std::log(1.5);  // limits of the search: half the usual gap, three times the longest sequence
+    box.upper(2) = std::log(3.0 * 350.0);
+    for (const double away : {0.0, 0.7, -0.7}) {
+      const Minimum best = bounded_minimum(dense, at.array() + away, box, 1e-4, 60);
+      EXPECT_LT(-2.0 * estimate.log_likelihood - best.value, 0.05) << k << ' ' << away;
+    }
+  }
+}
+
+/// Shares of the likelihood ratio: adding a term and dropping it again.
+TEST(NoiseEstimate, LikelihoodRatioIsThatOfTheSmallerModel) {
+  std::mt19937_64 generator(2);
+  const NoiseProblem problem = grid(generator, {1.0, 0.3e-6, 60.0, 0.3e-6, 0.0}, {8, 5, 4}, 3);
+  const NoiseEstimate all = estimate_noise(problem);
+  ASSERT_TRUE(all.instruments[0].line.on);
+  NoiseOptions options;
+  options.line = false;
+  const NoiseEstimate without = estimate_noise(problem, options);
+  EXPECT_FALSE(without.instruments[0].line.possible);
+  EXPECT_NEAR(all.instruments[0].line.likelihood_ratio, 2.0 * (all.log_likelihood - without.log_likelihood),
+              0.5);
+}
+
+TEST(NoiseEstimate, WhatTheDataCannotSayIsOff) {
+  std::mt19937_64 generator(3);
+  NoiseProblem problem = grid(generator, {1.0, 0.6e-6, 60.0, 0.5e-6, 0.0}, {8, 5, 4}, 3);
+  for (NoiseSequence& sequence : problem.data.sequences) {
+    sequence.time.clear();
+    sequence.line.clear();
+  }
+  problem.data.length.clear();
+  const NoiseEstimate estimate = estimate_noise(problem);
+  const InstrumentNoise& own = estimate.instruments[0];
+  EXPECT_FALSE(own.wander.possible || own.line.possible || own.per_metre.possible);
+  EXPECT_EQ(own.parameters.wander, 0.0);
+  EXPECT_EQ(own.parameters.line, 0.0);
+  EXPECT_NEAR(estimate.log_likelihood, estimate.white_log_likelihood, 1e-3);
+  const auto rows = noise_table(estimate);
+  ASSERT_EQ(rows.size(), 5U);
+  EXPECT_EQ(rows[0].term, "white");
+  EXPECT_LT(rows[0].low, rows[0].value);
+  EXPECT_GT(rows[0].high, rows[0].value);
+  EXPECT_EQ(rows[1].remark, "off: no times, or too few readings");
+  EXPECT_EQ(rows[3].remark, "off: no lines of several readings");
+}
+
+/// Nine readings, eleven coefficients: the stated sigma stays.
+TEST(NoiseEstimate, TooFewReadingsKeepTheStatedSigma) {
+  std::mt19937_64 generator(4);
+  const NoiseProblem problem = grid(generator, {1.0, 0.0, 60.0, 0.0, 0.0}, {3, 3, 1}, 1);
+  const NoiseEstimate estimate = estimate_noise(problem);
+  EXPECT_FALSE(estimate.instruments[0].estimated);
+  EXPECT_EQ(estimate.instruments[0].parameters.white, 1.0);
+  EXPECT_EQ(noise_table(estimate)[0].remark, "stated: too few redundant readings");
+}
+
+/// Each instrument gets its own noise, though they share the coefficients.
+TEST(NoiseEstimate, TwoInstruments) {
+  std::mt19937_64 generator(5);
+  NoiseProblem problem;
+  test::GridPlan plan;
+  plan.stations = 4;
+  test::add_grid(plan, generator, problem);
+  plan.group = 1;
+  plan.sigma = 1e-6;
+  test::add_grid(plan, generator, problem);
+  const std::vector<NoiseParameters> truth{{0.7, 0.0, 600.0, 0.0, 0.0}, {1.5, 0.0, 600.0, 1.2e-6, 0.0}};
+  problem.residual = test::draw_noise(problem.data, truth, generator);
+  const NoiseEstimate estimate = estimate_noise(problem);
+  EXPECT_NEAR(estimate.instruments[0].parameters.white, 0.7, 0.06);
+  EXPECT_FALSE(estimate.instruments[0].line.on);
+  EXPECT_NEAR(estimate.instruments[1].parameters.white, 1.5, 0.12);
+  EXPECT_NEAR(estimate.instruments[1].parameters.line, 1.2e-6, 0.3e-6);
+  EXPECT_FALSE(estimate.instruments[1].wander.on);
+  EXPECT_NEAR(estimate.log_likelihood, RestrictedLikelihood(problem, 1).log_likelihood(estimate.parameters()),
+              1e-6);
+}
+
+/// Returns to the same points only start the search elsewhere.
+TEST(NoiseEstimate, RepeatedPointsLeadToTheSameMaximum) {
+  std::mt19937_64 generator(6);
+  NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 60.0, 0.0, 0.0}, {8, 5, 4}, 3);
+  const NoiseEstimate plain = estimate_noise(problem);
+  for (std::size_t i = 0; i < problem.data.sigma.size(); ++i)
+    problem.point.push_back(static_cast<std::int64_t>(i % 20));
+  const NoiseEstimate repeated = estimate_noise(problem);
+  EXPECT_NEAR(plain.log_likelihood, repeated.log_likelihood, 0.02);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,186 @@
+#include "volcal/identify/criticism/noise_model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+
+#include "tests/support/noise_campaigns.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::infinity();
+
+enum class Lines { None, Following, Resumed };
+
+struct Sample {
+  NoiseData data;
+  std::vector<NoiseParameters> noise;
+};
+
+/// Irregular times (some equal), two instruments, every fifth reading or so missing.
+Sample random_sample(std::mt19937_64& generator, Lines lines, bool timed, bool missing) {
+  std::uniform_real_distribution<double> uniform;
+  Sample sample;
+  std::size_t i = 0;
+  for (int s = 0; s < 4; ++s) {
+    NoiseSequence sequence;
+    sequence.group = static_cast<std::size_t>(s % 2);
+    double time = 1000.0 * uniform(generator);
+    std::int32_t line = 7;
+    const int readings = 15 + static_cast<int>(30.0 * uniform(generator));
+    for (int k = 0; k < readings; ++k, ++i) {
+      time += uniform(generator) < 0.1 ? 0.0 : std::pow(10.0, 3.0 * uniform(generator) - 1.0);
+      if (uniform(generator) < 0.25)
+        line = lines == Lines::Resumed ? static_cast<int>(5 * uniform(generator)) : line + 1;
+      sequence.observation.push_back(i);
+      if (timed) sequence.time.push_back(time);
+      if (lines != Lines::None) sequence.line.push_back(line);
+      sample.data.sigma.push_back(missing && uniform(generator) < 0.2 ? kMissing : 0.2 + uniform(generator));
+      sample.data.length.push_back(3.0 * uniform(generator));
+    }
+    sample.data.sequences.push_back(sequence);
+  }
+  for (int g = 0; g < 2; ++g) {
+    sample.noise.push_back({0.5 + uniform(generator), 2.0 * uniform(generator),
+                            1.0 + 50.0 * uniform(generator), 2.0 * uniform(generator), uniform(generator)});
+  }
+  return sample;
+}
+
+struct Dense {
+  std::vector<Eigen::Index> kept;
+  Eigen::MatrixXd covariance;
+};
+
+Dense dense(const Sample& sample) {
+  Dense result;
+  for (std::size_t i = 0; i < sample.data.sigma.size(); ++i) {
+    if (std::isfinite(sample.data.sigma[i])) result.kept.push_back(static_cast<Eigen::Index>(i));
+  }
+  result.covariance = test::dense_covariance(sample.data, sample.noise)(result.kept, result.kept);
+  return result;
+}
+
+/// Innovations in time order are the rows of L^-1 v with the Cholesky factor of Sigma.
+TEST(Whitener, EqualsDenseCholesky) {
+  std::mt19937_64 generator(1);
+  for (int k = 0; k < 40; ++k) {
+    const Lines lines = k % 3 == 0 ? Lines::None : k % 3 == 1 ? Lines::Following : Lines::Resumed;
+    const Sample sample = random_sample(generator, lines, true, k % 2 == 0);
+    const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+    const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(n, 3);
+    const Whitener whitener(sample.data, sample.noise);
+    Eigen::MatrixXd whitened;
+    whitener.whiten(columns, whitened, 1);
+
+    const auto [kept, covariance] = dense(sample);
+    const Eigen::MatrixXd factor = covariance.llt().matrixL();
+    const Eigen::MatrixXd expected =
+        factor.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd(columns(kept, Eigen::all)));
+    EXPECT_LT((whitened(kept, Eigen::all) - expected).cwiseAbs().maxCoeff(), 1e-10) << k;
+    EXPECT_NEAR(whitener.log_determinant(), 2.0 * factor.diagonal().array().log().sum(),
+                1e-10 * static_cast<double>(n));
+    EXPECT_EQ(whitener.observations(), kept.size());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const bool present = std::isfinite(sample.data.sigma[static_cast<std::size_t>(i)]);
+      EXPECT_EQ(whitened.row(i).isZero(0.0), !present);
+    }
+    const Eigen::VectorXd single = whitener.whiten(Eigen::VectorXd(columns.col(1)));
+    EXPECT_EQ(single, whitened.col(1));
+  }
+}
+
+/// Any order of the readings, and lines without times, where the filter goes line by line.
+TEST(Whitener, AnyOrderAndUntimedLines) {
+  std::mt19937_64 generator(2);
+  for (int k = 0; k < 20; ++k) {
+    Sample sample = random_sample(generator, Lines::Resumed, k % 2 == 0, true);
+    for (NoiseSequence& sequence : sample.data.sequences) {
+      std::vector<std::size_t> order(sequence.observation.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::shuffle(order.begin(), order.end(), generator);
+      const NoiseSequence sorted = sequence;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        sequence.observation[i] = sorted.observation[order[i]];
+        if (!sorted.time.empty()) sequence.time[i] = sorted.time[order[i]];
+        sequence.line[i] = sorted.line[order[i]];
+      }
+    }
+    const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+    const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(n, 4);
+    const Whitener whitener(sample.data, sample.noise);
+    const auto [kept, covariance] = dense(sample);
+    const Eigen::MatrixXd part = columns(kept, Eigen::all);
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+    const Eigen::MatrixXd expected = part.transpose() * factor.solve(part);
+    Eigen::MatrixXd whitened;
+    whitener.whiten(columns, whitened, 1);
+    EXPECT_LT((whitened.transpose() * whitened - expected).norm() / expected.norm(), 1e-11);
+    EXPECT_LT((whitener.gram(columns.transpose(), 1) - expected).norm() / expected.norm(), 1e-11);
+  }
+}
+
+TEST(Whitener, BlocksThreadsAndPlaceChangeNothing) {
+  std::mt19937_64 generator(3);
+  const Sample sample = random_sample(generator, Lines::Following, true, true);
+  const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(n, 150);
+  Whitener whitener(sample.data, std::vector<NoiseParameters>(2));
+  whitener.set_parameters(sample.noise);
+  Eigen::MatrixXd one, several, in_place = columns;
+  whitener.whiten(columns, one, 1);
+  whitener.whiten(columns, several, 3);
+  whitener.whiten(in_place, in_place, 2);
+  EXPECT_EQ(one, several);
+  EXPECT_EQ(one, in_place);
+  EXPECT_EQ(whitener.gram(columns.transpose(), 1), whitener.gram(columns.transpose(), 3));
+  const Eigen::MatrixXd square = one.transpose() * one;
+  EXPECT_LT((whitener.gram(columns.transpose(), 1) - square).norm() / square.norm(), 1e-12);
+}
+
+/// By hand: two readings of variance 1 with a common offset of variance 3, Sigma = [4 3; 3 4]:
+/// L = [2 0; 1.5 sqrt(1.75)], |Sigma| = 7.
+TEST(Whitener, TwoReadingsByHand) {
+  const NoiseData data{{{{0, 1}, {}, {4, 4}, 0}}, {1.0, 1.0}, {}};
+  const std::vector<NoiseParameters> noise{{1.0, 0.0, 600.0, std::sqrt(3.0), 0.0}};
+  const Whitener whitener(data, noise);
+  const Eigen::VectorXd white = whitener.whiten(Eigen::VectorXd(Eigen::Vector2d(2.0, 5.0)));
+  EXPECT_NEAR(white(0), 1.0, 1e-15);
+  EXPECT_NEAR(white(1), 3.5 / std::sqrt(1.75), 1e-14);
+  EXPECT_NEAR(whitener.log_determinant(), std::log(7.0), 1e-14);
+}
+
+TEST(Whitener, RefusesWhatIsNoNoise) {
+  const NoiseData good{{{{0, 1}, {0.0, 1.0}, {}, 0}}, {1.0, 1.0}, {}};
+  const std::vector<NoiseParameters> one(1);
+  EXPECT_NO_THROW(Whitener(good, one));
+  EXPECT_THROW(Whitener(good, {}), std::invalid_argument);
+  NoiseData bad = good;
+  bad.sigma[1] = 0.0;
+  EXPECT_THROW(Whitener(bad, one), std::invalid_argument);
+  bad = good;
+  bad.sequences[0].observation = {0, 0};
+  EXPECT_THROW(Whitener(bad, one), std::invalid_argument);
+  bad = good;
+  bad.sequences[0].time = {1.0};
+  EXPECT_THROW(Whitener(bad, one), std::invalid_argument);
+  bad = good;
+  bad.length = {1.0};
+  EXPECT_THROW(Whitener(bad, one), std::invalid_argument);
+  EXPECT_THROW(Whitener(good, std::vector<NoiseParameters>{{1.0, 1.0, 0.0, 0.0, 0.0}}),
+               std::invalid_argument);
+  EXPECT_THROW(Whitener(good, std::vector<NoiseParameters>{{-1.0, 0.0, 1.0, 0.0, 0.0}}),
+               std::invalid_argument);
+  EXPECT_THROW(Whitener(good, std::vector<NoiseParameters>{{0.0, 0.0, 1.0, 0.0, 0.0}}),
+               std::invalid_argument);
+  Eigen::MatrixXd out;
+  EXPECT_THROW(Whitener(good, one).whiten(Eigen::MatrixXd::Zero(3, 1), out, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,136 @@
+#include "volcal/identify/criticism/restricted_likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+#include "tests/support/noise_campaigns.h"
+
+namespace volcal {
+namespace {
+
+const std::vector<NoiseParameters> kNoise{{1.2, 0.5e-6, 40.0, 0.3e-6, 0.2e-6},
+                                          {0.8, 0.2e-6, 300.0, 0.0, 0.0}};
+
+/// Two instruments that share the coefficients of the grid.
+NoiseProblem two_instruments(std::mt19937_64& generator) {
+  NoiseProblem problem;
+  test::GridPlan plan;
+  plan.stations = 2;
+  plan.points = {6, 4, 3};
+  plan.terms = 1;
+  test::add_grid(plan, generator, problem);
+  plan.group = 1;
+  test::add_grid(plan, generator, problem);
+  problem.residual = test::draw_noise(problem.data, kNoise, generator);
+  problem.residual += problem.jacobian * Eigen::VectorXd::Constant(problem.jacobian.cols(), 3e-6);
+  return problem;
+}
+
+void add_prior(NoiseProblem& problem) {
+  const Eigen::Index p = problem.jacobian.cols();
+  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(p, p) + 2.0 * Eigen::MatrixXd::Identity(p, p);
+  problem.prior_precision = 1e11 * root.transpose() * root;
+  problem.prior_mean = Eigen::VectorXd::Constant(p, 2e-6);
+}
+
+TEST(RestrictedLikelihood, EqualsDenseFormula) {
+  std::mt19937_64 generator(1);
+  NoiseProblem problem = two_instruments(generator);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
+              test::dense_log_likelihood(problem, kNoise), 1e-6);
+  add_prior(problem);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
+              test::dense_log_likelihood(problem, kNoise), 1e-6);
+}
+
+/// The coefficients are those of generalised least squares with the prior.
+TEST(RestrictedLikelihood, SolutionIsGeneralisedLeastSquares) {
+  std::mt19937_64 generator(2);
+  NoiseProblem problem = two_instruments(generator);
+  add_prior(problem);
+  RestrictedLikelihood likelihood(problem, 1);
+  Eigen::MatrixXd gram = likelihood.prior().gram;
+  for (std::size_t g = 0; g < 2; ++g) gram += likelihood.share(g, kNoise[g]).gram;
+  const Eigen::VectorXd x = likelihood.coefficients(RestrictedLikelihood::solve(gram).at);
+
+  const Eigen::LLT<Eigen::MatrixXd> factor(test::dense_covariance(problem.data, kNoise));
+  const Eigen::MatrixXd weighted = factor.solve(problem.jacobian);
+  const Eigen::VectorXd expected =
+      (problem.jacobian.transpose() * weighted + problem.prior_precision)
+          .llt()
+          .solve(weighted.transpose() * problem.residual + problem.prior_precision * problem.prior_mean);
+  EXPECT_LT((x - expected).norm() / expected.norm(), 1e-8);
+}
+
+/// A reading without weight is as good as one that was never taken.
+TEST(RestrictedLikelihood, MissingReadingsAreAbsent) {
+  std::mt19937_64 generator(3);
+  NoiseProblem problem;
+  test::GridPlan plan;
+  plan.points = {6, 3, 3};
+  plan.terms = 1;
+  test::add_grid(plan, generator, problem);
+  problem.residual = test::draw_noise(problem.data, kNoise, generator);
+  NoiseProblem shorter = problem;
+  for (const std::size_t i : {3U, 17U, 60U}) problem.data.sigma[i] = std::numeric_limits<double>::infinity();
+  problem.residual(17) = 1.0;  // a blunder
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < problem.residual.size(); ++i) {
+    if (std::isfinite(problem.data.sigma[static_cast<std::size_t>(i)])) kept.push_back(i);
+  }
+  std::size_t next = 0;
+  std::vector<double> sigma, length;
+  for (NoiseSequence& sequence : shorter.data.sequences) {
+    const NoiseSequence all = sequence;
+    sequence = {{}, {}, {}, all.group};
+    for (std::size_t k = 0; k < all.observation.size(); ++k) {
+      const std::size_t i = all.observation[k];
+      if (!std::isfinite(problem.data.sigma[i])) continue;
+      sequence.observation.push_back(next++);
+      sequence.time.push_back(all.time[k]);
+      sequence.line.push_back(all.line[k]);
+      sigma.push_back(problem.data.sigma[i]);
+      length.push_back(problem.data.length[i]);
+    }
+  }
+  shorter.data.sigma = sigma;
+  shorter.data.length = length;
+  shorter.jacobian = problem.jacobian(kept, Eigen::all).eval();
+  shorter.residual = problem.residual(kept).eval();
+  const double expected = test::dense_log_likelihood(shorter, kNoise);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise), expected, 1e-6);
+}
+
+/// A column twice says nothing new: differences of the likelihood stay the same.
+TEST(RestrictedLikelihood, DependentColumnsAreLeftOut) {
+  std::mt19937_64 generator(4);
+  NoiseProblem problem = two_instruments(generator);
+  RestrictedLikelihood likelihood(problem, 1);
+  const Eigen::Index p = problem.jacobian.cols();
+  NoiseProblem twice = problem;
+  twice.jacobian.conservativeResize(Eigen::NoChange, p + 2);
+  twice.jacobian.col(p) = problem.jacobian.col(0) - 2.0 * problem.jacobian.col(3);
+  twice.jacobian.col(p + 1).setZero();
+  RestrictedLikelihood same(twice, 1);
+  EXPECT_EQ(same.variables(), p);
+  const std::vector<NoiseParameters> other{{1.0, 0.1e-6, 100.0, 0.5e-6, 0.0},
+                                           {1.5, 0.0, 1.0, 0.2e-6, 0.1e-6}};
+  EXPECT_NEAR(same.log_likelihood(kNoise) - same.log_likelihood(other),
+              likelihood.log_likelihood(kNoise) - likelihood.log_likelihood(other), 1e-6);
+}
+
+TEST(RestrictedLikelihood, RefusesSizesThatDisagree) {
+  std::mt19937_64 generator(5);
+  NoiseProblem problem = two_instruments(generator);
+  problem.prior_mean = Eigen::VectorXd::Zero(2);
+  EXPECT_THROW(RestrictedLikelihood(problem, 1), std::invalid_argument);
+  problem = two_instruments(generator);
+  problem.residual.conservativeResize(3);
+  EXPECT_THROW(RestrictedLikelihood(problem, 1), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -78,8 +78,8 @@ void update(const Eigen::VectorXd& step, const Eigen::VectorXd& change, Eigen::M
 
 }  // namespace
 
-Minimum bounded_minimum(const Function& function, Eigen::VectorXd start, const Box& box, double tolerance,
-                        int most_iterations) {
+Minimum bounded_minimum(const Function& function, const Eigen::VectorXd& start, const Box& box,
+                        double tolerance, int most_iterations) {
   Minimum now{start.cwiseMax(box.lower).cwiseMin(box.upper), 0.0};
   now.value = function(now.at);
   Eigen::MatrixXd hessian = first_hessian(function, now, box);

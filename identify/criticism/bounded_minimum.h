@@ -21,7 +21,8 @@ struct Minimum {
 
 /// Variables should be of size one (logarithms): differences are 1e-4, no step exceeds 2. Ends when a step
 /// promises less than `tolerance`. A local minimum: the start decides which.
-Minimum bounded_minimum(const std::function<double(const Eigen::VectorXd&)>& function, Eigen::VectorXd start,
-                        const Box& box, double tolerance, int most_iterations = 40);
+Minimum bounded_minimum(const std::function<double(const Eigen::VectorXd&)>& function,
+                        const Eigen::VectorXd& start, const Box& box, double tolerance,
+                        int most_iterations = 40);
 
 }  // namespace volcal

@@ -33,6 +33,7 @@ void run_parallel(std::size_t items, int threads, const Work& work) {
   };
   std::vector<std::thread> workers;
   const int extra = std::min(threads, static_cast<int>(items)) - 1;
+  workers.reserve(static_cast<std::size_t>(std::max(extra, 0)));
   for (int i = 0; i < extra; ++i) workers.emplace_back(run);
   run();
   for (std::thread& worker : workers) worker.join();

@@ -11,7 +11,7 @@
 namespace volcal {
 namespace {
 
-enum Parameter { kWhite, kWander, kTau, kLine, kPerMetre, kParameters };
+constexpr Eigen::Index kWhite = 0, kWander = 1, kTau = 2, kLine = 3, kPerMetre = 4, kParameters = 5;
 
 constexpr std::size_t kLeastObservations = 30;  // fewer: white alone
 constexpr std::size_t kLeastLines = 4;
@@ -33,7 +33,7 @@ constexpr double kHopeless = 30.0;  // above the better model: not refined
 constexpr double kSurrogateTolerance = 1e-3;
 constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
 
-constexpr int parameter_of(int term) { return term == 0 ? kWander : term == 1 ? kLine : kPerMetre; }
+constexpr Eigen::Index parameter_of(int term) { return term == 0 ? kWander : term == 1 ? kLine : kPerMetre; }
 
 struct TimeScale {
   double usual_gap = 0.0;

@@ -126,7 +126,7 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   prior_.gram(kept, kept) = pull.dot(precision * pull);
 
   const LogPseudoDeterminant of_prior = log_pseudo_determinant(precision);
-  double freedom = static_cast<double>(of_prior.rank - kept);
+  auto freedom = static_cast<double>(of_prior.rank - kept);
   for (const Group& group : groups_) freedom += static_cast<double>(group.observation.size());
   constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
 }

@@ -253,6 +253,19 @@ class ModelReader {
                    letter_of(machine_.datum.secondary) + " they are " + join_names(names));
   }
 
+  /// An effect states its amplitude in one unit, that of what it acts on; the schema has all of them.
+  void check_units(const TomlTable& table, const EffectKind& kind, const EffectSpec& effect) const {
+    const std::unique_ptr<Effect> made = kind.make(effect, table.place().file);
+    for (const EffectAmplitude& amplitude : made->amplitudes()) {
+      for (const KeySchema& key : kind.schema().keys) {
+        if (key.key == amplitude.key || stem_of_key(key.key) != stem_of_key(amplitude.key)) continue;
+        if (!table.has(key.key)) continue;
+        table.fail(key.key, table.path() + ": " + amplitude.label + " is stated in " + amplitude.unit(),
+                   "write " + amplitude.key + " = ...");
+      }
+    }
+  }
+
   void read_effects() {
     std::vector<std::string> kinds;
     for (const EffectKind* effect : effect_kinds()) kinds.push_back(effect->schema().kind);
@@ -266,6 +279,7 @@ class ModelReader {
       }
       effect.source_line = table.place().line;
       effect.options = table.options(kind->schema().keys);
+      check_units(table, *kind, effect);
       spec_.effects.push_back(std::move(effect));
     }
   }

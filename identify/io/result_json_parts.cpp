@@ -15,9 +15,10 @@ namespace {
 
 constexpr int kLargestDegree = 1000;
 
-constexpr std::array<std::pair<ParameterKind, const char*>, 5> kParameterKinds = {{
+constexpr std::array<std::pair<ParameterKind, const char*>, 6> kParameterKinds = {{
     {ParameterKind::Location, "location"},
     {ParameterKind::Effect, "effect"},
+    {ParameterKind::EffectShape, "effect shape"},
     {ParameterKind::Expansion, "expansion"},
     {ParameterKind::ToolOffset, "tool offset"},
     {ParameterKind::Nuisance, "nuisance"},

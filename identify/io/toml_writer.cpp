@@ -79,23 +79,23 @@ std::string function_toml(const FunctionSpec& spec, std::optional<ErrorSymbol> s
   return text + " }";
 }
 
-/// Two keys of an effect may share a stem (amplitude_um, amplitude_urad): the one in the unit of its symbol
-/// counts.
-bool key_applies(const KeySchema& key, const EffectSchema& schema, const EffectSpec& effect) {
+/// Two keys of an effect may share a stem (amplitude_um, amplitude_urad): the one that the effect names as
+/// its amplitude's counts.
+bool key_applies(const KeySchema& key, const EffectSchema& schema, const Effect& effect) {
   const auto shares = [&](const KeySchema& other) {
     return other.type == key.type && stem_of_key(other.key) == stem_of_key(key.key);
   };
   if (std::ranges::count_if(schema.keys, shares) < 2) return true;
-  const auto symbol = ErrorSymbol::parse(effect.options.text("symbol").value_or(""));
-  return !symbol || unit_of_key(key.key).suffix == edge_unit(symbol->component);
+  return std::ranges::find(effect.amplitudes(), key.key, &EffectAmplitude::key) != effect.amplitudes().end();
 }
 
 std::string effect_toml(const EffectSpec& effect) {
   std::string text = "\n[[effects]]\nkind = " + toml_text(effect.kind) + "\n";
   const EffectKind* kind = find_effect(effect.kind);
   if (!kind) return text;
+  const std::unique_ptr<Effect> made = kind->make(effect, {});
   for (const KeySchema& key : kind->schema().keys) {
-    if (!key_applies(key, kind->schema(), effect)) continue;
+    if (!key_applies(key, kind->schema(), *made)) continue;
     const std::string stem(stem_of_key(key.key));
     const double factor = unit_of_key(key.key).si_per_unit;
     std::optional<std::string> value;

@@ -20,7 +20,8 @@ int thread_count(int threads) {
 }
 
 bool is_frozen_with_the_model(const ParameterBlock& block) {
-  return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect;
+  return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect ||
+         block.kind == ParameterKind::EffectShape;
 }
 
 /// Model parameters' place in both the fit's and the evaluation's vectors (the same model gives the same

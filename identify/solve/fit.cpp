@@ -14,6 +14,7 @@
 #include "volcal/identify/solve/smoothing.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -270,6 +271,12 @@ class Identification {
     scale_ = state.scale;
   }
 
+  /// Renews what the model holds fixed during a minimisation.
+  void expand() {
+    model_.expand_effects(parameters_);
+    if (options_.exact_kinematics) model_.set_second_order_remainder(parameters_);
+  }
+
   void adjust() {
     progress("adjustment", 0.2);
     minimise_all();
@@ -277,13 +284,11 @@ class Identification {
          ++round) {
       progress("resolution and variance components", 0.3 + 0.2 * round);
       update_hyperparameters();
-      if (options_.exact_kinematics) model_.set_second_order_remainder(parameters_);
+      expand();
       minimise_all();
     }
-    if (options_.exact_kinematics) {
-      model_.set_second_order_remainder(parameters_);
-      minimise_all();
-    }
+    expand();
+    minimise_all();
   }
 
   void update_covariance() {
@@ -327,6 +332,8 @@ class Identification {
   }
 
   void finish() {
+    const GaussianPrior last_prior = prior();
+    result_.adjustment = {spec_, z_, last_prior.precision, last_prior.mean, stated_sigma_};
     result_.parameters = parameters_;
     result_.layout = model_.layout();
     result_.covariance += datum_->expand_covariance(amplitude_covariance(terms_, reduced_covariance_, z_));
@@ -432,11 +439,13 @@ class Identification {
       if (block.location) identified.locations[*block.location] = parameters_[block.offset];
     }
     for (EffectSpec& effect : identified.effects) {
-      const auto bound = find_effect(effect.kind)->bind(effect, spec_.file, campaign_.machine);
-      for (const EffectAmplitude& amplitude : bound->amplitudes()) {
-        const ParameterBlock* block = model_.layout().find_block(amplitude.label);
-        if (block != nullptr) effect.options.set(amplitude.option, parameters_[block->offset]);
-      }
+      const auto made = find_effect(effect.kind)->make(effect, spec_.file);
+      const auto keep = [&](const std::string& label, const std::string& key) {
+        const ParameterBlock* block = model_.layout().find_block(label);
+        if (block != nullptr) effect.options.set(std::string(stem_of_key(key)), parameters_[block->offset]);
+      };
+      for (const EffectAmplitude& amplitude : made->amplitudes()) keep(amplitude.label, amplitude.key);
+      for (const EffectShape& shape : made->shapes()) keep(shape.label, shape.key);
     }
     return identified;
   }
@@ -471,7 +480,7 @@ class Identification {
     const bool lack = exceedance < kSignificanceOfLackOfFit && result_.sigma0 > kSmallestLackOfFit;
     for (const std::string& sentence : result_.rank.invisible) result_.messages.push_back(sentence);
     report_outliers();
-    report_unknown_directions();
+    report_unrecorded_drivers();
     if (lack) {
       std::ostringstream text;
       text.precision(3);
@@ -503,22 +512,15 @@ class Identification {
     }
   }
 
-  void report_unknown_directions() {
-    for (const EffectSpec& effect : spec_.effects) {
-      if (effect.kind != "reversal") continue;
-      const auto symbol = ErrorSymbol::parse(effect.options.text("symbol").value_or(""));
-      if (!symbol) continue;
-      std::size_t unknown = 0;
-      for (const Setup& setup : campaign_.setups) {
-        const auto& direction = setup.readings.direction[index_of(symbol->axis)];
-        unknown += direction.empty()
-                       ? setup.readings.size()
-                       : static_cast<std::size_t>(std::ranges::count(direction, std::int8_t{0}));
-      }
-      if (unknown > 0) {
-        result_.messages.push_back("reversal " + symbol->name() + ": " + std::to_string(unknown) +
-                                   " readings have no known approach direction and carry no reversal");
-      }
+  void report_unrecorded_drivers() {
+    for (const EffectBinding& effect : model_.binding().effects) {
+      std::size_t unrecorded = 0;
+      for (const Setup& setup : campaign_.setups)
+        unrecorded += effect.effect->unrecorded({campaign_, setup, {}, {}});
+      if (unrecorded == 0) continue;
+      result_.messages.push_back(effect.effect->amplitudes().front().label + ": " +
+                                 std::to_string(unrecorded) + " readings do not record " +
+                                 effect.effect->name().driver + " and carry nothing of the effect");
     }
   }
 

@@ -32,6 +32,7 @@ double wide_sigma(ErrorSymbol symbol) {
 double wide_sigma(const ParameterBlock& block) {
   if (block.location) return is_rotation(block.location->component) ? kWideSquareness : kWideDisplacement;
   if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return 1e-3;
+  if (block.kind == ParameterKind::EffectShape) return 10.0 * block.prior_sigma[0];
   return kWideNuisance;
 }
 

@@ -95,6 +95,15 @@ struct Timing {
   double seconds = 0.0;
 };
 
+/// State of the last adjustment, for what criticises it; not written to files.
+struct Adjustment {
+  ModelSpec model;                  ///< with breakpoints, as it was before the fit
+  Eigen::VectorXd reduced;          ///< parameters in the coordinates of the datum (datum.h)
+  Eigen::MatrixXd prior_precision;  ///< of `reduced`: smoothing, stated priors, wide ones
+  Eigen::VectorXd prior_mean;
+  std::vector<double> stated_sigma;  ///< per observation, SI
+};
+
 struct FitResult {
   FitStatus status = FitStatus::Ok;
   std::vector<std::string> messages;  ///< warnings and explanations for the user, one per line
@@ -122,6 +131,7 @@ struct FitResult {
   RankReport rank;
   std::vector<ResidualRecord> residuals;
   std::vector<Timing> timings;
+  Adjustment adjustment;
 };
 
 }  // namespace volcal

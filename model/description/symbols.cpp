@@ -4,10 +4,12 @@ namespace volcal {
 namespace {
 
 constexpr std::string_view kLetters = "XYZABC";
+constexpr std::string_view kLowerLetters = "xyzabc";
 
 }  // namespace
 
 char letter_of(AxisName axis) { return kLetters[index_of(axis)]; }
+char lower_letter_of(AxisName axis) { return kLowerLetters[index_of(axis)]; }
 
 std::optional<AxisName> axis_from_letter(char letter) {
   const auto position = kLetters.find(letter);

@@ -21,6 +21,7 @@ constexpr bool is_rotary(AxisName axis) { return index_of(axis) >= 3; }
 /// Coordinate direction 0..2 along which (linear) or about which (rotary) the axis moves.
 constexpr int direction_of(AxisName axis) { return static_cast<int>(index_of(axis) % 3); }
 char letter_of(AxisName axis);
+char lower_letter_of(AxisName axis);  ///< as in column names: 'x'
 std::optional<AxisName> axis_from_letter(char letter);
 
 /// Component of an error: EX EY EZ are displacements (m), EA EB EC rotations (rad) about x, y, z.

@@ -1,13 +1,26 @@
 #include "volcal/model/description/units.h"
 
+#include <algorithm>
 #include <array>
 
 namespace volcal {
 namespace {
 
 // Longest suffix first, so that "um_per_m_K" is not taken for "K".
-constexpr std::array<Unit, 15> kUnits = {{
+constexpr std::array kUnits = std::to_array<Unit>({
     {"um_per_m_K", 1e-6},
+    {"um_per_m_h", 1e-6 / kSecondsPerHour},
+    {"um_per_m2", 1e-6},
+    {"um_per_m3", 1e-6},
+    {"urad_per_m2", 1e-6},
+    {"urad_per_m3", 1e-6},
+    {"urad_per_m", 1e-6},
+    {"urad_per_K", 1e-6},
+    {"um_per_K", 1e-6},
+    {"urad_per_h", 1e-6 / kSecondsPerHour},
+    {"um_per_h", 1e-6 / kSecondsPerHour},
+    {"ppm_per_K", 1e-6},
+    {"ppm_per_h", 1e-6 / kSecondsPerHour},
     {"um_per_metre", 1e-6},
     {"um_per_m", 1e-6},
     {"mm_min", 1e-3 / 60.0},
@@ -22,7 +35,7 @@ constexpr std::array<Unit, 15> kUnits = {{
     {"m", 1.0},
     {"s", 1.0},
     {"K", 1.0},
-}};
+});
 
 bool ends_in_unit(std::string_view key, std::string_view suffix) {
   return key.size() > suffix.size() + 1 && key.ends_with(suffix) &&
@@ -30,6 +43,15 @@ bool ends_in_unit(std::string_view key, std::string_view suffix) {
 }
 
 }  // namespace
+
+std::string unit_text(std::string_view suffix) {
+  std::string text(suffix);
+  for (std::size_t at = text.find("_per_"); at != std::string::npos; at = text.find("_per_")) {
+    text.replace(at, 5, "/");
+  }
+  std::ranges::replace(text, '_', '/');
+  return text;
+}
 
 Unit unit_of_key(std::string_view key) {
   for (const Unit& unit : kUnits) {

@@ -1,6 +1,7 @@
 #pragma once
 /// Units at the edge. Every key and column name ends in its unit; inside the program everything is SI.
 
+#include <string>
 #include <string_view>
 
 namespace volcal {
@@ -14,10 +15,13 @@ struct Unit {
 Unit unit_of_key(std::string_view key);
 /// Key without its unit: "station_mm" gives "station".
 std::string_view stem_of_key(std::string_view key);
+/// Suffix as it is printed: "um_per_m_K" gives "um/m/K".
+std::string unit_text(std::string_view suffix);
 
 inline constexpr double kMetrePerMillimetre = 1e-3;
 inline constexpr double kMetrePerMicrometre = 1e-6;
 inline constexpr double kRadianPerMicroradian = 1e-6;
+inline constexpr double kSecondsPerHour = 3600.0;
 inline constexpr double kRadianPerDegree = 3.14159265358979323846 / 180.0;
 
 }  // namespace volcal

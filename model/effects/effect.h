@@ -1,40 +1,101 @@
 #pragma once
-/// Effects beyond the rigid body: unknown amplitudes times known drivers, acting on error motions.
-/// A new effect is one file (a kind with its schema) and one line in registry.cpp.
+/// Effects beyond the rigid body: amplitude x driver, added to what the effect acts on. An effect has a
+/// target (an error motion, the tool's offset, a station, the reading itself), a driver (axis position,
+/// direction of approach, time, temperature, tool ...) and a shape (step, linear, periodic ...), which may
+/// have parameters of its own (period, time constant). A new effect is one file (a kind with its schema) and
+/// one line in registry.cpp.
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/errors.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/description/schema.h"
 #include "volcal/model/description/symbols.h"
 
 namespace volcal {
 
-/// One unknown amplitude: adds amplitude x driver to the error motion `target`.
-struct EffectAmplitude {
-  std::string label;  ///< "reversal EXX"
-  ErrorSymbol target;
-  std::string unit;  ///< edge unit of the amplitude: "um", "urad", "um/m/K"
-  double si_per_unit = 1.0;
-  std::string option;        ///< stem of the schema's key that holds the value of an identified model
-  double guess = 0.0;        ///< SI; the value of an identified model, else 0
-  double prior_mean = 0.0;   ///< SI
-  double prior_sigma = 0.0;  ///< SI; 0 = no prior
+enum class TargetKind { Motion, ToolOffset, Station, Reading };
+
+/// What an amplitude is added to: an error motion (m, rad), the tool's offset in tool coordinates (m), the
+/// station's position in workpiece coordinates (m), a channel of the reading (m, rad).
+struct EffectTarget {
+  TargetKind kind = TargetKind::Motion;
+  ErrorSymbol symbol;  ///< of Motion
+  int component = 0;   ///< ToolOffset, Station: 0..2 = x, y, z; Reading: the channel
 };
 
-/// An effect applied to a machine. Thread-safe after construction.
-class BoundEffect {
+/// One unknown amplitude: adds amplitude x driver to the target.
+struct EffectAmplitude {
+  std::string label;  ///< unique in a model: "reversal EXX"
+  EffectTarget target;
+  std::string key;     ///< schema key of its value, with unit: "amplitude_um_per_K"
+  double guess = 0.0;  ///< SI; the value of an identified model, else 0
+
+  std::string unit() const;  ///< edge unit: "um/K"
+  double si_per_unit() const;
+};
+
+/// A parameter of the shape, on which the driver depends nonlinearly.
+struct EffectShape {
+  std::string label;      ///< unique in a model: "lead error EXX: period"
+  std::string key;        ///< "period_mm"
+  double value = 0.0;     ///< SI
+  double sigma = 0.0;     ///< SI, standard uncertainty before the fit; 0 = exact, not estimated
+  double scan_min = 0.0;  ///< SI, range in which it is looked for; min = max: never scanned
+  double scan_max = 0.0;
+
+  std::string unit() const;
+  double si_per_unit() const;
+};
+
+/// A setup as effects see it.
+struct SetupView {
+  const Campaign& campaign;
+  const Setup& setup;
+  std::vector<Eigen::Vector3d> nominal_point_w;  ///< per row, m
+  Eigen::VectorXd length;                        ///< per row, m: length that scales the noise of channel 0
+
+  std::size_t rows() const { return setup.readings.size(); }
+};
+
+/// How an effect is called in lists, reports and diagnosis.json.
+struct EffectName {
+  std::string kind;    ///< "axis-coupling"
+  std::string target;  ///< "EAY", "tool long z", "station P1", "readings of S1"
+  std::string driver;  ///< "z", "dir_x", "time", "T_spindle"
+  std::string shape;   ///< "step", "linear", "quadratic", "periodic" ...
+
+  friend bool operator==(const EffectName&, const EffectName&) = default;
+  friend auto operator<=>(const EffectName&, const EffectName&) = default;
+};
+
+/// One effect with its keys' values. Immutable, so thread-safe.
+class Effect {
  public:
-  virtual ~BoundEffect() = default;
+  virtual ~Effect() = default;
+  const EffectName& name() const { return name_; }
   const std::vector<EffectAmplitude>& amplitudes() const { return amplitudes_; }
-  /// Driver of every amplitude at a reading of a setup.
-  virtual void drivers(const Setup& setup, std::size_t row, double* driver) const = 0;
+  const std::vector<EffectShape>& shapes() const { return shapes_; }
+  /// Values of the shape's parameters, in the order of shapes().
+  Eigen::VectorXd shape_values() const;
+
+  /// Throws InputError when the machine or the campaign lacks what the effect is about: an axis, a tool, a
+  /// station, a column without which it makes no sense.
+  virtual void check(const Campaign& campaign, const SourcePlace& place) const = 0;
+  /// Drivers of all readings of a setup, rows x amplitudes; 0 where the effect does not act or its driver was
+  /// not recorded. `shape`: values of the shape's parameters, SI.
+  virtual Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const = 0;
+  /// Readings of a setup on which the effect acts, but whose driver was not recorded.
+  virtual std::size_t unrecorded(const SetupView& /*view*/) const { return 0; }
 
  protected:
+  EffectName name_;
   std::vector<EffectAmplitude> amplitudes_;
+  std::vector<EffectShape> shapes_;
 };
 
 class EffectKind {
@@ -42,11 +103,9 @@ class EffectKind {
   virtual ~EffectKind() = default;
   virtual const EffectSchema& schema() const = 0;
   /// Throws InputError naming file and line of the effect in the model file.
-  virtual std::unique_ptr<BoundEffect> bind(const EffectSpec& spec, const std::string& model_file,
-                                            const Machine& machine) const = 0;
-  /// Whether the driver varies in the campaign; without variation the amplitude cannot be told from a
-  /// constant. Throws InputError when the campaign lacks a column without which the effect makes no sense.
-  virtual bool visible_in(const EffectSpec& spec, const Campaign& campaign) const = 0;
+  virtual std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const = 0;
+  /// Every effect of this kind that could act in the campaign, amplitudes unknown.
+  virtual std::vector<EffectSpec> candidates(const Campaign& campaign) const = 0;
 };
 
 }  // namespace volcal

@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <array>
-#include <span>
 
-#include "volcal/model/description/errors.h"
-#include "volcal/model/description/units.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -16,80 +13,53 @@ const EffectSchema& reversal_schema() {
           "an error motion differs by b between the two directions of approach of its own axis; the "
           "error function is the mean, readings of unknown direction get 0",
       .source = "ISO 230-1 and ISO 230-2 (reversal value), as quoted in ISO/TR 16907:2015",
-      .keys = {{.key = "symbol",
-                .type = KeyType::Text,
-                .required = true,
-                .help = "error motion that jumps at reversal: EXX, EYX, ECX ..."},
-               {.key = "amplitude_um",
-                .help = "b of an identified model, displacements: value towards + minus value towards -",
-                .plausible_min = 1e-6,
-                .plausible_max = 5000.0},
-               {.key = "amplitude_urad",
-                .help = "b of an identified model, rotations",
-                .plausible_min = 1e-6,
-                .plausible_max = 5000.0}},
-  };
+      .keys = joined({{symbol_key("error motion that jumps at reversal: EXX, EYX, ECX ...")},
+                      motion_amplitude_keys({""}, "b: value towards + minus value towards -")})};
   return schema;
 }
 
-ErrorSymbol checked_symbol(const EffectSpec& spec, const std::string& model_file) {
-  const SourcePlace place{model_file, spec.source_line};
-  const auto text = spec.options.text("symbol");
-  if (!text) throw InputError(place, "effect \"reversal\" names no symbol", "add symbol = \"EXX\"");
-  const auto symbol = ErrorSymbol::parse(*text);
-  if (!symbol) {
-    throw InputError(place, "\"" + *text + "\" is no error motion",
-                     "write E, the component X Y Z A B C, the moving axis, as in EXX or ECX");
-  }
-  return *symbol;
-}
-
-class BoundReversal final : public BoundEffect {
+class ReversalEffect final : public Effect {
  public:
-  BoundReversal(ErrorSymbol symbol, double amplitude) : axis_(index_of(symbol.axis)) {
-    amplitudes_.push_back({.label = "reversal " + symbol.name(),
-                           .target = symbol,
-                           .unit = std::string(edge_unit(symbol.component)),
-                           .si_per_unit = kMetrePerMicrometre,
-                           .option = "amplitude",
-                           .guess = amplitude});
+  explicit ReversalEffect(const EffectTable& table) : symbol_(table.symbol()) {
+    name_ = {"reversal", symbol_.name(), std::string("dir_") + lower_letter_of(symbol_.axis), "step"};
+    amplitudes_.push_back({.label = "reversal " + symbol_.name(),
+                           .target = {.kind = TargetKind::Motion, .symbol = symbol_},
+                           .key = motion_amplitude_key(symbol_, ""),
+                           .guess = table.number("amplitude", 0.0)});
   }
 
-  void drivers(const Setup& setup, std::size_t row, double* driver) const override {
-    const auto& direction = setup.readings.direction[axis_];
-    driver[0] = direction.empty() ? 0.0 : 0.5 * direction[row];
+  void check(const Campaign& campaign, const SourcePlace& place) const override {
+    check_axis(campaign, symbol_.axis, "reversal of " + symbol_.name(), place);
+  }
+
+  Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& /*shape*/) const override {
+    return 0.5 * directions(view, symbol_.axis);
+  }
+
+  std::size_t unrecorded(const SetupView& view) const override {
+    const auto& direction = view.setup.readings.direction[index_of(symbol_.axis)];
+    return direction.empty() ? view.rows()
+                             : static_cast<std::size_t>(std::ranges::count(direction, std::int8_t{0}));
   }
 
  private:
-  std::size_t axis_;
+  ErrorSymbol symbol_;
 };
 
 class Reversal final : public EffectKind {
  public:
   const EffectSchema& schema() const override { return reversal_schema(); }
 
-  std::unique_ptr<BoundEffect> bind(const EffectSpec& spec, const std::string& model_file,
-                                    const Machine& machine) const override {
-    const ErrorSymbol symbol = checked_symbol(spec, model_file);
-    if (!machine.has_axis(symbol.axis)) {
-      throw InputError({model_file, spec.source_line},
-                       "reversal of " + symbol.name() + ": the machine has no axis " + letter_of(symbol.axis),
-                       "name an axis of structure \"" + machine.structure.code + "\" or remove the effect");
-    }
-    return std::make_unique<BoundReversal>(symbol, spec.options.number("amplitude").value_or(0.0));
+  std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const override {
+    return std::make_unique<ReversalEffect>(EffectTable(spec, model_file));
   }
 
-  bool visible_in(const EffectSpec& spec, const Campaign& campaign) const override {
-    const ErrorSymbol symbol = checked_symbol(spec, {});
-    bool plus = false;
-    bool minus = false;
-    for (const Setup& setup : campaign.setups) {
-      for (const std::int8_t direction : setup.readings.direction[index_of(symbol.axis)]) {
-        plus = plus || direction > 0;
-        minus = minus || direction < 0;
-      }
+  std::vector<EffectSpec> candidates(const Campaign& campaign) const override {
+    std::vector<EffectSpec> specs;
+    for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+      specs.push_back(effect_spec("reversal", {{"symbol", symbol.name()}}));
     }
-    return plus && minus;
+    return specs;
   }
 };
 

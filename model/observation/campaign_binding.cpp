@@ -15,6 +15,7 @@
 namespace volcal {
 namespace {
 
+constexpr double kShapeStep = 1e-6;         // of central differences, relative; drivers are smooth
 constexpr double kDisagreeingPriors = 5.0;  // in standard uncertainties of the difference
 
 ParameterBlock scalar_block(ParameterKind kind, std::string name, std::string unit, double si_per_unit) {
@@ -32,10 +33,16 @@ ParameterBlock scalar_block(ParameterKind kind, std::string name, std::string un
 
 ParameterBlock effect_block(const EffectAmplitude& amplitude) {
   ParameterBlock block =
-      scalar_block(ParameterKind::Effect, amplitude.label, amplitude.unit, amplitude.si_per_unit);
+      scalar_block(ParameterKind::Effect, amplitude.label, amplitude.unit(), amplitude.si_per_unit());
   block.guess[0] = amplitude.guess;
-  block.prior_mean[0] = amplitude.prior_mean;
-  block.prior_sigma[0] = amplitude.prior_sigma;
+  return block;
+}
+
+ParameterBlock shape_block(const EffectShape& shape) {
+  ParameterBlock block =
+      scalar_block(ParameterKind::EffectShape, shape.label, shape.unit(), shape.si_per_unit());
+  block.guess[0] = block.prior_mean[0] = shape.value;
+  block.prior_sigma[0] = shape.sigma;
   return block;
 }
 
@@ -102,6 +109,13 @@ void merge_nuisance(ParameterBlock& block, const NuisanceBlock& other, int merge
   }
 }
 
+int joint_of(const Machine& machine, AxisName axis) {
+  const auto& joints = machine.structure.joints;
+  const auto found = std::ranges::find(joints, axis, &Joint::axis);
+  if (found == joints.end()) throw std::logic_error("axis is not a joint of the chain");
+  return static_cast<int>(found - joints.begin());
+}
+
 class CampaignBinder {
  public:
   CampaignBinder(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain)
@@ -114,6 +128,8 @@ class CampaignBinder {
     for (const Axis& axis : machine_.axes) add_expansion(axis);
     for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
     for (const Setup& setup : campaign_.setups) add_setup(setup);
+    const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
+    for (EffectBinding& effect : binding_.effects) tabulate_drivers(views, effect);
     return std::move(binding_);
   }
 
@@ -128,15 +144,8 @@ class CampaignBinder {
     return layout().blocks.back().offset;
   }
 
-  int joint_of(AxisName axis) const {
-    const auto& joints = machine_.structure.joints;
-    const auto found = std::ranges::find(joints, axis, &Joint::axis);
-    if (found == joints.end()) throw std::logic_error("axis is not a joint of the chain");
-    return static_cast<int>(found - joints.begin());
-  }
-
   MotionTerm motion_term(ErrorSymbol symbol, int parameter) const {
-    return {joint_of(symbol.axis), static_cast<int>(index_of(symbol.component)), parameter};
+    return {joint_of(machine_, symbol.axis), static_cast<int>(index_of(symbol.component)), parameter};
   }
 
   /// Groups the functions of an axis that have the same basis.
@@ -156,7 +165,7 @@ class CampaignBinder {
             {function.basis, function.degree, function.breakpoints}, layout().groups.size());
         if (is_new) {
           layout().groups.push_back({axis.name, std::move(basis), {}, 0});
-          binding_.groups.push_back({axis.name, joint_of(axis.name), {}});
+          binding_.groups.push_back({axis.name, joint_of(machine_, axis.name), {}});
         }
         layout().groups[place->second].symbols.push_back(symbol);
         binding_.groups[place->second].component.push_back(static_cast<int>(index_of(component)));
@@ -188,7 +197,7 @@ class CampaignBinder {
     const int parameter = add_block(std::move(block));
 
     // Which motion it is, and its sign: what it does to a lever without arm, at position 1.
-    const int joint = joint_of(symbol.axis);
+    const int joint = joint_of(machine_, symbol.axis);
     JointLever lever;
     lever.axis = symbol.axis;
     lever.workpiece_side = machine_.structure.joints[static_cast<std::size_t>(joint)].workpiece_side;
@@ -208,14 +217,26 @@ class CampaignBinder {
     const EffectKind* kind = find_effect(effect.kind);
     if (kind == nullptr) throw InputError(place, "unknown effect \"" + effect.kind + "\"", "");
     EffectBinding binding;
-    binding.effect = kind->bind(effect, spec_.file, machine_);
+    binding.effect = kind->make(effect, spec_.file);
+    binding.effect->check(campaign_, place);
+    binding.first_parameter = layout().size;
     for (const EffectAmplitude& amplitude : binding.effect->amplitudes()) {
       if (layout().find_block(amplitude.label) != nullptr) {
         throw InputError(place, "effect \"" + amplitude.label + "\" is given twice", "delete one of the two");
       }
-      binding.terms.push_back(motion_term(amplitude.target, add_block(effect_block(amplitude))));
-      binding_.shared_terms.push_back(binding.terms.back());
+      binding.target.push_back(disturbance_of(amplitude.target, machine_));
+      binding_.effect_moves_tool |= amplitude.target.kind == TargetKind::ToolOffset;
+      add_block(effect_block(amplitude));
     }
+    binding.shape = binding.effect->shape_values();
+    const auto& shapes = binding.effect->shapes();
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      if (shapes[i].sigma == 0.0) continue;
+      binding.free_shape.push_back(static_cast<int>(i));
+      add_block(shape_block(shapes[i]));
+    }
+    binding_.effect_parameters += binding.parameter_count();
+    binding_.effect_drivers += binding.amplitude_count() * (1 + static_cast<int>(binding.free_shape.size()));
     binding_.effects.push_back(std::move(binding));
   }
 
@@ -309,6 +330,56 @@ class CampaignBinder {
 
 CampaignBinding bind_campaign(const Campaign& campaign, const ModelSpec& spec, const KinematicChain& chain) {
   return CampaignBinder(campaign, spec, chain).bind();
+}
+
+int disturbance_of(const EffectTarget& target, const Machine& machine) {
+  switch (target.kind) {
+    case TargetKind::Motion:
+      return 6 * joint_of(machine, target.symbol.axis) + static_cast<int>(index_of(target.symbol.component));
+    case TargetKind::ToolOffset:
+      return kToolDisturbance + target.component;
+    case TargetKind::Station:
+      return kStationDisturbance + target.component;
+    case TargetKind::Reading:
+      return kReadingDisturbance + target.component;
+  }
+  throw std::logic_error("unknown target of an effect");
+}
+
+std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBinding& binding,
+                                   const KinematicChain& chain) {
+  std::vector<SetupView> views;
+  for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+    const Setup& setup = campaign.setups[i];
+    SetupView view{campaign, setup, {}, Eigen::VectorXd(static_cast<Eigen::Index>(setup.readings.size()))};
+    view.nominal_point_w.reserve(setup.readings.size());
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      view.nominal_point_w.push_back(chain.nominal_point_w(
+          commanded_position(campaign.machine, setup.readings, row), binding.setups[i].tool_offset));
+      view.length[static_cast<Eigen::Index>(row)] = binding.setups[i].bound->noise_length(row, 0);
+    }
+    views.push_back(std::move(view));
+  }
+  return views;
+}
+
+void tabulate_drivers(const std::vector<SetupView>& views, EffectBinding& binding) {
+  const Effect& effect = *binding.effect;
+  binding.driver.clear();
+  binding.slope.assign(binding.free_shape.size(), {});
+  for (const SetupView& view : views) {
+    binding.driver.emplace_back(effect.drivers(view, binding.shape));
+    for (std::size_t i = 0; i < binding.free_shape.size(); ++i) {
+      const int index = binding.free_shape[i];
+      const double step = kShapeStep * std::max(std::abs(binding.shape[index]),
+                                                effect.shapes()[static_cast<std::size_t>(index)].sigma);
+      Eigen::VectorXd above = binding.shape, below = binding.shape;
+      above[index] += step;
+      below[index] -= step;
+      binding.slope[i].emplace_back((effect.drivers(view, above) - effect.drivers(view, below)) /
+                                    (above[index] - below[index]));
+    }
+  }
 }
 
 AxisPosition commanded_position(const Machine& machine, const Readings& readings, std::size_t row) {

@@ -39,9 +39,31 @@ struct LocationBinding {
   bool times_position = false;
 };
 
+/// Everything that a reading can be disturbed by, one number each: six motions of every joint, the tool's
+/// offset (tool coordinates), the station's position (workpiece coordinates), the channels of the reading.
+inline constexpr int kToolDisturbance = 6 * static_cast<int>(kAxisCount);
+inline constexpr int kStationDisturbance = kToolDisturbance + 3;
+inline constexpr int kReadingDisturbance = kStationDisturbance + 3;
+inline constexpr int kDisturbances = kReadingDisturbance + kMaxChannels;
+
+/// An effect's parameters: its amplitudes, then those of its shape that are estimated. Drivers are tabulated
+/// at `shape` and expanded to first order about it.
 struct EffectBinding {
-  std::unique_ptr<BoundEffect> effect;
-  std::vector<MotionTerm> terms;  ///< one per amplitude
+  using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  std::unique_ptr<Effect> effect;
+  std::vector<int> target;      ///< per amplitude: index of the disturbance
+  std::vector<int> free_shape;  ///< indices of the shape parameters that are estimated
+  int first_parameter = 0;
+  Eigen::VectorXd shape;                  ///< all shape parameters, SI
+  std::vector<Table> driver;              ///< per setup: rows x amplitudes
+  std::vector<std::vector<Table>> slope;  ///< per free shape parameter and setup: derivative of the drivers
+
+  int amplitude_count() const { return static_cast<int>(target.size()); }
+  int parameter_count() const { return amplitude_count() + static_cast<int>(free_shape.size()); }
+  int shape_parameter(std::size_t free) const {
+    return first_parameter + amplitude_count() + static_cast<int>(free);
+  }
 };
 
 /// Thermal expansion of a scale; `term.parameter` corrects the coefficient, -1 = exact.
@@ -74,9 +96,20 @@ struct CampaignBinding {
   std::vector<LocationBinding> locations;
   std::vector<EffectBinding> effects;
   std::vector<SetupBinding> setups;
-  /// Terms of every reading, whatever its setup: locations, effects, uncertain expansions.
+  /// Terms of every reading, whatever its setup: locations, uncertain expansions.
   std::vector<MotionTerm> shared_terms;
+  int effect_parameters = 0;       ///< of all effects; every reading has them
+  int effect_drivers = 0;          ///< numbers per reading that they need
+  bool effect_moves_tool = false;  ///< some effect acts on the tool's offset
 };
+
+/// Index of the disturbance that a target is.
+int disturbance_of(const EffectTarget& target, const Machine& machine);
+/// Tabulates the drivers of an effect at its `shape`.
+void tabulate_drivers(const std::vector<SetupView>& views, EffectBinding& binding);
+/// Setups as effects see them.
+std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBinding& binding,
+                                   const KinematicChain& chain);
 
 /// `spec` must be resolved: every function that uses knots has breakpoints. Throws InputError. The campaign
 /// must outlive the binding.

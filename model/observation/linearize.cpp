@@ -12,9 +12,11 @@ namespace volcal {
 struct MeasurementModel::RowState {
   AxisPosition position{};
   JointLever levers[kAxisCount];
-  double motion[kAxisCount][6] = {};  ///< per joint: EX EY EZ EA EB EC
-  double driver[kMaxSharedTerms];     ///< per shared term
-  Eigen::Matrix3d rotation_wt;        ///< filled when the tool's offset is uncertain
+  double disturbance[kDisturbances] = {};  ///< motions of the joints, EX EY EZ EA EB EC each; tool; station
+  double driver[kMaxSharedTerms];          ///< per shared term, then what the effects need
+
+  double* motion(int joint) { return disturbance + 6 * joint; }
+  Eigen::Matrix3d rotation_wt;  ///< filled when the tool's offset is uncertain
   ToolState<double> tool;
 };
 
@@ -29,6 +31,28 @@ void weighted_sum(const double* basis, int support, const double* coefficients, 
     coefficients += slots;
     for (int s = 0; s < slots; ++s) sum[s] += basis[j] * coefficients[s];
   }
+}
+
+/// Adds an effect's contribution; writes the drivers of its amplitudes and, per free shape parameter,
+/// amplitude times slope. Returns the place after them.
+double* add_effect(const EffectBinding& effect, std::size_t setup, std::size_t row,
+                   const Eigen::VectorXd& parameters, double* disturbance, double* driver) {
+  const int count = effect.amplitude_count();
+  const double* table = &effect.driver[setup](static_cast<Eigen::Index>(row), 0);
+  const double* amplitude = parameters.data() + effect.first_parameter;
+  double* slope = driver + count;
+  for (int k = 0; k < count; ++k) driver[k] = table[k];
+  for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
+    const double* tabulated = &effect.slope[i][setup](static_cast<Eigen::Index>(row), 0);
+    const double change = parameters[effect.shape_parameter(i)] - effect.shape[effect.free_shape[i]];
+    for (int k = 0; k < count; ++k) {
+      driver[k] += change * tabulated[k];
+      *slope++ = amplitude[k] * tabulated[k];
+    }
+  }
+  for (int k = 0; k < count; ++k)
+    disturbance[effect.target[static_cast<std::size_t>(k)]] += driver[k] * amplitude[k];
+  return slope;
 }
 
 /// Derivatives of one channel to a unit of each motion component of a joint.
@@ -62,7 +86,7 @@ void MeasurementModel::add_functions(const Eigen::VectorXd& parameters, RowState
     } else {
       weighted_sum<0>(values, support, coefficients, group.count(), sum);
     }
-    double* motion = state.motion[place.joint];
+    double* motion = state.motion(place.joint);
     for (std::size_t s = 0; s < place.component.size(); ++s) motion[place.component[s]] += sum[s];
     first_value += static_cast<std::size_t>(support);
   }
@@ -75,18 +99,17 @@ void MeasurementModel::add_terms(std::size_t setup, std::size_t row, const Eigen
     *driver++ =
         location.times_position ? location.sign * state.position[index_of(location.axis)] : location.sign;
   }
-  for (const EffectBinding& effect : binding_.effects) {
-    effect.effect->drivers(campaign_.setups[setup], row, driver);
-    driver += effect.terms.size();
-  }
   for (const ExpansionBinding& expansion : binding_.setups[setup].expansions) {
     const double warmed = expansion.warmed(row, state.position);
-    state.motion[expansion.term.joint][expansion.term.component] += expansion.per_kelvin * warmed;
+    state.motion(expansion.term.joint)[expansion.term.component] += expansion.per_kelvin * warmed;
     if (expansion.term.parameter >= 0) *driver++ = warmed;
   }
   driver = state.driver;
   for (const MotionTerm& term : binding_.shared_terms) {
-    state.motion[term.joint][term.component] += *driver++ * parameters[term.parameter];
+    state.motion(term.joint)[term.component] += *driver++ * parameters[term.parameter];
+  }
+  for (const EffectBinding& effect : binding_.effects) {
+    driver = add_effect(effect, setup, row, parameters, state.disturbance, driver);
   }
 }
 
@@ -95,8 +118,9 @@ void MeasurementModel::move_tool(RowState& state) const {
   using Eigen::Vector3d;
   for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
     const JointLever& lever = state.levers[i];
-    Vector3d turn = Eigen::Map<const Vector3d>(state.motion[i] + 3);
-    Vector3d shift = Eigen::Map<const Vector3d>(state.motion[i]) + turn.cross(lever.arm_s);
+    const double* motion = state.motion(static_cast<int>(i));
+    Vector3d turn = Eigen::Map<const Vector3d>(motion + 3);
+    Vector3d shift = Eigen::Map<const Vector3d>(motion) + turn.cross(lever.arm_s);
     if (joint_turns_[i]) {
       shift = (lever.rotation_ws * shift).eval();
       turn = (lever.rotation_ws * turn).eval();
@@ -104,23 +128,50 @@ void MeasurementModel::move_tool(RowState& state) const {
     state.tool.point_w += shift;
     (lever.workpiece_side ? state.tool.rotation_workpiece_side : state.tool.rotation_tool_side) += turn;
   }
+  state.tool.point_w -= Eigen::Map<const Vector3d>(state.disturbance + kStationDisturbance);
+  if (binding_.effect_moves_tool) {
+    state.tool.point_w +=
+        state.rotation_wt * Eigen::Map<const Vector3d>(state.disturbance + kToolDisturbance);
+  }
+}
+
+/// Derivatives of a channel to a unit of every disturbance; those of the tool only when an effect needs them.
+void MeasurementModel::disturbance_sensitivity(const RowState& state, const Linearization& reading,
+                                               int channel, double* sensitivity) const {
+  for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
+    motion_weights(state.levers[i], joint_turns_[i], reading.d_state[channel], sensitivity + 6 * i);
+  }
+  if (binding_.effects.empty()) return;
+  const Eigen::Map<const Eigen::Vector3d> d_point(reading.d_state[channel]);
+  if (binding_.effect_moves_tool) {
+    Eigen::Map<Eigen::Vector3d>(sensitivity + kToolDisturbance) = state.rotation_wt.transpose() * d_point;
+  }
+  Eigen::Map<Eigen::Vector3d>(sensitivity + kStationDisturbance) = -d_point;
+  std::fill_n(sensitivity + kReadingDisturbance, kMaxChannels, 0.0);
+  sensitivity[kReadingDisturbance + channel] = 1.0;
 }
 
 void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& state,
                                     const Linearization& reading, int channel, RowJacobian& out) const {
-  out.predicted[channel] = reading.predicted[channel];
-  double sensitivity[kAxisCount][6];
-  for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
-    motion_weights(state.levers[i], joint_turns_[i], reading.d_state[channel], sensitivity[i]);
-  }
+  out.predicted[channel] = reading.predicted[channel] + state.disturbance[kReadingDisturbance + channel];
+  double sensitivity[kDisturbances];
+  disturbance_sensitivity(state, reading, channel, sensitivity);
   double* weight = out.weight[channel].data();
   for (const GroupBinding& group : binding_.groups) {
-    for (const int component : group.component) *weight++ = sensitivity[group.joint][component];
+    for (const int component : group.component) *weight++ = sensitivity[6 * group.joint + component];
   }
   double* tail = out.tail_value[channel].data();
   const double* driver = state.driver;
   for (const MotionTerm& term : binding_.shared_terms) {
-    *tail++ = *driver++ * sensitivity[term.joint][term.component];
+    *tail++ = *driver++ * sensitivity[6 * term.joint + term.component];
+  }
+  for (const EffectBinding& effect : binding_.effects) {
+    for (const int target : effect.target) *tail++ = *driver++ * sensitivity[target];
+    for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
+      *tail = 0.0;
+      for (const int target : effect.target) *tail += *driver++ * sensitivity[target];
+      ++tail;
+    }
   }
   if (place.tool_error >= 0) {
     const Eigen::Map<const Eigen::Vector3d> d_point(reading.d_state[channel]);
@@ -145,13 +196,15 @@ void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen
   }
   state.tool.point_w = chain_.levers(state.position, place.tool_offset, state.levers);
   if (!remainder_w_.empty()) state.tool.point_w += remainder_w_[setup][row];
+  if (place.tool_error >= 0 || binding_.effect_moves_tool) {
+    state.rotation_wt = chain_.nominal_rotation_wt(state.position);
+  }
   add_functions(parameters, state, out);
   add_terms(setup, row, parameters, state);
   move_tool(state);
 
   int* index = out.tail_index.data() + shared_tail_size();
   if (place.tool_error >= 0) {
-    state.rotation_wt = chain_.nominal_rotation_wt(state.position);
     state.tool.point_w += state.rotation_wt * parameters.segment<3>(place.tool_error);
     for (int k = 0; k < 3; ++k) *index++ = place.tool_error + k;
   }
@@ -168,7 +221,8 @@ void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen
 
 /// Gives the row its sizes and the shared part of its tail; without effect on a row that had them.
 void MeasurementModel::resize(int channels, int own_tail, RowJacobian& out) const {
-  const std::size_t tail = binding_.shared_terms.size() + static_cast<std::size_t>(own_tail);
+  const auto shared = static_cast<std::size_t>(shared_tail_size());
+  const std::size_t tail = shared + static_cast<std::size_t>(own_tail);
   out.channels = channels;
   out.start.resize(binding_.groups.size());
   out.basis_value.resize(value_count_);
@@ -177,8 +231,10 @@ void MeasurementModel::resize(int channels, int own_tail, RowJacobian& out) cons
     out.tail_value[channel].resize(tail);
   }
   out.tail_index.resize(tail);
-  for (std::size_t i = 0; i < binding_.shared_terms.size(); ++i) {
-    out.tail_index[i] = binding_.shared_terms[i].parameter;
+  int* index = out.tail_index.data();
+  for (const MotionTerm& term : binding_.shared_terms) *index++ = term.parameter;
+  for (const EffectBinding& effect : binding_.effects) {
+    for (int k = 0; k < effect.parameter_count(); ++k) *index++ = effect.first_parameter + k;
   }
 }
 

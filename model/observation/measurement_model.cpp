@@ -1,5 +1,6 @@
 #include "volcal/model/observation/measurement_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -12,10 +13,11 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
       spec_(spec),
       chain_(campaign.machine),
       binding_(bind_campaign(campaign_, spec_, chain_)) {
-  if (binding_.shared_terms.size() > kMaxSharedTerms) {
+  const std::size_t terms = binding_.shared_terms.size() + static_cast<std::size_t>(binding_.effect_drivers);
+  if (terms > kMaxSharedTerms) {
     throw InputError({spec_.file, 0},
-                     "the model has " + std::to_string(binding_.shared_terms.size()) +
-                         " location errors and effects, more than " + std::to_string(kMaxSharedTerms),
+                     "the model has " + std::to_string(terms) + " location errors and effects, more than " +
+                         std::to_string(kMaxSharedTerms),
                      "leave effects out");
   }
   for (const FunctionGroup& group : layout().groups) {
@@ -86,11 +88,12 @@ PoseErrors<double> MeasurementModel::errors_at_reading(std::size_t setup, std::s
     const AxisName axis = campaign_.machine.structure.joints[static_cast<std::size_t>(term.joint)].axis;
     errors.motion[index_of(axis)][static_cast<std::size_t>(term.component)] += value;
   };
-  double driver[kMaxSharedTerms];
   for (const EffectBinding& effect : binding_.effects) {
-    effect.effect->drivers(campaign_.setups[setup], row, driver);
-    for (std::size_t k = 0; k < effect.terms.size(); ++k) {
-      add(effect.terms[k], driver[k] * parameters[effect.terms[k].parameter]);
+    for (int k = 0; k < effect.amplitude_count(); ++k) {
+      const int target = effect.target[static_cast<std::size_t>(k)];
+      if (target >= kToolDisturbance) continue;
+      const double driver = effect.driver[setup](static_cast<Eigen::Index>(row), k);
+      add({target / 6, target % 6, -1}, driver * parameters[effect.first_parameter + k]);
     }
   }
   for (const ExpansionBinding& expansion : binding_.setups[setup].expansions) {
@@ -114,6 +117,19 @@ void MeasurementModel::set_second_order_remainder(const Eigen::VectorXd& paramet
       remainder_w_[setup][row] =
           chain_.exact_pose<double>(position, place.tool_offset, errors).point_w - first_order_w;
     }
+  }
+}
+
+void MeasurementModel::expand_effects(const Eigen::VectorXd& parameters) {
+  const auto is_free = [](const EffectBinding& effect) { return !effect.free_shape.empty(); };
+  if (std::ranges::none_of(binding_.effects, is_free)) return;
+  const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
+  for (EffectBinding& effect : binding_.effects) {
+    if (!is_free(effect)) continue;
+    for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
+      effect.shape[effect.free_shape[i]] = parameters[effect.shape_parameter(i)];
+    }
+    tabulate_drivers(views, effect);
   }
 }
 

@@ -31,8 +31,11 @@ class MeasurementModel {
   const KinematicChain& chain() const { return chain_; }
   const ParameterLayout& layout() const { return binding_.layout; }
   const BoundSetup& bound(std::size_t setup) const { return *binding_.setups[setup].bound; }
+  const CampaignBinding& binding() const { return binding_; }
   /// Number of parameters besides the functions' that every row depends on; they lead its tail.
-  int shared_tail_size() const { return static_cast<int>(binding_.shared_terms.size()); }
+  int shared_tail_size() const {
+    return static_cast<int>(binding_.shared_terms.size()) + binding_.effect_parameters;
+  }
 
   /// Parameters to start from: guesses, and the model file's coefficients where it has them.
   Eigen::VectorXd initial_parameters() const;
@@ -43,10 +46,19 @@ class MeasurementModel {
   void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowJacobian& out) const;
 
+  /// Derivatives of a reading's channels to a unit of every disturbance (campaign_binding.h).
+  using DisturbanceRows = Eigen::Matrix<double, kMaxChannels, kDisturbances, Eigen::RowMajor>;
+  void disturbance_rows(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                        DisturbanceRows& out) const;
+
   /// Fixes the second-order remainder (exact minus first-order functional point) at these parameters; it is
   /// added to every later prediction. Without it predictions are first order.
   void set_second_order_remainder(const Eigen::VectorXd& parameters);
   void clear_second_order_remainder() { remainder_w_.clear(); }
+
+  /// Expands the effects' drivers about the shape parameters in `parameters`; at first they are expanded
+  /// about the model file's values.
+  void expand_effects(const Eigen::VectorXd& parameters);
 
   /// Stated standard deviation of a channel, SI: constant, per metre and repeatability, or the sigma column.
   double sigma(std::size_t setup, std::size_t row, int channel, const Eigen::VectorXd& parameters) const;
@@ -63,6 +75,8 @@ class MeasurementModel {
   void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowState& state) const;
   void move_tool(RowState& state) const;
+  void disturbance_sensitivity(const RowState& state, const Linearization& reading, int channel,
+                               double* sensitivity) const;
   void resize(int channels, int own_tail, RowJacobian& out) const;
   void fill_channel(const SetupBinding& place, const RowState& state, const Linearization& reading,
                     int channel, RowJacobian& out) const;

@@ -27,7 +27,7 @@ struct FunctionGroup {
   int index(int coefficient, int slot) const { return offset + coefficient * count() + slot; }
 };
 
-enum class ParameterKind { Location, Effect, Expansion, ToolOffset, Nuisance };
+enum class ParameterKind { Location, Effect, EffectShape, Expansion, ToolOffset, Nuisance };
 
 /// A named block of parameters that are not function coefficients.
 struct ParameterBlock {

@@ -3,10 +3,13 @@
 /// effect per kind, one function per basis. They seed the fuzzers and the mutation test, and a new plug-in is
 /// covered without touching either.
 
+#include <algorithm>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "tests/support/effect_campaign.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
@@ -71,6 +74,21 @@ inline std::string sample_csv(const std::vector<ColumnSchema>& columns) {
   return text;
 }
 
+/// An effect with every key that applies to it.
+inline std::string sample_effect(const EffectKind& kind, const EffectSpec& spec) {
+  const std::unique_ptr<Effect> effect = kind.make(spec, "model.toml");
+  std::string text = "[[effects]]\nkind = \"" + spec.kind + "\"\n";
+  for (const KeySchema& key : kind.schema().keys) {
+    const auto is_key = [&](const auto& item) { return item.key == key.key; };
+    const auto words = spec.options.text(key.key);
+    if (key.type == KeyType::Text && words) text += key.key + " = \"" + *words + "\"\n";
+    if (std::ranges::any_of(effect->amplitudes(), is_key) || std::ranges::any_of(effect->shapes(), is_key)) {
+      text += key.key + " = " + sample_value(key, false) + "\n";
+    }
+  }
+  return text;
+}
+
 inline std::string sample_model() {
   std::string text =
       "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = "
@@ -91,10 +109,9 @@ inline std::string sample_model() {
     ++next;
   }
   text += "[locations]\nEC0Y_urad = 12.5\nEA0Z = \"zero\"\nEX0C_um = 3\n";
+  const Campaign campaign = testing_support::effect_campaign();
   for (const EffectKind* kind : effect_kinds()) {
-    text += "[[effects]]\nkind = \"" + kind->schema().kind + "\"\n";
-    for (const KeySchema& key : kind->schema().keys)
-      text += key.key + " = " + sample_value(key, key.key == "symbol") + "\n";
+    text += sample_effect(*kind, kind->candidates(campaign).front());
   }
   return text;
 }

@@ -13,6 +13,8 @@ const char* kind_name(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::Effect:
       return "effect";
+    case ParameterKind::EffectShape:
+      return "shape of an effect";
     case ParameterKind::Expansion:
       return "expansion";
     case ParameterKind::ToolOffset:

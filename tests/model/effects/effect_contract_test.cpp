@@ -8,69 +8,58 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/machines.h"
+#include "tests/support/effect_campaign.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 namespace {
 
-using testing_support::machine_of;
+using testing_support::effect_campaign;
 
-/// Two readings with every optional column, approached from different sides.
-Setup setup_with_readings() {
-  Setup setup;
-  setup.name = "S1";
-  for (const AxisName axis : kAllAxes) {
-    setup.readings.position[index_of(axis)] = {0.2, 0.6};
-    setup.readings.direction[index_of(axis)] = {-1, +1};
-  }
-  setup.readings.value = {{0.0, 0.0}};
-  setup.readings.time = {0.0, 3600.0};
-  setup.readings.line = {0, 1};
-  setup.readings.run = {0, 1};
-  setup.readings.feed = {0.01, 0.02};
-  setup.readings.temperature["X"] = {20.0, 23.0};
-  setup.readings.source_line = {2, 3};
-  return setup;
-}
-
-/// Smallest valid table of an effect: every required key with a value of its type.
-EffectSpec smallest_spec(const EffectSchema& schema) {
+struct Candidate {
+  const EffectKind* kind;
   EffectSpec spec;
-  spec.kind = schema.kind;
-  spec.source_line = 12;
-  for (const KeySchema& key : schema.keys) {
-    if (!key.required) continue;
-    const std::string stem(stem_of_key(key.key));
-    switch (key.type) {
-      case KeyType::Number:
-        spec.options.set(stem, unit_of_key(key.key).si_per_unit);
-        break;
-      case KeyType::Text:
-        spec.options.set(stem, key.choices.empty() ? std::string("EXX") : key.choices.front());
-        break;
-      case KeyType::Boolean:
-        spec.options.set(stem, true);
-        break;
-      case KeyType::Vector3:
-        spec.options.set(stem, Eigen::Vector3d(1.0, 0.0, 0.0));
-        break;
+  std::unique_ptr<Effect> effect;
+};
+
+std::vector<Candidate> candidates_of(const Campaign& campaign) {
+  std::vector<Candidate> all;
+  for (const EffectKind* kind : effect_kinds()) {
+    for (EffectSpec& spec : kind->candidates(campaign)) {
+      all.push_back({kind, spec, kind->make(spec, "model.toml")});
     }
   }
-  return spec;
+  return all;
 }
 
-TEST(EffectContract, KindsDescribeThemselves) {
+bool has_key(const EffectSchema& schema, const std::string& key) {
+  return std::ranges::find(schema.keys, key, &KeySchema::key) != schema.keys.end();
+}
+
+ModelSpec model_without_functions() {
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  return model;
+}
+
+class EffectContract : public ::testing::Test {
+ protected:
+  Campaign campaign_ = effect_campaign();
+  std::vector<Candidate> candidates_ = candidates_of(campaign_);
+};
+
+TEST_F(EffectContract, KindsDescribeThemselves) {
   std::set<std::string> kinds;
-  for (const EffectKind* effect : effect_kinds()) {
-    const EffectSchema& schema = effect->schema();
+  for (const EffectKind* kind : effect_kinds()) {
+    const EffectSchema& schema = kind->schema();
     EXPECT_FALSE(schema.kind.empty());
     EXPECT_FALSE(schema.summary.empty()) << schema.kind;
     EXPECT_FALSE(schema.source.empty()) << schema.kind;
     EXPECT_TRUE(kinds.insert(schema.kind).second) << schema.kind << " is registered twice";
-    EXPECT_EQ(find_effect(schema.kind), effect);
+    EXPECT_EQ(find_effect(schema.kind), kind);
     std::set<std::string> keys;
     for (const KeySchema& key : schema.keys) {
       EXPECT_TRUE(keys.insert(key.key).second) << schema.kind << ": key " << key.key << " twice";
@@ -82,78 +71,122 @@ TEST(EffectContract, KindsDescribeThemselves) {
   EXPECT_TRUE(kinds.contains("reversal"));
 }
 
-TEST(EffectContract, AmplitudesHaveNameUnitAndTarget) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  for (const EffectKind* effect : effect_kinds()) {
-    const auto bound = effect->bind(smallest_spec(effect->schema()), "model.toml", machine);
-    ASSERT_FALSE(bound->amplitudes().empty()) << effect->schema().kind;
-    for (const EffectAmplitude& amplitude : bound->amplitudes()) {
-      EXPECT_FALSE(amplitude.label.empty()) << effect->schema().kind;
-      EXPECT_FALSE(amplitude.unit.empty()) << amplitude.label;
-      EXPECT_GT(amplitude.si_per_unit, 0.0) << amplitude.label;
-      EXPECT_GE(amplitude.prior_sigma, 0.0) << amplitude.label;
-      EXPECT_TRUE(machine.has_axis(amplitude.target.axis)) << amplitude.label;
+TEST_F(EffectContract, CandidatesHaveNamesUnitsAndKeys) {
+  std::set<std::string> labels;
+  std::set<EffectName> names;
+  std::set<std::string> kinds;
+  for (const auto& [kind, spec, effect] : candidates_) {
+    kinds.insert(spec.kind);
+    EXPECT_EQ(effect->name().kind, kind->schema().kind);
+    EXPECT_FALSE(effect->name().target.empty()) << spec.kind;
+    EXPECT_FALSE(effect->name().driver.empty()) << spec.kind;
+    EXPECT_FALSE(effect->name().shape.empty()) << spec.kind;
+    EXPECT_TRUE(names.insert(effect->name()).second) << spec.kind << " " << effect->name().target;
+    ASSERT_FALSE(effect->amplitudes().empty()) << spec.kind;
+    for (const EffectAmplitude& amplitude : effect->amplitudes()) {
+      EXPECT_TRUE(labels.insert(amplitude.label).second) << amplitude.label << " twice";
+      EXPECT_TRUE(has_key(kind->schema(), amplitude.key)) << amplitude.label << ": " << amplitude.key;
+      EXPECT_FALSE(amplitude.unit().empty()) << amplitude.label;
+      EXPECT_EQ(amplitude.guess, 0.0) << amplitude.label;
+      if (amplitude.target.kind != TargetKind::Motion) {
+        EXPECT_GE(amplitude.target.component, 0) << amplitude.label;
+        EXPECT_LT(amplitude.target.component, 3) << amplitude.label;
+      }
+    }
+    for (const EffectShape& shape : effect->shapes()) {
+      EXPECT_TRUE(labels.insert(shape.label).second) << shape.label << " twice";
+      EXPECT_TRUE(has_key(kind->schema(), shape.key)) << shape.label << ": " << shape.key;
+      EXPECT_LE(shape.scan_min, shape.scan_max) << shape.label;
+      EXPECT_TRUE(std::isfinite(shape.value)) << shape.label;
+    }
+  }
+  EXPECT_EQ(kinds.size(), effect_kinds().size())
+      << "a kind has no candidate in a campaign that has everything";
+}
+
+/// Identified values can be written into the effect's table and are read from it again.
+TEST_F(EffectContract, IdentifiedValuesSurviveInTheOptions) {
+  for (const auto& [kind, spec, effect] : candidates_) {
+    EffectSpec identified = spec;
+    for (const EffectAmplitude& amplitude : effect->amplitudes()) {
+      identified.options.set(std::string(stem_of_key(amplitude.key)), 3.0 * amplitude.si_per_unit());
+    }
+    for (const EffectShape& shape : effect->shapes()) {
+      identified.options.set(std::string(stem_of_key(shape.key)), 1.1 * shape.value);
+    }
+    const auto again = kind->make(identified, "model.toml");
+    EXPECT_EQ(again->name(), effect->name());
+    for (const EffectAmplitude& amplitude : again->amplitudes()) {
+      EXPECT_EQ(amplitude.guess, 3.0 * amplitude.si_per_unit()) << amplitude.label;
+    }
+    for (std::size_t i = 0; i < again->shapes().size(); ++i) {
+      EXPECT_EQ(again->shapes()[i].value, 1.1 * effect->shapes()[i].value) << again->shapes()[i].label;
     }
   }
 }
 
-/// An identified amplitude can be written into the effect's table and is read from it again.
-TEST(EffectContract, AnIdentifiedValueSurvivesInTheOptions) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  for (const EffectKind* effect : effect_kinds()) {
-    EffectSpec spec = smallest_spec(effect->schema());
-    const auto amplitudes = effect->bind(spec, "model.toml", machine)->amplitudes();
-    for (const EffectAmplitude& amplitude : amplitudes) {
-      const auto holds = [&](const KeySchema& key) {
-        return key.type == KeyType::Number && stem_of_key(key.key) == amplitude.option;
-      };
-      EXPECT_TRUE(std::ranges::any_of(effect->schema().keys, holds)) << amplitude.label;
-      spec.options.set(amplitude.option, 3.0 * amplitude.si_per_unit);
+TEST_F(EffectContract, DriversAreFiniteRepeatableAndNotNothing) {
+  const MeasurementModel model(campaign_, model_without_functions());
+  const std::vector<SetupView> views = setup_views(campaign_, model.binding(), model.chain());
+  for (const auto& [kind, spec, effect] : candidates_) {
+    EXPECT_NO_THROW(effect->check(campaign_, {"model.toml", 1})) << effect->amplitudes()[0].label;
+    double squares = 0.0;
+    for (const SetupView& view : views) {
+      const Eigen::MatrixXd once = effect->drivers(view, effect->shape_values());
+      ASSERT_EQ(once.rows(), static_cast<Eigen::Index>(view.rows())) << effect->amplitudes()[0].label;
+      ASSERT_EQ(once.cols(), static_cast<Eigen::Index>(effect->amplitudes().size()));
+      EXPECT_TRUE(once.allFinite()) << effect->amplitudes()[0].label;
+      EXPECT_EQ(once, effect->drivers(view, effect->shape_values())) << effect->amplitudes()[0].label;
+      EXPECT_LE(effect->unrecorded(view), view.rows());
+      squares += once.squaredNorm();
     }
-    const auto identified = effect->bind(spec, "model.toml", machine);
-    for (const EffectAmplitude& amplitude : identified->amplitudes()) {
-      EXPECT_EQ(amplitude.guess, 3.0 * amplitude.si_per_unit) << amplitude.label;
+    EXPECT_GT(squares, 0.0) << effect->amplitudes()[0].label;
+  }
+}
+
+/// Prediction and derivatives of a model with the effect, against differences of the prediction.
+TEST_F(EffectContract, DerivativesAreThoseOfThePrediction) {
+  for (const auto& [kind, spec, effect] : candidates_) {
+    ModelSpec spec_with = model_without_functions();
+    spec_with.effects.push_back(spec);
+    EffectSpec& added = spec_with.effects.back();
+    for (const EffectAmplitude& amplitude : effect->amplitudes()) {
+      added.options.set(std::string(stem_of_key(amplitude.key)), 5.0 * amplitude.si_per_unit());
+    }
+    const MeasurementModel model(campaign_, spec_with);
+    const Eigen::VectorXd at = model.initial_parameters();
+    RowJacobian row;
+    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
+      model.linearize(setup, 7, at, row);
+      for (const ParameterBlock& block : model.layout().blocks) {
+        if (block.kind != ParameterKind::Effect && block.kind != ParameterKind::EffectShape) continue;
+        Eigen::VectorXd above = at, below = at;
+        const double step =
+            block.kind == ParameterKind::Effect ? 2.0 * block.si_per_unit[0] : 1e-3 * block.prior_sigma[0];
+        above[block.offset] += step;
+        below[block.offset] -= step;
+        double high[kMaxChannels], low[kMaxChannels];
+        model.predict(setup, 7, above, high);
+        model.predict(setup, 7, below, low);
+        for (int channel = 0; channel < row.channels; ++channel) {
+          const double expected = (high[channel] - low[channel]) / (2.0 * step);
+          const double derivative = dense_row(model.layout(), row, channel)[block.offset];
+          EXPECT_NEAR(derivative, expected, 1e-5 * std::abs(expected) + 1e-14 / step)
+              << block.name << " in " << campaign_.setups[setup].name;
+        }
+      }
     }
   }
 }
 
-/// An effect that nobody has measured yet adds nothing: amplitudes start at zero, or at their prior.
-TEST(EffectContract, StartsWithoutContribution) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  for (const EffectKind* effect : effect_kinds()) {
-    const auto bound = effect->bind(smallest_spec(effect->schema()), "model.toml", machine);
-    for (const EffectAmplitude& amplitude : bound->amplitudes()) {
-      EXPECT_EQ(amplitude.guess, amplitude.prior_sigma > 0.0 ? amplitude.prior_mean : 0.0) << amplitude.label;
-    }
-  }
-}
-
-TEST(EffectContract, DriversAreFiniteAndRepeatable) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  const auto setup = setup_with_readings();
-  for (const EffectKind* effect : effect_kinds()) {
-    const auto bound = effect->bind(smallest_spec(effect->schema()), "model.toml", machine);
-    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      std::vector<double> once(bound->amplitudes().size(), -7.0);
-      std::vector<double> again(once.size(), 7.0);
-      bound->drivers(setup, row, once.data());
-      bound->drivers(setup, row, again.data());
-      EXPECT_EQ(once, again) << effect->schema().kind;
-      for (const double driver : once) EXPECT_TRUE(std::isfinite(driver)) << effect->schema().kind;
-    }
-  }
-}
-
-TEST(EffectContract, ASpecWithoutItsKeysIsRefusedWithItsPlace) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  for (const EffectKind* effect : effect_kinds()) {
+TEST_F(EffectContract, ASpecWithoutItsKeysIsRefusedWithItsPlace) {
+  for (const EffectKind* kind : effect_kinds()) {
+    if (std::ranges::none_of(kind->schema().keys, &KeySchema::required)) continue;
     EffectSpec empty;
-    empty.kind = effect->schema().kind;
+    empty.kind = kind->schema().kind;
     empty.source_line = 12;
-    const bool asks = std::ranges::any_of(effect->schema().keys, &KeySchema::required);
-    if (!asks) continue;
     try {
-      effect->bind(empty, "model.toml", machine);
+      kind->make(empty, "model.toml");
       ADD_FAILURE() << empty.kind << " accepts a table without its required keys";
     } catch (const InputError& error) {
       EXPECT_EQ(error.place().file, "model.toml");

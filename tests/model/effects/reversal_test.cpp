@@ -29,58 +29,44 @@ Campaign campaign_with_directions(std::vector<std::int8_t> directions) {
   return campaign;
 }
 
+std::unique_ptr<Effect> made(const EffectSpec& spec) {
+  return find_effect("reversal")->make(spec, "model.toml");
+}
+
 /// Half the reversal each way; nothing where the direction is unknown or the column is missing.
 TEST(Reversal, FollowsTheDirectionOfItsOwnAxis) {
   const Campaign campaign = campaign_with_directions({+1, -1, 0});
-  const EffectKind& kind = *find_effect("reversal");
-  const auto of_y = kind.bind(reversal_of("EXY"), "model.toml", campaign.machine);
-  const auto of_z = kind.bind(reversal_of("EXZ"), "model.toml", campaign.machine);
-  double driver = 7.0;
-  of_y->drivers(campaign.setups[0], 0, &driver);
-  EXPECT_EQ(driver, 0.5);
-  of_y->drivers(campaign.setups[0], 1, &driver);
-  EXPECT_EQ(driver, -0.5);
-  of_y->drivers(campaign.setups[0], 2, &driver);
-  EXPECT_EQ(driver, 0.0);
-  of_z->drivers(campaign.setups[0], 0, &driver);
-  EXPECT_EQ(driver, 0.0);
+  const SetupView view{campaign, campaign.setups[0], {}, {}};
+  EXPECT_EQ(made(reversal_of("EXY"))->drivers(view, {}), Eigen::Vector3d(0.5, -0.5, 0.0));
+  EXPECT_EQ(made(reversal_of("EXZ"))->drivers(view, {}), Eigen::Vector3d::Zero());
+  EXPECT_EQ(made(reversal_of("EXY"))->unrecorded(view), 1U);
+  EXPECT_EQ(made(reversal_of("EXZ"))->unrecorded(view), 3U);
 }
 
 TEST(Reversal, TargetsItsSymbolInItsUnit) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  const EffectKind& kind = *find_effect("reversal");
-  const auto length = kind.bind(reversal_of("EYY"), "model.toml", machine);
+  const auto length = made(reversal_of("EYY"));
   EXPECT_EQ(length->amplitudes()[0].label, "reversal EYY");
-  EXPECT_EQ(length->amplitudes()[0].unit, "um");
-  EXPECT_EQ(length->amplitudes()[0].target, (ErrorSymbol{Component::Y, AxisName::Y}));
-  EXPECT_EQ(kind.bind(reversal_of("ECX"), "model.toml", machine)->amplitudes()[0].unit, "urad");
+  EXPECT_EQ(length->amplitudes()[0].unit(), "um");
+  EXPECT_EQ(length->amplitudes()[0].target.symbol, (ErrorSymbol{Component::Y, AxisName::Y}));
+  EXPECT_EQ(length->name(), (EffectName{"reversal", "EYY", "dir_y", "step"}));
+  EXPECT_EQ(made(reversal_of("ECX"))->amplitudes()[0].unit(), "urad");
 }
 
 TEST(Reversal, TakesTheValueOfAnIdentifiedModel) {
   EffectSpec spec = reversal_of("EYY");
   spec.options.set("amplitude", 3.5e-6);
-  const auto bound = find_effect("reversal")->bind(spec, "model.toml", machine_of("w X' b Y Z t"));
-  EXPECT_EQ(bound->amplitudes()[0].guess, 3.5e-6);
-}
-
-TEST(Reversal, IsVisibleWhenBothDirectionsOccur) {
-  const EffectKind& kind = *find_effect("reversal");
-  EXPECT_TRUE(kind.visible_in(reversal_of("EYY"), campaign_with_directions({+1, -1, 0})));
-  EXPECT_FALSE(kind.visible_in(reversal_of("EYY"), campaign_with_directions({+1, +1, 0})));
-  EXPECT_FALSE(kind.visible_in(reversal_of("EYY"), campaign_with_directions({})));
-  EXPECT_FALSE(kind.visible_in(reversal_of("EXX"), campaign_with_directions({+1, -1, 0})));
+  EXPECT_EQ(made(spec)->amplitudes()[0].guess, 3.5e-6);
 }
 
 TEST(Reversal, RefusesWhatIsNoErrorMotionOfTheMachine) {
-  const Machine machine = machine_of("w X' b Y Z t");
-  const EffectKind& kind = *find_effect("reversal");
+  const Campaign campaign = campaign_with_directions({+1, -1, 0});
   for (const char* wrong : {"EXW", "XX", "EC0Y", "EXC", ""}) {
     try {
-      kind.bind(reversal_of(wrong), "model.toml", machine);
+      made(reversal_of(wrong))->check(campaign, {"model.toml", 5});
       ADD_FAILURE() << wrong << " is accepted";
     } catch (const InputError& error) {
       EXPECT_EQ(error.place().line, 5);
-      EXPECT_NE(error.problem().find(wrong), std::string::npos) << error.what();
+      EXPECT_FALSE(error.remedy().empty());
     }
   }
 }

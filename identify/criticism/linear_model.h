@@ -1,0 +1,60 @@
+#pragma once
+/// An adjusted campaign as a linear model about its solution: what every test of model criticism starts from.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/noise_model.h"
+#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+
+/// Observations stand in setup, row, channel order. SI.
+class LinearModel {
+ public:
+  /// `result` must come from fit() of this campaign; both must outlive the object.
+  LinearModel(const Campaign& campaign, const FitResult& result);
+
+  struct Observation {
+    std::size_t setup = 0;
+    std::size_t row = 0;
+    int channel = 0;
+  };
+
+  const Campaign& campaign() const { return campaign_; }
+  const MeasurementModel& model() const { return model_; }
+  std::size_t size() const { return observations_.size(); }
+  const std::vector<Observation>& observations() const { return observations_; }
+  const std::vector<SetupView>& views() const { return views_; }
+  const std::vector<std::string>& instruments() const { return instruments_; }
+  /// Derivatives to the parameters in datum coordinates, residuals (reading minus prediction), priors and
+  /// what the noise model needs. Readings that the fit removed have an infinite sigma.
+  const NoiseProblem& problem() const { return problem_; }
+
+  /// Columns of the readings that an effect's amplitudes would add: observations x amplitudes.
+  Eigen::MatrixXd columns(const Effect& effect, const Eigen::VectorXd& shape) const;
+  /// Derivative of every observation to the displacement of the functional point along a direction of the
+  /// workpiece (0..2), or to the reading itself (3).
+  Eigen::VectorXd direction(int which) const;
+
+ private:
+  void add_observations(const FitResult& result);
+  void add_sequences();
+
+  const Campaign& campaign_;
+  MeasurementModel model_;
+  std::vector<Observation> observations_;
+  std::vector<std::string> instruments_;
+  std::vector<SetupView> views_;
+  Eigen::Matrix<double, Eigen::Dynamic, kDisturbances, Eigen::RowMajor> sensitivity_;
+  NoiseProblem problem_;
+};
+
+/// The same residuals with some observations left out (their sigma made infinite).
+NoiseData without(const NoiseData& data, const std::vector<bool>& left_out);
+
+}  // namespace volcal

@@ -1,0 +1,210 @@
+#include "volcal/model/effects/effect_keys.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+namespace volcal {
+namespace {
+
+void add_unique(std::vector<std::string>& names, const std::string& name) {
+  if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+Eigen::VectorXd mapped(const std::vector<double>& column) {
+  return Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size()));
+}
+
+}  // namespace
+
+void EffectTable::fail(const std::string& problem, const std::string& remedy) const {
+  throw InputError(place, "effect \"" + spec.kind + "\": " + problem, remedy);
+}
+
+std::string EffectTable::text(const std::string& key, const std::string& remedy) const {
+  const auto value = spec.options.text(key);
+  if (!value || value->empty()) fail("it names no " + key, remedy);
+  return *value;
+}
+
+ErrorSymbol EffectTable::symbol() const {
+  const std::string name = text("symbol", "add symbol = \"EXX\"");
+  const auto symbol = ErrorSymbol::parse(name);
+  if (!symbol) {
+    fail("\"" + name + "\" is no error motion",
+         "write E, the component X Y Z A B C, the moving axis, as in EXX or ECX");
+  }
+  return *symbol;
+}
+
+AxisName EffectTable::axis(const std::string& key) const {
+  const std::string name = text(key, "add " + key + " = \"Z\"");
+  const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
+  if (!axis) fail("\"" + name + "\" is no axis", "write one of X Y Z A B C");
+  return *axis;
+}
+
+KeySchema symbol_key(const std::string& help) {
+  return {.key = "symbol", .type = KeyType::Text, .required = true, .help = help};
+}
+
+std::vector<KeySchema> motion_amplitude_keys(std::initializer_list<std::string> per,
+                                             const std::string& help) {
+  std::vector<KeySchema> keys;
+  for (const std::string& each : per) {
+    for (const std::string unit : {"um", "urad"}) {
+      keys.push_back({.key = "amplitude_" + unit + (each.empty() ? "" : "_" + each),
+                      .help = help + (unit == "um" ? ", displacements" : ", rotations"),
+                      .plausible_min = 1e-6,
+                      .plausible_max = 1e5});
+    }
+  }
+  return keys;
+}
+
+std::string motion_amplitude_key(ErrorSymbol symbol, const std::string& per, const std::string& stem) {
+  return stem + "_" + std::string(edge_unit(symbol.component)) + (per.empty() ? "" : "_" + per);
+}
+
+std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> parts) {
+  std::vector<KeySchema> keys;
+  for (const auto& part : parts) keys.insert(keys.end(), part.begin(), part.end());
+  return keys;
+}
+
+std::vector<AxisName> linear_axes(const Machine& machine) {
+  std::vector<AxisName> axes;
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    if (machine.has_axis(axis)) axes.push_back(axis);
+  }
+  return axes;
+}
+
+std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine) {
+  std::vector<ErrorSymbol> symbols;
+  for (const AxisName axis : linear_axes(machine)) {
+    for (const Component component : kAllComponents) symbols.push_back({component, axis});
+  }
+  return symbols;
+}
+
+std::vector<std::string> temperature_channels(const Campaign& campaign) {
+  std::vector<std::string> channels;
+  for (const Setup& setup : campaign.setups) {
+    for (const auto& [channel, values] : setup.readings.temperature) add_unique(channels, channel);
+  }
+  return channels;
+}
+
+std::string station_of(const Setup& setup) {
+  if (!setup.options.vector("station")) return {};
+  return setup.options.text("station").value_or(setup.name);
+}
+
+std::vector<std::string> station_names(const Campaign& campaign) {
+  std::vector<std::string> stations;
+  for (const Setup& setup : campaign.setups) add_unique(stations, station_of(setup));
+  return stations;
+}
+
+std::vector<std::string> tools_in_use(const Campaign& campaign) {
+  std::vector<std::string> tools;
+  for (const Setup& setup : campaign.setups) add_unique(tools, campaign.machine.tools[setup.tool].name);
+  return tools;
+}
+
+std::pair<double, double> time_span(const Campaign& campaign) {
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (const Setup& setup : campaign.setups) {
+    for (const double time : setup.readings.time) {
+      first = std::min(first, time);
+      last = std::max(last, time);
+    }
+  }
+  return first <= last ? std::pair{first, last} : std::pair{0.0, 0.0};
+}
+
+bool has_time(const Campaign& campaign) {
+  const auto [first, last] = time_span(campaign);
+  return last > first;
+}
+
+void check_axis(const Campaign& campaign, AxisName axis, const std::string& what, const SourcePlace& place) {
+  if (campaign.machine.has_axis(axis)) return;
+  throw InputError(
+      place, what + ": the machine has no axis " + letter_of(axis),
+      "name an axis of structure \"" + campaign.machine.structure.code + "\" or remove the effect");
+}
+
+void check_channel(const Campaign& campaign, const std::string& channel, const SourcePlace& place) {
+  const auto channels = temperature_channels(campaign);
+  if (std::ranges::find(channels, channel) != channels.end()) return;
+  throw InputError(place, "no reading has the temperature channel \"" + channel + "\"",
+                   "add the column T_" + channel + "_degC, name a channel of the campaign (" +
+                       listed(channels) + ") or remove the effect");
+}
+
+void check_time(const Campaign& campaign, const std::string& what, const SourcePlace& place) {
+  if (has_time(campaign)) return;
+  throw InputError(place, what + " depends on time, but no two readings differ in time_s",
+                   "add the column time_s or remove the effect");
+}
+
+void check_station(const Campaign& campaign, const std::string& station, const SourcePlace& place) {
+  const auto stations = station_names(campaign);
+  if (std::ranges::find(stations, station) != stations.end()) return;
+  throw InputError(place, "no setup stands at a station \"" + station + "\"",
+                   "name a station of the campaign (" + listed(stations) + ") or remove the effect");
+}
+
+void check_tool(const Campaign& campaign, const std::string& tool, const SourcePlace& place) {
+  const auto tools = tools_in_use(campaign);
+  if (std::ranges::find(tools, tool) != tools.end()) return;
+  throw InputError(place, "no setup uses a tool \"" + tool + "\"",
+                   "name a tool of the campaign (" + listed(tools) + ") or remove the effect");
+}
+
+Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis) {
+  return mapped(view.setup.readings.position[index_of(axis)]).array() - view.campaign.machine.axis(axis).home;
+}
+
+Eigen::VectorXd directions(const SetupView& view, AxisName axis) {
+  const auto& direction = view.setup.readings.direction[index_of(axis)];
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
+  for (std::size_t row = 0; row < direction.size(); ++row) {
+    values[static_cast<Eigen::Index>(row)] = direction[row];
+  }
+  return values;
+}
+
+Eigen::VectorXd times(const SetupView& view, double unknown) {
+  if (view.setup.readings.time.empty()) {
+    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), unknown);
+  }
+  return mapped(view.setup.readings.time);
+}
+
+Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& channel) {
+  const auto found = view.setup.readings.temperature.find(channel);
+  if (found == view.setup.readings.temperature.end()) {
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
+  }
+  return mapped(found->second).array() - kEffectReferenceTemperature_degC;
+}
+
+EffectSpec effect_spec(const std::string& kind,
+                       std::initializer_list<std::pair<std::string, OptionValue>> options) {
+  EffectSpec spec;
+  spec.kind = kind;
+  for (const auto& [stem, value] : options) spec.options.set(stem, value);
+  return spec;
+}
+
+}  // namespace volcal

@@ -1,0 +1,71 @@
+#pragma once
+/// Keys, checks and drivers that several effects share.
+
+#include <Eigen/Core>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "volcal/model/effects/effect.h"
+
+namespace volcal {
+
+inline constexpr double kEffectReferenceTemperature_degC = 20.0;
+
+/// What an effect reads its table from: the keys' values, and the place that messages name.
+struct EffectTable {
+  const EffectSpec& spec;
+  SourcePlace place;
+
+  EffectTable(const EffectSpec& effect, const std::string& model_file)
+      : spec(effect), place{model_file, effect.source_line} {}
+  std::string text(const std::string& key, const std::string& remedy) const;
+  ErrorSymbol symbol() const;
+  AxisName axis(const std::string& key) const;
+  double number(const std::string& stem, double otherwise) const {
+    return spec.options.number(stem).value_or(otherwise);
+  }
+  [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const;
+};
+
+KeySchema symbol_key(const std::string& help);
+/// Keys "amplitude_um_<per>" and "amplitude_urad_<per>" (without "_<per>" when empty) for every `per`.
+std::vector<KeySchema> motion_amplitude_keys(std::initializer_list<std::string> per, const std::string& help);
+/// Key of an amplitude that acts on `symbol`: "amplitude_urad_per_K".
+std::string motion_amplitude_key(ErrorSymbol symbol, const std::string& per,
+                                 const std::string& stem = "amplitude");
+std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> parts);
+
+/// All error motions of the machine's linear axes.
+std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine);
+std::vector<AxisName> linear_axes(const Machine& machine);
+/// Every temperature channel of the campaign, every station with more than one reading, every tool in use.
+std::vector<std::string> temperature_channels(const Campaign& campaign);
+std::vector<std::string> station_names(const Campaign& campaign);
+std::vector<std::string> tools_in_use(const Campaign& campaign);
+/// Station of a setup; empty for instruments that have none.
+std::string station_of(const Setup& setup);
+bool has_time(const Campaign& campaign);
+/// First and last time, s; 0, 0 without times.
+std::pair<double, double> time_span(const Campaign& campaign);
+
+void check_axis(const Campaign& campaign, AxisName axis, const std::string& what, const SourcePlace& place);
+void check_channel(const Campaign& campaign, const std::string& channel, const SourcePlace& place);
+void check_time(const Campaign& campaign, const std::string& what, const SourcePlace& place);
+void check_station(const Campaign& campaign, const std::string& station, const SourcePlace& place);
+void check_tool(const Campaign& campaign, const std::string& tool, const SourcePlace& place);
+
+/// Per reading of a setup: commanded position less home, m or rad.
+Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis);
+/// Direction of approach -1, 0 (unknown), 1.
+Eigen::VectorXd directions(const SetupView& view, AxisName axis);
+/// s of the campaign's clock; `unknown` where not recorded.
+Eigen::VectorXd times(const SetupView& view, double unknown = 0.0);
+/// Temperature less 20 degC; 0 where the channel was not recorded.
+Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& channel);
+
+EffectSpec effect_spec(const std::string& kind,
+                       std::initializer_list<std::pair<std::string, OptionValue>> options);
+
+}  // namespace volcal

@@ -1,0 +1,343 @@
+// What the instrument does: length scale, dead path, stations that drift or are pushed, tool offsets,
+// ball-bars.
+#include <cmath>
+#include <set>
+
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kSharpestEvent = 1.0;  // s
+
+bool measures_lengths(const Setup& setup) {
+  static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "displacement"};
+  return kinds.contains(setup.instrument);
+}
+
+Eigen::VectorXd constant(const SetupView& view, double value) {
+  return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), value);
+}
+
+/// 1 from `event` on, 0 before, rising within a second so that it has a slope.
+Eigen::ArrayXd after(const SetupView& view, double event) {
+  return 0.5 * (1.0 + ((times(view, event - 1e6).array() - event) / kSharpestEvent).tanh());
+}
+
+std::unique_ptr<FormulaEffect> make_length_scale(const EffectTable& table) {
+  const std::string station = table.spec.options.text("station").value_or("");
+  const std::string label = station.empty() ? "length scale of all lasers" : "length scale at " + station;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"length-scale", station.empty() ? "readings" : "station " + station, "length", "linear"},
+      std::vector{reading_amplitude(table, label, "amplitude_ppm")},
+      [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        const bool acts =
+            measures_lengths(view.setup) && (station.empty() || station_of(view.setup) == station);
+        return acts ? view.length : constant(view, 0.0);
+      },
+      [station](const Campaign& campaign, const SourcePlace& place) {
+        if (!station.empty()) check_station(campaign, station, place);
+        for (const Setup& setup : campaign.setups) {
+          if (measures_lengths(setup)) return;
+        }
+        throw InputError(place, "length scale: no setup measures lengths with a laser", "remove the effect");
+      });
+}
+
+std::vector<EffectSpec> length_scales(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  for (const Setup& setup : campaign.setups) {
+    if (measures_lengths(setup) && specs.empty()) specs.push_back(effect_spec("length-scale", {}));
+  }
+  const auto stations = station_names(campaign);
+  if (stations.size() < 2) return specs;
+  for (const std::string& station : stations) {
+    specs.push_back(effect_spec("length-scale", {{"station", station}}));
+  }
+  return specs;
+}
+
+std::unique_ptr<FormulaEffect> make_dead_path(const EffectTable& table) {
+  const std::string setup = table.text("setup", "add setup = \"NAME\"");
+  const std::string channel = table.spec.options.text("temperature").value_or("");
+  const std::string label = "dead path of " + setup + (channel.empty() ? " by time" : " by " + channel);
+  auto effect = std::make_unique<FormulaEffect>(
+      EffectName{"dead-path", "readings of " + setup, channel.empty() ? "time" : "T_" + channel, "linear"},
+      std::vector{
+          reading_amplitude(table, label, channel.empty() ? "amplitude_um_per_h" : "amplitude_um_per_K")},
+      [setup, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        if (view.setup.name != setup) return constant(view, 0.0);
+        if (!channel.empty()) return temperature_excess(view, channel);
+        return view.setup.readings.time.empty()
+                   ? constant(view, 0.0)
+                   : Eigen::VectorXd(times(view).array() - view.setup.readings.time.front());
+      },
+      [setup, channel](const Campaign& campaign, const SourcePlace& place) {
+        if (!channel.empty()) check_channel(campaign, channel, place);
+        for (const Setup& each : campaign.setups) {
+          if (each.name == setup) return;
+        }
+        throw InputError(place, "dead path: the campaign has no setup \"" + setup + "\"",
+                         "name a setup of the campaign or remove the effect");
+      });
+  return effect;
+}
+
+std::vector<EffectSpec> dead_paths(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  for (const Setup& setup : campaign.setups) {
+    if (!measures_lengths(setup)) continue;
+    if (!setup.readings.time.empty()) specs.push_back(effect_spec("dead-path", {{"setup", setup.name}}));
+    for (const auto& [channel, values] : setup.readings.temperature) {
+      specs.push_back(effect_spec("dead-path", {{"setup", setup.name}, {"temperature", channel}}));
+    }
+  }
+  return specs;
+}
+
+std::unique_ptr<FormulaEffect> make_station_drift(const EffectTable& table) {
+  const std::string station = table.text("station", "add station = \"NAME\"");
+  const std::string label = "drift of station " + station;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"station-drift", "station " + station, "time", "linear"},
+      vector_amplitudes(table, label, TargetKind::Station, "um_per_h"),
+      [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        if (station_of(view.setup) != station) return constant(view, 0.0).replicate(1, 3);
+        const double start = time_span(view.campaign).first;
+        return (times(view, start).array() - start).matrix().replicate(1, 3);
+      },
+      [station, label](const Campaign& campaign, const SourcePlace& place) {
+        check_station(campaign, station, place);
+        check_time(campaign, label, place);
+      });
+}
+
+std::vector<EffectSpec> station_drifts(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  if (!has_time(campaign)) return specs;
+  for (const std::string& station : station_names(campaign)) {
+    specs.push_back(effect_spec("station-drift", {{"station", station}}));
+  }
+  return specs;
+}
+
+std::unique_ptr<FormulaEffect> make_station_event(const EffectTable& table) {
+  const std::string station = table.text("station", "add station = \"NAME\"");
+  const std::string label = "event at station " + station;
+  auto effect = std::make_unique<FormulaEffect>(
+      EffectName{"station-event", "station " + station, "time", "step"},
+      vector_amplitudes(table, label, TargetKind::Station, "um"),
+      [station](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
+        if (station_of(view.setup) != station) return constant(view, 0.0).replicate(1, 3);
+        return after(view, shape[0]).matrix().replicate(1, 3);
+      },
+      [station, label](const Campaign& campaign, const SourcePlace& place) {
+        check_station(campaign, station, place);
+        check_time(campaign, label, place);
+      });
+  effect->add_shape(shape_parameter(table, label + ": time", "time", "s", table.number("time", 0.0),
+                                    table.number("from", 0.0), table.number("to", 0.0)));
+  return effect;
+}
+
+/// The event is looked for between the first and the last reading of the station.
+std::vector<EffectSpec> station_events(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  for (const std::string& station : station_names(campaign)) {
+    double from = std::numeric_limits<double>::infinity();
+    double to = -from;
+    for (const Setup& setup : campaign.setups) {
+      if (station_of(setup) != station || setup.readings.time.empty()) continue;
+      from = std::min(from, setup.readings.time.front());
+      to = std::max(to, setup.readings.time.back());
+    }
+    if (!(to > from)) continue;
+    specs.push_back(effect_spec(
+        "station-event", {{"station", station}, {"time", 0.5 * (from + to)}, {"from", from}, {"to", to}}));
+  }
+  return specs;
+}
+
+std::unique_ptr<FormulaEffect> make_tool_offset(const EffectTable& table) {
+  const std::string tool = table.text("tool", "add tool = \"NAME\"");
+  const std::string label = "offset of tool " + tool;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"tool-offset", "tool " + tool, "tool", "step"},
+      vector_amplitudes(table, label, TargetKind::ToolOffset, "um"),
+      [tool](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        const bool carried = view.campaign.machine.tools[view.setup.tool].name == tool;
+        return constant(view, carried ? 1.0 : 0.0).replicate(1, 3);
+      },
+      [tool](const Campaign& campaign, const SourcePlace& place) { check_tool(campaign, tool, place); });
+}
+
+std::vector<EffectSpec> tool_offsets(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  for (const std::string& tool : tools_in_use(campaign)) {
+    specs.push_back(effect_spec("tool-offset", {{"tool", tool}}));
+  }
+  return specs;
+}
+
+bool is_ball_bar(const Setup& setup) { return setup.instrument == "ball-bar"; }
+
+void check_ball_bar(const Campaign& campaign, const SourcePlace& place) {
+  for (const Setup& setup : campaign.setups) {
+    if (is_ball_bar(setup)) return;
+  }
+  throw InputError(place, "no setup is a ball-bar", "remove the effect");
+}
+
+std::unique_ptr<FormulaEffect> make_ball_bar_length(const EffectTable& table) {
+  const std::string label = "ball-bar length";
+  return std::make_unique<FormulaEffect>(
+      EffectName{"ball-bar-length", "readings", "ball-bar", "step"},
+      std::vector{reading_amplitude(table, label, "amplitude_um")},
+      [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return constant(view, is_ball_bar(view.setup) ? 1.0 : 0.0);
+      },
+      check_ball_bar);
+}
+
+std::vector<EffectSpec> ball_bar_lengths(const Campaign& campaign) {
+  for (const Setup& setup : campaign.setups) {
+    if (is_ball_bar(setup)) return {effect_spec("ball-bar-length", {})};
+  }
+  return {};
+}
+
+/// Product of the signs of approach of two axes: a lag of one axis behind the other makes an ellipse at 45
+/// degrees that turns with the sense of the circle.
+std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
+  const AxisName first = table.axis("axis");
+  const AxisName second = table.axis("second_axis");
+  const std::string label = std::string("servo mismatch ") + letter_of(std::min(first, second)) +
+                            letter_of(std::max(first, second));
+  if (first == second) table.fail("its two axes are the same", "name the two axes of the circle's plane");
+  return std::make_unique<FormulaEffect>(
+      EffectName{"servo-mismatch", label.substr(label.size() - 2), "dir", "sin(2 phi)"},
+      std::vector{reading_amplitude(table, label, "amplitude_um")},
+      [first, second](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        if (!is_ball_bar(view.setup)) return constant(view, 0.0);
+        const auto centre = view.setup.options.vector("centre");
+        Eigen::VectorXd driver = constant(view, 0.0);
+        const Eigen::VectorXd dir_1 = directions(view, first), dir_2 = directions(view, second);
+        for (Eigen::Index row = 0; centre && row < driver.size(); ++row) {
+          const Eigen::Vector3d radius = view.nominal_point_w[static_cast<std::size_t>(row)] - *centre;
+          const double x = radius[direction_of(first)], y = radius[direction_of(second)];
+          // Counter-clockwise, x falls where y is positive: the sense follows from either direction.
+          const double sense = 0.5 * (dir_2[row] * (x > 0 ? 1 : -1) - dir_1[row] * (y > 0 ? 1 : -1));
+          driver[row] = sense * 2.0 * x * y / std::max(1e-12, x * x + y * y);
+        }
+        return driver;
+      },
+      check_ball_bar);
+}
+
+std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  if (ball_bar_lengths(campaign).empty()) return specs;
+  const auto axes = linear_axes(campaign.machine);
+  for (const AxisName first : axes) {
+    for (const AxisName second : axes) {
+      if (first >= second) continue;
+      specs.push_back(effect_spec("servo-mismatch", {{"axis", std::string(1, letter_of(first))},
+                                                     {"second_axis", std::string(1, letter_of(second))}}));
+    }
+  }
+  return specs;
+}
+
+KeySchema amplitude_key(const std::string& key, const std::string& help) {
+  return {.key = key, .help = help, .plausible_min = 1e-6, .plausible_max = 1e4};
+}
+
+}  // namespace
+
+const EffectKind& length_scale_effect() {
+  static const FormulaKind kind(
+      {.kind = "length-scale",
+       .summary =
+           "wavelength or air index is off: every length, or those of one station, is too long by this",
+       .source = "Edlen, Metrologia 2 (1966) 71: refractive index of air; 1 ppm per kelvin or 3.7 hPa",
+       .keys = {text_key("station", "only this station; absent = all lasers", false),
+                amplitude_key("amplitude_ppm", "relative error of lengths")}},
+      make_length_scale, length_scales);
+  return kind;
+}
+
+const EffectKind& dead_path_effect() {
+  static const FormulaKind kind(
+      {.kind = "dead-path",
+       .summary =
+           "the dead path of a setup changes with time or with a temperature (air index, thermal drift)",
+       .source = "ISO 230-6; Edlen, Metrologia 2 (1966) 71",
+       .keys = {text_key("setup", "name of the setup"),
+                text_key("temperature", "channel that drives it; absent = time", false),
+                amplitude_key("amplitude_um_per_h", "change of the reading per hour"),
+                amplitude_key("amplitude_um_per_K", "change of the reading per kelvin")}},
+      make_dead_path, dead_paths);
+  return kind;
+}
+
+const EffectKind& station_drift_effect() {
+  static const FormulaKind kind(
+      {.kind = "station-drift",
+       .summary = "a station moves slowly, in proportion to time",
+       .source = "Schwenke et al., CIRP Annals 54 (2005): stability of stations in multilateration",
+       .keys = joined({{text_key("station", "name of the station")},
+                       vector_amplitude_keys("um_per_h", "velocity in workpiece coordinates")})},
+      make_station_drift, station_drifts);
+  return kind;
+}
+
+const EffectKind& station_event_effect() {
+  static const FormulaKind kind(
+      {.kind = "station-event",
+       .summary = "a station is pushed at a certain time and stays where it then stands",
+       .source = "Schwenke et al., CIRP Annals 54 (2005): stability of stations in multilateration",
+       .keys = joined(
+           {{text_key("station", "name of the station")},
+            shape_keys("time", "s", "when it happened, campaign clock"),
+            {{.key = "from_s", .help = "earliest time at which it is looked for", .plausible_max = 1e9},
+             {.key = "to_s", .help = "latest time at which it is looked for", .plausible_max = 1e9}},
+            vector_amplitude_keys("um", "displacement in workpiece coordinates")})},
+      make_station_event, station_events);
+  return kind;
+}
+
+const EffectKind& tool_offset_effect() {
+  static const FormulaKind kind(
+      {.kind = "tool-offset",
+       .summary = "the offset of a tool (or its reflector) is not what the machine file says",
+       .source = "ISO/TR 16907:2015, 7.3 (functional point)",
+       .keys = joined({{text_key("tool", "name of the tool")},
+                       vector_amplitude_keys("um", "actual less stated offset, tool coordinates")})},
+      make_tool_offset, tool_offsets);
+  return kind;
+}
+
+const EffectKind& ball_bar_length_effect() {
+  static const FormulaKind kind({.kind = "ball-bar-length",
+                                 .summary = "the calibrated length of the ball-bar is wrong",
+                                 .source = "ISO 230-4 (circular tests)",
+                                 .keys = {amplitude_key("amplitude_um", "reading too long by this")}},
+                                make_ball_bar_length, ball_bar_lengths);
+  return kind;
+}
+
+const EffectKind& servo_mismatch_effect() {
+  static const FormulaKind kind(
+      {.kind = "servo-mismatch",
+       .summary = "one axis follows the other late: circles become ellipses at 45 degrees whose direction "
+                  "depends on "
+                  "the sense of rotation",
+       .source = "ISO 230-4, annex; Kakino et al. (1993): servo mismatch in circular tests",
+       .keys = {axis_key("axis", "first axis of the circle"), axis_key("second_axis", "second axis"),
+                amplitude_key("amplitude_um", "amplitude of the radius, counter-clockwise")}},
+      make_servo_mismatch, servo_mismatches);
+  return kind;
+}
+
+}  // namespace volcal

@@ -1,0 +1,88 @@
+// Periodic errors of drive and scale: ball-screw lead error, interpolation error of an encoder.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+struct PeriodRange {
+  const char* kind;
+  const char* label;
+  double usual;  ///< m
+  double min;
+  double max;
+};
+constexpr PeriodRange kLead = {"lead-error", "lead error", 10e-3, 4e-3, 60e-3};
+constexpr PeriodRange kEncoder = {"encoder-subdivision", "subdivision error", 1e-3, 20e-6, 3e-3};
+
+EffectSchema periodic_schema(const PeriodRange& range, const std::string& summary,
+                             const std::string& source) {
+  return {.kind = range.kind,
+          .summary = summary,
+          .source = source,
+          .keys = joined(
+              {{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
+               shape_keys("period", "mm", "period in positions of the axis"),
+               {{.key = "cos_um", .help = "amplitude of the cosine, displacements", .plausible_max = 1e4},
+                {.key = "cos_urad", .help = "amplitude of the cosine, rotations", .plausible_max = 1e4},
+                {.key = "sin_um", .help = "amplitude of the sine, displacements", .plausible_max = 1e4},
+                {.key = "sin_urad", .help = "amplitude of the sine, rotations", .plausible_max = 1e4}}})};
+}
+
+std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const PeriodRange& range) {
+  const ErrorSymbol symbol = table.symbol();
+  const std::string label = range.label + (" " + symbol.name());
+  auto effect = std::make_unique<FormulaEffect>(
+      EffectName{range.kind, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "periodic"},
+      std::vector{motion_amplitude(table, label + " cos", symbol, "", "cos"),
+                  motion_amplitude(table, label + " sin", symbol, "", "sin")},
+      [symbol](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
+        const Eigen::ArrayXd phase =
+            positions_from_home(view, symbol.axis).array() * (2.0 * std::numbers::pi / shape[0]);
+        Eigen::MatrixXd drivers(phase.size(), 2);
+        drivers << phase.cos(), phase.sin();
+        return drivers;
+      },
+      [symbol, label](const Campaign& campaign, const SourcePlace& place) {
+        check_axis(campaign, symbol.axis, label, place);
+      });
+  const EffectShape period =
+      shape_parameter(table, label + ": period", "period", "mm", range.usual, range.min, range.max);
+  if (!(period.value > 0.0)) table.fail("its period is not positive", "give period_mm = 10.0");
+  effect->add_shape(period);
+  return effect;
+}
+
+std::vector<EffectSpec> positioning_motions(const Campaign& campaign, const char* kind) {
+  std::vector<EffectSpec> specs;
+  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+    if (symbol.is_positioning()) specs.push_back(effect_spec(kind, {{"symbol", symbol.name()}}));
+  }
+  return specs;
+}
+
+}  // namespace
+
+const EffectKind& lead_error_effect() {
+  static const FormulaKind kind(
+      periodic_schema(kLead, "a ball screw repeats its error with its lead and the lead's fractions",
+                      "ISO 3408-3 (periodic travel deviation of ball screws)"),
+      [](const EffectTable& table) { return make_periodic(table, kLead); },
+      [](const Campaign& campaign) { return positioning_motions(campaign, kLead.kind); });
+  return kind;
+}
+
+const EffectKind& encoder_subdivision_effect() {
+  static const FormulaKind kind(
+      periodic_schema(kEncoder, "a scale's interpolation repeats its error within each signal period",
+                      "Heydemann, Appl. Opt. 20 (1981) 3382: errors of quadrature signals"),
+      [](const EffectTable& table) { return make_periodic(table, kEncoder); },
+      [](const Campaign& campaign) { return positioning_motions(campaign, kEncoder.kind); });
+  return kind;
+}
+
+}  // namespace volcal

@@ -1,0 +1,48 @@
+// Reversal that changes along the travel: a screw worn in the middle, a cable chain.
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+EffectSchema position_reversal_schema() {
+  return {.kind = "position-reversal",
+          .summary =
+              "the reversal of an error motion changes along the travel of its own axis by this much per "
+              "metre; counted from home",
+          .source = "ISO 230-2:2014, 3.11 (reversal value at a position)",
+          .keys = joined({{symbol_key("error motion whose reversal changes: EXX ...")},
+                          motion_amplitude_keys({"per_m"}, "change of b per metre of travel")})};
+}
+
+std::unique_ptr<FormulaEffect> make_position_reversal(const EffectTable& table) {
+  const ErrorSymbol symbol = table.symbol();
+  const std::string label = "reversal " + symbol.name() + " along the travel";
+  const std::string axis(1, lower_letter_of(symbol.axis));
+  return std::make_unique<FormulaEffect>(
+      EffectName{"position-reversal", symbol.name(), "dir_" + axis + " " + axis, "linear"},
+      std::vector{motion_amplitude(table, label, symbol, "per_m")},
+      [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return 0.5 * directions(view, symbol.axis).cwiseProduct(positions_from_home(view, symbol.axis));
+      },
+      [symbol, label](const Campaign& campaign, const SourcePlace& place) {
+        check_axis(campaign, symbol.axis, label, place);
+      });
+}
+
+std::vector<EffectSpec> position_reversals(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+    specs.push_back(effect_spec("position-reversal", {{"symbol", symbol.name()}}));
+  }
+  return specs;
+}
+
+}  // namespace
+
+const EffectKind& position_reversal_effect() {
+  static const FormulaKind kind(position_reversal_schema(), make_position_reversal, position_reversals);
+  return kind;
+}
+
+}  // namespace volcal

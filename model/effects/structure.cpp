@@ -1,0 +1,104 @@
+// Behaviour that is not rigid: an error motion that depends on two other axes, or on the tool it carries.
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+std::unique_ptr<FormulaEffect> make_product_coupling(const EffectTable& table) {
+  const ErrorSymbol symbol = table.symbol();
+  const AxisName first = table.axis("axis");
+  const AxisName second = table.axis("second_axis");
+  if (first == second)
+    table.fail("its two axes are the same", "use axis-coupling with shape = \"quadratic\"");
+  const std::string driver = {lower_letter_of(std::min(first, second)), ' ',
+                              lower_letter_of(std::max(first, second))};
+  const std::string label = symbol.name() + " by " + driver;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"product-coupling", symbol.name(), driver, "product"},
+      std::vector{motion_amplitude(table, label, symbol, "per_m2")},
+      [first, second](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return positions_from_home(view, first).cwiseProduct(positions_from_home(view, second));
+      },
+      [symbol, first, second, label](const Campaign& campaign, const SourcePlace& place) {
+        for (const AxisName axis : {symbol.axis, first, second}) check_axis(campaign, axis, label, place);
+      });
+}
+
+std::vector<EffectSpec> product_couplings(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  const auto axes = linear_axes(campaign.machine);
+  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+    for (const AxisName first : axes) {
+      for (const AxisName second : axes) {
+        if (first >= second) continue;
+        specs.push_back(
+            effect_spec("product-coupling", {{"symbol", symbol.name()},
+                                             {"axis", std::string(1, letter_of(first))},
+                                             {"second_axis", std::string(1, letter_of(second))}}));
+      }
+    }
+  }
+  return specs;
+}
+
+std::unique_ptr<FormulaEffect> make_tool_load(const EffectTable& table) {
+  const ErrorSymbol symbol = table.symbol();
+  const std::string tool = table.text("tool", "add tool = \"NAME\"");
+  const std::string label = symbol.name() + " by tool " + tool;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"tool-load", symbol.name(), "tool " + tool, "step"},
+      std::vector{motion_amplitude(table, label, symbol, "")},
+      [tool](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        const bool carried = view.campaign.machine.tools[view.setup.tool].name == tool;
+        return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), carried ? 1.0 : 0.0);
+      },
+      [symbol, tool, label](const Campaign& campaign, const SourcePlace& place) {
+        check_axis(campaign, symbol.axis, label, place);
+        check_tool(campaign, tool, place);
+      });
+}
+
+/// Rotations only: what a tool's weight displaces is an error of its offset.
+std::vector<EffectSpec> tool_loads(const Campaign& campaign) {
+  std::vector<EffectSpec> specs;
+  const auto tools = tools_in_use(campaign);
+  if (tools.size() < 2) return specs;
+  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+    if (!is_rotation(symbol.component)) continue;
+    for (const std::string& tool : tools) {
+      specs.push_back(effect_spec("tool-load", {{"symbol", symbol.name()}, {"tool", tool}}));
+    }
+  }
+  return specs;
+}
+
+}  // namespace
+
+const EffectKind& product_coupling_effect() {
+  static const FormulaKind kind(
+      {.kind = "product-coupling",
+       .summary = "an error motion depends on the product of two axes' positions, counted from their homes",
+       .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
+       .keys = joined(
+           {{symbol_key("error motion that changes: EAX ..."), axis_key("axis", "first axis of the product"),
+             axis_key("second_axis", "second axis of the product")},
+            motion_amplitude_keys({"per_m2"}, "change per metre of each axis")})},
+      make_product_coupling, product_couplings);
+  return kind;
+}
+
+const EffectKind& tool_load_effect() {
+  static const FormulaKind kind(
+      {.kind = "tool-load",
+       .summary =
+           "the weight of a tool tilts what carries it: an error motion is larger by this with the tool",
+       .source = "ISO/TR 16907:2015, 7.4.2 (load)",
+       .keys =
+           joined({{symbol_key("error motion that changes: EAZ ..."), text_key("tool", "name of the tool")},
+                   motion_amplitude_keys({""}, "change with the tool")})},
+      make_tool_load, tool_loads);
+  return kind;
+}
+
+}  // namespace volcal

@@ -11,6 +11,8 @@ namespace volcal::cli {
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \
   COMMAND(validate_command)      \
+  COMMAND(diagnose_command)      \
+  COMMAND(extend_command)        \
   COMMAND(tables_command)        \
   COMMAND(study_command)
 

@@ -37,6 +37,9 @@ class LinearModel {
 
   /// Columns of the readings that an effect's amplitudes would add: observations x amplitudes.
   Eigen::MatrixXd columns(const Effect& effect, const Eigen::VectorXd& shape) const;
+  double sensitivity(Eigen::Index observation, int disturbance) const {
+    return sensitivity_(observation, disturbance);
+  }
   /// Derivative of every observation to the displacement of the functional point along a direction of the
   /// workpiece (0..2), or to the reading itself (3).
   Eigen::VectorXd direction(int which) const;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <system_error>
 #include <vector>
@@ -98,6 +99,18 @@ std::string printable(const std::string& text) {
   }
   if (text.size() > kLongest) shown += "...";
   return shown;
+}
+
+void write_text_file(const std::string& path, const std::string& text) {
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary, std::ios::binary);
+  file << text;
+  file.close();
+  std::error_code failure;
+  if (file) std::filesystem::rename(temporary, path, failure);
+  if (!file || failure) {
+    throw InputError({path, 0}, "the file cannot be written", "choose a folder that exists and is writable");
+  }
 }
 
 }  // namespace volcal

@@ -12,6 +12,10 @@ namespace volcal {
 /// Throws InputError.
 std::string read_text_file(const std::string& path, const SourcePlace& named_at = {});
 
+/// Writes under a temporary name and renames: a killed program leaves the old file or the new one. Throws
+/// InputError.
+void write_text_file(const std::string& path, const std::string& text);
+
 /// Throws InputError when `text` cannot be a text file (NUL bytes, UTF-16); `file` names it in the message.
 void require_text(const std::string& text, const std::string& file);
 

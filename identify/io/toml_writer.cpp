@@ -89,6 +89,8 @@ bool key_applies(const KeySchema& key, const EffectSchema& schema, const Effect&
   return std::ranges::find(effect.amplitudes(), key.key, &EffectAmplitude::key) != effect.amplitudes().end();
 }
 
+}  // namespace
+
 std::string effect_toml(const EffectSpec& effect) {
   std::string text = "\n[[effects]]\nkind = " + toml_text(effect.kind) + "\n";
   const EffectKind* kind = find_effect(effect.kind);
@@ -112,8 +114,6 @@ std::string effect_toml(const EffectSpec& effect) {
   }
   return text;
 }
-
-}  // namespace
 
 std::string edge_number(double si, double si_per_unit) {
   const double edge = si / si_per_unit;

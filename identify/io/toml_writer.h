@@ -14,6 +14,9 @@ std::string edge_number(double si, double si_per_unit);
 /// A TOML text in double quotes.
 std::string toml_text(const std::string& text);
 
+/// One [[effects]] table.
+std::string effect_toml(const EffectSpec& effect);
+
 /// machine.toml.
 std::string machine_toml(const Machine& machine);
 

@@ -1,13 +1,81 @@
 #include "volcal/identify/stats/chi_squared.h"
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <unsupported/Eigen/SpecialFunctions>
 
 namespace volcal {
+namespace {
+
+constexpr double kFarOut = 200.0;  // exponent below which the probability itself may underflow
+
+/// log of Gamma(a, x) / Gamma(a) for x > a + 1 by Legendre's continued fraction (Abramowitz and Stegun
+/// 6.5.31), Lentz's algorithm.
+double log_upper_gamma(double a, double x) {
+  constexpr double kTiny = 1e-300;
+  double b = x + 1.0 - a;
+  double c = 1.0 / kTiny;
+  double d = 1.0 / b;
+  double h = d;
+  for (int i = 1; i < 1000; ++i) {
+    const double an = -i * (i - a);
+    b += 2.0;
+    d = an * d + b;
+    if (std::abs(d) < kTiny) d = kTiny;
+    c = b + an / c;
+    if (std::abs(c) < kTiny) c = kTiny;
+    d = 1.0 / d;
+    const double factor = d * c;
+    h *= factor;
+    if (std::abs(factor - 1.0) < 1e-15) break;
+  }
+  return a * std::log(x) - x - std::lgamma(a) + std::log(h);
+}
+
+/// Root of a falling function between two abscissae that enclose it.
+template <class Function>
+double root_of_falling(double low, double high, const Function& function) {
+  for (int i = 0; i < 200 && high - low > 1e-12 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (function(middle) > 0.0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
 
 double chi_squared_exceedance(double chi2, double dof) {
   if (chi2 <= 0.0) return 1.0;
   return Eigen::numext::igammac(dof / 2.0, chi2 / 2.0);
+}
+
+double log10_chi_squared_exceedance(double chi2, double dof) {
+  if (!(chi2 > 0.0)) return 0.0;
+  if (chi2 < kFarOut || chi2 < 2.0 * dof) return std::log10(chi_squared_exceedance(chi2, dof));
+  return log_upper_gamma(dof / 2.0, chi2 / 2.0) / std::log(10.0);
+}
+
+double chi_squared_quantile(double log10_probability, double dof) {
+  const auto excess = [&](double chi2) {
+    return log10_chi_squared_exceedance(chi2, dof) - log10_probability;
+  };
+  double high = dof + 1.0;
+  while (excess(high) > 0.0) high *= 2.0;
+  return root_of_falling(0.0, high, excess);
+}
+
+double detectable_noncentrality(double log10_level, double dof, double power) {
+  const double critical = chi_squared_quantile(log10_level, dof);
+  const auto missed_power = [&](double noncentrality) {
+    const double scale = (dof + 2.0 * noncentrality) / (dof + noncentrality);
+    const double equivalent = (dof + noncentrality) * (dof + noncentrality) / (dof + 2.0 * noncentrality);
+    return power - chi_squared_exceedance(critical / scale, equivalent);
+  };
+  double high = critical + 10.0;
+  while (missed_power(high) > 0.0) high *= 2.0;
+  return root_of_falling(0.0, high, missed_power);
 }
 
 }  // namespace volcal

@@ -1,5 +1,7 @@
 #include "volcal/model/effects/effect.h"
 
+#include <cmath>
+
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -13,6 +15,20 @@ double EffectShape::si_per_unit() const { return unit_of_key(key).si_per_unit; }
 Eigen::VectorXd Effect::shape_values() const {
   Eigen::VectorXd values(static_cast<Eigen::Index>(shapes_.size()));
   for (std::size_t i = 0; i < shapes_.size(); ++i) values[static_cast<Eigen::Index>(i)] = shapes_[i].value;
+  return values;
+}
+
+std::vector<Eigen::VectorXd> Effect::scan(const Campaign& /*campaign*/) const {
+  constexpr int kSteps = 16;
+  std::vector<Eigen::VectorXd> values = {shape_values()};
+  if (shapes_.size() != 1 || !(shapes_[0].scan_max > shapes_[0].scan_min)) return values;
+  values.clear();
+  const double low = shapes_[0].scan_min, high = shapes_[0].scan_max;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double share = static_cast<double>(i) / kSteps;
+    const double value = low > 0.0 ? low * std::pow(high / low, share) : low + share * (high - low);
+    values.emplace_back(Eigen::VectorXd::Constant(1, value));
+  }
   return values;
 }
 

@@ -89,6 +89,9 @@ class Effect {
   /// Drivers of all readings of a setup, rows x amplitudes; 0 where the effect does not act or its driver was
   /// not recorded. `shape`: values of the shape's parameters, SI.
   virtual Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const = 0;
+  /// Values of the shape's parameters at which an unknown shape is looked for; one entry, the given shape,
+  /// when nothing is to be looked for. Neighbours are near enough not to miss what lies between.
+  virtual std::vector<Eigen::VectorXd> scan(const Campaign& campaign) const;
   /// Readings of a setup on which the effect acts, but whose driver was not recorded.
   virtual std::size_t unrecorded(const SetupView& /*view*/) const { return 0; }
 

@@ -15,6 +15,7 @@ class FormulaEffect final : public Effect {
  public:
   using Formula = std::function<Eigen::MatrixXd(const SetupView& view, const Eigen::VectorXd& shape)>;
   using Check = std::function<void(const Campaign& campaign, const SourcePlace& place)>;
+  using Scan = std::function<std::vector<Eigen::VectorXd>(const Campaign& campaign)>;
   using Count = std::function<std::size_t(const SetupView& view)>;
 
   FormulaEffect(EffectName name, std::vector<EffectAmplitude> amplitudes, Formula formula, Check check)
@@ -24,14 +25,19 @@ class FormulaEffect final : public Effect {
   }
   void add_shape(EffectShape shape) { shapes_.push_back(std::move(shape)); }
   void count_unrecorded(Count count) { unrecorded_ = std::move(count); }
+  void scan_by(Scan scan) { scan_ = std::move(scan); }
 
   void check(const Campaign& campaign, const SourcePlace& place) const override { check_(campaign, place); }
   Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const override {
     return formula_(view, shape);
   }
   std::size_t unrecorded(const SetupView& view) const override { return unrecorded_ ? unrecorded_(view) : 0; }
+  std::vector<Eigen::VectorXd> scan(const Campaign& campaign) const override {
+    return scan_ ? scan_(campaign) : Effect::scan(campaign);
+  }
 
  private:
+  Scan scan_;
   Formula formula_;
   Check check_;
   Count unrecorded_;

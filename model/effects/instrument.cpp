@@ -10,6 +10,7 @@ namespace volcal {
 namespace {
 
 constexpr double kSharpestEvent = 1.0;  // s
+constexpr int kEventTimes = 24;
 
 bool measures_lengths(const Setup& setup) {
   static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "displacement"};
@@ -138,6 +139,14 @@ std::unique_ptr<FormulaEffect> make_station_event(const EffectTable& table) {
       });
   effect->add_shape(shape_parameter(table, label + ": time", "time", "s", table.number("time", 0.0),
                                     table.number("from", 0.0), table.number("to", 0.0)));
+  effect->scan_by(
+      [from = table.number("from", 0.0), to = table.number("to", 0.0)](const Campaign& /*campaign*/) {
+        std::vector<Eigen::VectorXd> values;
+        for (int i = 1; i < kEventTimes; ++i) {
+          values.emplace_back(Eigen::VectorXd::Constant(1, from + (to - from) * i / kEventTimes));
+        }
+        return values;
+      });
   return effect;
 }
 

@@ -15,9 +15,29 @@ struct PeriodRange {
   double usual;  ///< m
   double min;
   double max;
+  double finest_scan = 4e-3;  ///< m: ranges above are scanned evenly, others at the usual signal periods
 };
 constexpr PeriodRange kLead = {"lead-error", "lead error", 10e-3, 4e-3, 60e-3};
 constexpr PeriodRange kEncoder = {"encoder-subdivision", "subdivision error", 1e-3, 20e-6, 3e-3};
+
+/// Evenly spaced frequencies, half a period over the travel apart: no line can hide between them.
+std::vector<Eigen::VectorXd> periods(double travel, const PeriodRange& range) {
+  std::vector<Eigen::VectorXd> values;
+  const double step = 0.5 / travel;
+  for (double frequency = 1.0 / range.max; frequency <= 1.0 / range.min; frequency += step) {
+    values.emplace_back(Eigen::VectorXd::Constant(1, 1.0 / frequency));
+  }
+  return values;
+}
+
+/// Signal periods of common scales, and their second harmonics; what lies between is not looked for.
+std::vector<Eigen::VectorXd> usual_periods() {
+  std::vector<Eigen::VectorXd> values;
+  for (const double micrometres : {10.0, 20.0, 40.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0}) {
+    values.emplace_back(Eigen::VectorXd::Constant(1, micrometres * 1e-6));
+  }
+  return values;
+}
 
 EffectSchema periodic_schema(const PeriodRange& range, const std::string& summary,
                              const std::string& source) {
@@ -54,6 +74,10 @@ std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const Per
       shape_parameter(table, label + ": period", "period", "mm", range.usual, range.min, range.max);
   if (!(period.value > 0.0)) table.fail("its period is not positive", "give period_mm = 10.0");
   effect->add_shape(period);
+  effect->scan_by([axis = symbol.axis, range](const Campaign& campaign) {
+    return range.max > range.finest_scan ? periods(campaign.machine.axis(axis).travel(), range)
+                                         : usual_periods();
+  });
   return effect;
 }
 

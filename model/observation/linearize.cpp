@@ -137,13 +137,13 @@ void MeasurementModel::move_tool(RowState& state) const {
 
 /// Derivatives of a channel to a unit of every disturbance; those of the tool only when an effect needs them.
 void MeasurementModel::disturbance_sensitivity(const RowState& state, const Linearization& reading,
-                                               int channel, double* sensitivity) const {
+                                               int channel, bool all, double* sensitivity) const {
   for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
     motion_weights(state.levers[i], joint_turns_[i], reading.d_state[channel], sensitivity + 6 * i);
   }
-  if (binding_.effects.empty()) return;
+  if (binding_.effects.empty() && !all) return;
   const Eigen::Map<const Eigen::Vector3d> d_point(reading.d_state[channel]);
-  if (binding_.effect_moves_tool) {
+  if (binding_.effect_moves_tool || all) {
     Eigen::Map<Eigen::Vector3d>(sensitivity + kToolDisturbance) = state.rotation_wt.transpose() * d_point;
   }
   Eigen::Map<Eigen::Vector3d>(sensitivity + kStationDisturbance) = -d_point;
@@ -155,7 +155,7 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
                                     const Linearization& reading, int channel, RowJacobian& out) const {
   out.predicted[channel] = reading.predicted[channel] + state.disturbance[kReadingDisturbance + channel];
   double sensitivity[kDisturbances];
-  disturbance_sensitivity(state, reading, channel, sensitivity);
+  disturbance_sensitivity(state, reading, channel, false, sensitivity);
   double* weight = out.weight[channel].data();
   for (const GroupBinding& group : binding_.groups) {
     for (const int component : group.component) *weight++ = sensitivity[6 * group.joint + component];
@@ -183,13 +183,35 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
 
 void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                                  RowJacobian& out) const {
+  const SetupBinding& place = binding_.setups[setup];
+  RowState state;
+  Linearization reading;
+  evaluate(setup, row, parameters, state, reading, out);
+  for (int channel = 0; channel < out.channels; ++channel) fill_channel(place, state, reading, channel, out);
+}
+
+void MeasurementModel::disturbance_rows(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                                        DisturbanceRows& out) const {
+  RowJacobian scratch;
+  RowState state;
+  Linearization reading;
+  evaluate(setup, row, parameters, state, reading, scratch);
+  state.rotation_wt = chain_.nominal_rotation_wt(state.position);
+  out.setZero();
+  for (int channel = 0; channel < scratch.channels; ++channel) {
+    disturbance_sensitivity(state, reading, channel, true, out.row(channel).data());
+  }
+}
+
+/// State of the tool and linearised reading; sizes `out`, writes its basis values and its tail's indices.
+void MeasurementModel::evaluate(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                                RowState& state, Linearization& reading, RowJacobian& out) const {
   const Setup& source = campaign_.setups[setup];
   const SetupBinding& place = binding_.setups[setup];
   const BoundSetup& bound = *place.bound;
   const int local_size = bound.local_nuisance_size();
   resize(bound.channels(), (place.tool_error >= 0 ? 3 : 0) + local_size, out);
 
-  RowState state;
   for (const Joint& joint : campaign_.machine.structure.joints) {
     const std::size_t axis = index_of(joint.axis);
     state.position[axis] = source.readings.position[axis][row];
@@ -214,9 +236,7 @@ void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen
     index[k] = place.nuisance[static_cast<std::size_t>(index[k])];
     nuisance[k] = parameters[index[k]];
   }
-  Linearization reading;
   bound.linearize(row, state.tool, nuisance, reading);
-  for (int channel = 0; channel < out.channels; ++channel) fill_channel(place, state, reading, channel, out);
 }
 
 /// Gives the row its sizes and the shared part of its tail; without effect on a row that had them.

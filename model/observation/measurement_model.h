@@ -75,8 +75,10 @@ class MeasurementModel {
   void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowState& state) const;
   void move_tool(RowState& state) const;
-  void disturbance_sensitivity(const RowState& state, const Linearization& reading, int channel,
+  void disturbance_sensitivity(const RowState& state, const Linearization& reading, int channel, bool all,
                                double* sensitivity) const;
+  void evaluate(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowState& state,
+                Linearization& reading, RowJacobian& out) const;
   void resize(int channels, int own_tail, RowJacobian& out) const;
   void fill_channel(const SetupBinding& place, const RowState& state, const Linearization& reading,
                     int channel, RowJacobian& out) const;

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/report/diagnosis_text.h"
+#include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal::cli {
+namespace {
+
+struct Arguments {
+  std::string campaign;
+  std::string model;
+  std::string output;
+  int threads = 0;
+  bool climb = false;
+  bool list = false;
+  bool json = false;
+};
+
+/// Every registered kind, and what its effects can act on and depend on.
+int print_list() {
+  for (const EffectKind* kind : effect_kinds()) {
+    const EffectSchema& schema = kind->schema();
+    fmt::print("{}\n  {}\n  source: {}\n", schema.kind, schema.summary, schema.source);
+    for (const KeySchema& key : schema.keys) fmt::print("    {:<24} {}\n", key.key, key.help);
+  }
+  return kDone;
+}
+
+ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
+  for (const EffectFinding& effect : diagnosis.effects) model.effects.push_back(effect.spec);
+  return model;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.list) return print_list();
+  if (arguments.campaign.empty()) {
+    throw InputError({}, "no campaign is given", "volcal diagnose CAMPAIGN.toml -o DIR, or --list");
+  }
+  const Campaign campaign = read_campaign(arguments.campaign);
+  const ModelSpec model =
+      arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  ProgressBar bar("diagnose");
+  FitOptions fit_options;
+  fit_options.threads = arguments.threads;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.progress = [&bar](const std::string& stage, double done) {
+    bar.update("fit: " + stage, 0.3 * done);
+  };
+  const FitResult result = fit(campaign, model, fit_options);
+  DiagnoseOptions options;
+  options.threads = std::max(1, arguments.threads);
+  options.climb = arguments.climb;
+  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
+  const Diagnosis diagnosis = diagnose(campaign, result, options);
+  bar.finish();
+  const std::string json = diagnosis_json(diagnosis);
+  if (!arguments.output.empty()) {
+    AtomicFolder folder(arguments.output);
+    folder.write("diagnosis.json", json);
+    folder.write("machine.toml", machine_toml(campaign.machine));
+    folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
+                                             "the given model with the effects that volcal diagnose added"));
+    folder.commit();
+  }
+  if (arguments.json) {
+    fmt::print("{}", json);
+  } else {
+    fmt::print("{}", diagnosis_text(diagnosis));
+    if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+  }
+  return kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml");
+  app.add_option("-m,--model", arguments->model, "model.toml to criticise; default: all 21 errors");
+  app.add_option("-o,--output", arguments->output, "folder for diagnosis.json and extended.toml");
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--auto", arguments->climb, "add effects one after another until nothing is left");
+  app.add_flag("--list", arguments->list, "print every kind of effect and stop");
+  app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& diagnose_command() {
+  static const Command command = {"diagnose",
+                                  "show where the model fails, and name the effect that is missing",
+                                  "  volcal diagnose campaign.toml -o diagnosis\n"
+                                  "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
+                                  "  volcal diagnose --list\n",
+                                  define};
+  return command;
+}
+
+}  // namespace volcal::cli

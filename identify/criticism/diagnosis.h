@@ -1,0 +1,100 @@
+#pragma once
+/// Where a model fails to explain the readings, and which physical effect is missing.
+///
+///   1. the noise model by restricted likelihood,
+///   2. score tests of every named family, after projection off the model,
+///   3. two generic scans, because the catalogue is never complete,
+///   4. a verdict in the user's words; with `climb`, effects are added one by one until nothing is left.
+///
+/// A share of the lines is held out: they never choose, and judge every step.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/families.h"
+#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/noise_estimate.h"
+
+namespace volcal {
+
+enum class Verdict { Named, NamedMoreRemains, OneOf, Unknown, NothingAbove, NotVisible };
+/// "NAMED", "NAMED_MORE_REMAINS", "ONE_OF", "UNKNOWN", "NOTHING_ABOVE", "NOT_VISIBLE".
+std::string to_string(Verdict verdict);
+
+/// One amplitude of a named effect, or of a candidate.
+struct AmplitudeFigure {
+  std::string label;
+  double value = 0.0;  ///< SI
+  double u = 0.0;
+  double mdb = 0.0;  ///< smallest amplitude found with 80 % power at the family-wise level
+  std::string unit;  ///< edge
+  double si_per_unit = 1.0;
+};
+
+struct EffectFinding {
+  EffectName name;
+  std::string label;
+  EffectSpec spec;  ///< with the estimated amplitudes and shape: can be put into a model file
+  std::vector<AmplitudeFigure> amplitudes;
+  std::string shape_text;  ///< "period 10.02 mm"; empty without shape parameters
+  double log10_p = 0.0;    ///< family-wise
+  double lm = 0.0;
+  int dof = 0;
+  double gain = 0.0;
+  double visible_fraction = 0.0;
+  bool resolution = false;  ///< more of an error function, no effect
+};
+
+/// Something moves the readings, and no effect of the catalogue explains it better.
+struct UnknownFinding {
+  std::vector<std::string> variables;
+  std::string direction;
+  double rms = 0.0;      ///< SI
+  double log10_p = 0.0;  ///< family-wise
+};
+
+/// One step of the ladder. SI.
+struct LadderStep {
+  std::string model;  ///< "0", "1" ...
+  std::string added;  ///< empty for the given model
+  double rms_fit = 0.0;
+  double rms_heldout = 0.0;     ///< NaN without held-out readings
+  double reduced_chi2 = 0.0;    ///< against the noise model
+  double noise_floor = 0.0;     ///< root mean square noise of the held-out readings
+  double systematic = 0.0;      ///< sqrt(max(0, MS - floor^2)) of the held-out readings
+  double systematic_low = 0.0;  ///< 95 % interval
+  double systematic_high = 0.0;
+  double heldout_loglik_gain = 0.0;  ///< against the step before
+};
+
+struct DiagnoseOptions {
+  int threads = 1;
+  bool climb = false;  ///< add effects until nothing is left
+  int most_effects = 8;
+  double heldout_share = 0.2;
+  std::function<void(const std::string& stage, double done)> progress;
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::NothingAbove;
+  std::vector<std::string> words;          ///< the verdict in plain sentences
+  std::vector<EffectFinding> effects;      ///< named, in the order in which they were added
+  std::vector<EffectFinding> one_of;       ///< alternatives that the readings do not tell apart
+  std::vector<UnknownFinding> unknown;     ///< leading first
+  std::vector<EffectFinding> ranking;      ///< families by gain, at the model reached; at most 40
+  std::vector<EffectFinding> not_visible;  ///< families of which less than 2 % shows
+  std::vector<EffectFinding> model_changes;
+  std::vector<LadderStep> ladder;
+  std::vector<NoiseRow> noise;
+  std::vector<std::string> noise_instruments;
+  std::vector<std::string> next_measurement;
+  std::size_t removed_readings = 0;
+  std::size_t families = 0;
+  std::size_t generic_tests = 0;
+};
+
+/// `result` must come from fit() of this campaign.
+Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options);
+
+}  // namespace volcal

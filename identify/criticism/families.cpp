@@ -1,0 +1,190 @@
+#include "volcal/identify/criticism/families.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "volcal/identify/solve/resolution.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr Eigen::Index kBlockColumns = 768;
+constexpr int kLowestExtraDegree = 4;
+constexpr int kHighestExtraDegree = 11;
+
+/// Legendre polynomials on [-1, 1] by their recurrence (Abramowitz and Stegun 22.7.10).
+double legendre(int degree, double x) {
+  double before = 1.0, value = x;
+  if (degree == 0) return before;
+  for (int n = 1; n < degree; ++n) {
+    const double next = ((2.0 * n + 1.0) * x * value - n * before) / (n + 1.0);
+    before = value;
+    value = next;
+  }
+  return value;
+}
+
+/// Higher polynomials of an axis' own position: what a function with too few knots leaves.
+Eigen::MatrixXd resolution_columns(const LinearModel& model, ErrorSymbol symbol) {
+  const Campaign& campaign = model.campaign();
+  const MeasuredRange range = measured_range(campaign, symbol.axis);
+  const int target =
+      disturbance_of({.kind = TargetKind::Motion, .symbol = symbol, .component = 0}, campaign.machine);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()),
+                          kHighestExtraDegree - kLowestExtraDegree + 1);
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    const auto& [setup, row, channel] = model.observations()[i];
+    const double q = campaign.setups[setup].readings.position[index_of(symbol.axis)][row];
+    const double x =
+        std::clamp(2.0 * (q - range.min) / std::max(1e-12, range.max - range.min) - 1.0, -1.0, 1.0);
+    const auto at = static_cast<Eigen::Index>(i);
+    for (int degree = kLowestExtraDegree; degree <= kHighestExtraDegree; ++degree) {
+      columns(at, degree - kLowestExtraDegree) = legendre(degree, x) * model.sensitivity(at, target);
+    }
+  }
+  return columns;
+}
+
+/// Effective number of independent directions among unit vectors with this Gram matrix: (sum l)^2 / sum l^2
+/// of its eigenvalues.
+double effective_number(const Eigen::MatrixXd& gram) {
+  const double squares = gram.squaredNorm();
+  const double trace = gram.trace();
+  return squares > 0.0 ? std::max(1.0, trace * trace / squares) : 1.0;
+}
+
+/// Multiplicity of a scan from the projected columns of its shapes, amplitude by amplitude.
+double scan_multiplicity(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index shapes,
+                         Eigen::Index amplitudes) {
+  if (shapes < 2) return 1.0;
+  Eigen::MatrixXd gram = projected.gram(first, shapes * amplitudes);
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
+      [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+  gram = scale.asDiagonal() * gram * scale.asDiagonal();
+  return effective_number(gram);
+}
+
+class FamilyTester {
+ public:
+  FamilyTester(const LinearModel& model, const std::vector<Family>& families, const Projector& projector)
+      : model_(model), families_(families), projector_(projector) {
+    tests_.resize(families.size());
+    log_count_ = std::log(static_cast<double>(projector.observations()));
+  }
+
+  std::vector<FamilyTest> run() {
+    for (std::size_t i = 0; i < families_.size(); ++i) {
+      add(i);
+      if (used_ >= kBlockColumns) test_block();
+    }
+    test_block();
+    return std::move(tests_);
+  }
+
+ private:
+  void add(std::size_t family) {
+    for (const Eigen::VectorXd& shape : families_[family].scan) {
+      parts_.push_back(family_columns(model_, families_[family], shape));
+      used_ += parts_.back().cols();
+    }
+    pending_.push_back(family);
+  }
+
+  void test_block() {
+    if (pending_.empty()) return;
+    Eigen::MatrixXd block(static_cast<Eigen::Index>(model_.size()), used_);
+    Eigen::Index at = 0;
+    for (const Eigen::MatrixXd& part : parts_) {
+      block.middleCols(at, part.cols()) = part;
+      at += part.cols();
+    }
+    std::vector<Eigen::Index> width;
+    for (const Eigen::MatrixXd& part : parts_) width.push_back(part.cols());
+    parts_.clear();
+    const ProjectedColumns projected = projector_.project(std::move(block));
+    at = 0;
+    std::size_t part = 0;
+    for (const std::size_t family : pending_) {
+      const Eigen::Index columns = width[part];
+      tests_[family] = best_shape(projected, family, at, columns);
+      at += columns * static_cast<Eigen::Index>(families_[family].scan.size());
+      part += families_[family].scan.size();
+    }
+    pending_.clear();
+    used_ = 0;
+  }
+
+  FamilyTest best_shape(const ProjectedColumns& projected, std::size_t family, Eigen::Index first,
+                        Eigen::Index columns) const {
+    const auto& scan = families_[family].scan;
+    FamilyTest best;
+    best.family = family;
+    best.shape = scan.front();
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const ScoreTest test = score_test(projected, first + static_cast<Eigen::Index>(i) * columns, columns);
+      if (i > 0 && test.lm <= best.score.lm) continue;
+      best.score = test;
+      best.shape = scan[i];
+    }
+    best.multiplicity = scan_multiplicity(projected, first, static_cast<Eigen::Index>(scan.size()), columns);
+    best.log10_p = std::min(0.0, best.score.log10_p + std::log10(best.multiplicity));
+    const double shapes = scan.size() > 1 ? static_cast<double>(best.shape.size()) : 0.0;
+    best.gain = best.score.lm - (best.score.dof + shapes) * log_count_;
+    return best;
+  }
+
+  const LinearModel& model_;
+  const std::vector<Family>& families_;
+  const Projector& projector_;
+  std::vector<FamilyTest> tests_;
+  std::vector<std::size_t> pending_;
+  std::vector<Eigen::MatrixXd> parts_;
+  Eigen::Index used_ = 0;
+  double log_count_ = 0.0;
+};
+
+}  // namespace
+
+std::string Family::label() const {
+  if (resolution) return resolution->name() + " finer";
+  std::string label = effect->amplitudes().front().label;
+  if (effect->amplitudes().size() > 1) label = label.substr(0, label.rfind(' '));
+  return label;
+}
+
+EffectName Family::name() const {
+  if (!resolution) return effect->name();
+  return {"resolution", resolution->name(), std::string(1, lower_letter_of(resolution->axis)), "finer"};
+}
+
+std::vector<Family> families(const LinearModel& model) {
+  std::set<EffectName> present;
+  for (const EffectBinding& effect : model.model().binding().effects) present.insert(effect.effect->name());
+  std::vector<Family> all;
+  for (const EffectKind* kind : effect_kinds()) {
+    for (EffectSpec& spec : kind->candidates(model.campaign())) {
+      std::unique_ptr<Effect> effect = kind->make(spec, {});
+      if (present.contains(effect->name())) continue;
+      std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
+      all.push_back({std::move(spec), std::move(effect), std::nullopt, std::move(scan)});
+    }
+  }
+  for (const ErrorSymbol symbol : model.model().layout().symbols()) {
+    all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});
+  }
+  return all;
+}
+
+Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {
+  return family.resolution ? resolution_columns(model, *family.resolution)
+                           : model.columns(*family.effect, shape);
+}
+
+std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
+                                      const Projector& projector) {
+  return FamilyTester(model, families, projector).run();
+}
+
+}  // namespace volcal

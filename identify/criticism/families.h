@@ -1,0 +1,46 @@
+#pragma once
+/// Named hypotheses: every effect of the catalogue that could act in a campaign, as columns of its readings.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/projector.h"
+#include "volcal/identify/criticism/score_test.h"
+
+namespace volcal {
+
+/// A candidate. `symbol` is set instead of an effect when the family is the resolution of an error function:
+/// more of the function itself, a change of the model and no effect.
+struct Family {
+  EffectSpec spec;
+  std::unique_ptr<Effect> effect;
+  std::optional<ErrorSymbol> resolution;
+  std::vector<Eigen::VectorXd> scan;  ///< shapes to look at; one when the shape is known
+
+  std::string label() const;
+  EffectName name() const;
+};
+
+/// The model's own effects are left out.
+std::vector<Family> families(const LinearModel& model);
+
+/// Columns at one of the shapes.
+Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape);
+
+/// The test of a family at its best shape.
+struct FamilyTest {
+  std::size_t family = 0;
+  Eigen::VectorXd shape;
+  ScoreTest score;
+  double multiplicity = 1.0;  ///< effective number of independent shapes that were tried
+  double log10_p = 0.0;       ///< with the multiplicity, for this family alone
+  double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof
+};
+
+/// Tests of all families, in their order. Blocks of columns bound the memory.
+std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
+                                      const Projector& projector);
+
+}  // namespace volcal

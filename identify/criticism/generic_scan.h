@@ -1,0 +1,41 @@
+#pragma once
+/// Two scans that need no catalogue: does anything recorded move the residuals, in whatever way?
+///   polynomials  along X, Y, Z or the beam, in every recorded variable and pair of variables
+///   kernel       the same with a sum of cosines whose weights fall with frequency, as a variance component:
+///                sees bumps, waves and kinks (score test of a variance component, Lin 1997, Biometrika 84;
+///                Satterthwaite's approximation of the mixture of chi-squared)
+
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/projector.h"
+
+namespace volcal {
+
+/// A recorded variable over all observations, scaled to -1..1.
+struct ScanVariable {
+  std::string name;  ///< "x", "time", "T_air", "dir_x", "length", "tool side", "station P1"
+  Eigen::VectorXd value;
+  bool two_valued = false;  ///< powers say nothing new
+};
+std::vector<ScanVariable> scan_variables(const LinearModel& model);
+
+inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
+
+struct GenericTest {
+  std::vector<std::string> variables;  ///< one or two
+  std::string direction;               ///< of kScanDirections
+  bool kernel = false;
+  double log10_p = 0.0;  ///< for this test alone
+  double lm = 0.0;
+  double dof = 0.0;
+  double gain = 0.0;  ///< LM - dof ln n (polynomials)
+  double rms = 0.0;   ///< SI: root mean square over the readings of what it would explain
+};
+
+/// All tests, polynomials and kernels.
+std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,
+                                      const Projector& projector);
+
+}  // namespace volcal

@@ -1,0 +1,22 @@
+#pragma once
+/// Judging a step on readings that did not choose it.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "volcal/identify/criticism/diagnosis.h"
+
+namespace volcal {
+
+/// Every fifth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
+/// of ten readings instead. Spread evenly, the same for every run.
+std::vector<bool> heldout_lines(const LinearModel& model, double share);
+
+/// Figures of the model that `projector` holds, with the accepted columns; `loglik` is the held-out
+/// log-likelihood of the step before, and becomes this one's.
+LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
+                       std::span<const NoiseParameters> noise, const Projector& projector,
+                       const std::vector<Eigen::MatrixXd>& accepted, std::optional<double>& loglik);
+
+}  // namespace volcal

@@ -1,0 +1,26 @@
+#pragma once
+/// Score test of a family of candidate columns: is there more of it in the residuals than noise puts there?
+/// LM = s^T G^-1 s with G = g~^T g~ and s = g~^T r~ (Rao 1948); chi-squared with the rank of G under the
+/// model.
+
+#include <Eigen/Core>
+
+#include "volcal/identify/criticism/projector.h"
+
+namespace volcal {
+
+/// Columns of which less than this share survives the projection carry no information.
+inline constexpr double kInvisibleShare = 1e-4;
+
+struct ScoreTest {
+  double lm = 0.0;
+  int dof = 0;  ///< visible directions; 0 = nothing of the family is visible
+  double log10_p = 0.0;
+  double visible_fraction = 0.0;  ///< |g~| / |g_w|, over the columns in root mean square
+  Eigen::VectorXd amplitude;      ///< SI, least norm where a direction is invisible
+  Eigen::MatrixXd covariance;     ///< of `amplitude`
+};
+
+ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns);
+
+}  // namespace volcal

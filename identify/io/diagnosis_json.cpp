@@ -1,0 +1,120 @@
+#include "volcal/identify/io/diagnosis_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/io/toml_writer.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMicro = 1e-6;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json micro(double value) { return number(value / kMicro); }
+
+/// An effect of one amplitude has it as a number; of several, the largest in its standard uncertainty leads
+/// and all are listed.
+Json effect_json(const EffectFinding& effect) {
+  Json json = {{"kind", effect.name.kind},
+               {"target", effect.name.target},
+               {"driver", effect.name.driver},
+               {"shape", effect.name.shape}};
+  if (!effect.amplitudes.empty()) {
+    const auto size = [](const AmplitudeFigure& each) {
+      return each.u > 0.0 ? std::abs(each.value) / each.u : 0.0;
+    };
+    const AmplitudeFigure* leading = &effect.amplitudes.front();
+    for (const AmplitudeFigure& each : effect.amplitudes) {
+      if (size(each) > size(*leading)) leading = &each;
+    }
+    json["amplitude"] = number(leading->value / leading->si_per_unit);
+    json["unit"] = leading->unit;
+    json["u"] = number(leading->u / leading->si_per_unit);
+    json["mdb"] = number(leading->mdb / leading->si_per_unit);
+    if (effect.amplitudes.size() > 1) {
+      json["amplitudes"] = Json::array();
+      for (const AmplitudeFigure& each : effect.amplitudes) {
+        json["amplitudes"].push_back({{"label", each.label},
+                                      {"amplitude", number(each.value / each.si_per_unit)},
+                                      {"unit", each.unit},
+                                      {"u", number(each.u / each.si_per_unit)},
+                                      {"mdb", number(each.mdb / each.si_per_unit)}});
+      }
+    }
+  }
+  json["log10_p"] = number(effect.log10_p);
+  json["visible_fraction"] = number(effect.visible_fraction);
+  json["gain"] = number(effect.gain);
+  if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
+  if (!effect.resolution) json["model_toml"] = effect_toml(effect.spec);
+  return json;
+}
+
+Json list_json(const std::vector<EffectFinding>& effects) {
+  Json json = Json::array();
+  for (const EffectFinding& effect : effects) json.push_back(effect_json(effect));
+  return json;
+}
+
+Json unknown_json(const UnknownFinding& unknown) {
+  return {{"variables", unknown.variables},
+          {"direction", unknown.direction},
+          {"rms_um", micro(unknown.rms)},
+          {"log10_p", number(unknown.log10_p)}};
+}
+
+Json step_json(const LadderStep& step) {
+  return {{"model", step.model},
+          {"added", step.added},
+          {"rms_fit_um", micro(step.rms_fit)},
+          {"rms_heldout_um", micro(step.rms_heldout)},
+          {"reduced_chi2", number(step.reduced_chi2)},
+          {"noise_floor_um", micro(step.noise_floor)},
+          {"systematic_um", micro(step.systematic)},
+          {"systematic_low_um", micro(step.systematic_low)},
+          {"systematic_high_um", micro(step.systematic_high)},
+          {"heldout_loglik_gain", number(step.heldout_loglik_gain)}};
+}
+
+Json noise_json(const Diagnosis& diagnosis) {
+  Json json = Json::array();
+  for (const NoiseRow& row : diagnosis.noise) {
+    json.push_back({{"instrument", diagnosis.noise_instruments[row.instrument]},
+                    {"term", row.term},
+                    {"unit", row.unit},
+                    {"value", number(row.value)},
+                    {"low", number(row.low)},
+                    {"high", number(row.high)},
+                    {"likelihood_ratio", number(row.likelihood_ratio)},
+                    {"remark", row.remark}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+  Json json = {{"format", kDiagnosisFormat},
+               {"verdict", to_string(diagnosis.verdict)},
+               {"words", diagnosis.words},
+               {"effects", list_json(diagnosis.effects)},
+               {"one_of", list_json(diagnosis.one_of)}};
+  json["unknown"] = Json::array();
+  for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
+  json["not_visible"] = list_json(diagnosis.not_visible);
+  json["next_measurement"] = diagnosis.next_measurement;
+  json["ladder"] = Json::array();
+  for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
+  json["model_changes"] = list_json(diagnosis.model_changes);
+  json["noise"] = noise_json(diagnosis);
+  json["removed_readings"] = diagnosis.removed_readings;
+  json["ranking"] = list_json(diagnosis.ranking);
+  json["families"] = diagnosis.families;
+  json["generic_tests"] = diagnosis.generic_tests;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace volcal

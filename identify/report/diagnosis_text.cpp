@@ -1,0 +1,117 @@
+#include "volcal/identify/report/diagnosis_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "volcal/identify/report/text_tables.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kMicro = 1e-6;
+constexpr std::size_t kRanked = 12;
+
+std::string edge(double si, double si_per_unit, int digits = 3) {
+  return short_number(si / si_per_unit, digits);
+}
+
+std::string ladder_table(const Diagnosis& diagnosis) {
+  TextTable table({{"model", Align::Left},
+                   {"added", Align::Left},
+                   {"rms fitted [um]"},
+                   {"rms held out [um]"},
+                   {"noise floor [um]"},
+                   {"systematic [um]"},
+                   {"95 % interval [um]"},
+                   {"log-likelihood"}},
+                  "The ladder (held-out lines did not choose)");
+  for (const LadderStep& step : diagnosis.ladder) {
+    table.add_row(
+        {step.model, step.added.empty() ? "as given" : step.added, edge(step.rms_fit, kMicro),
+         edge(step.rms_heldout, kMicro), edge(step.noise_floor, kMicro), edge(step.systematic, kMicro),
+         fmt::format("{} .. {}", edge(step.systematic_low, kMicro), edge(step.systematic_high, kMicro)),
+         fixed_number(step.heldout_loglik_gain, 1)});
+  }
+  return table.text();
+}
+
+std::string evidence_table(const std::vector<EffectFinding>& findings, const std::string& title,
+                           std::size_t most) {
+  TextTable table({{"effect", Align::Left},
+                   {"kind", Align::Left},
+                   {"amplitude"},
+                   {"+- U95"},
+                   {"unit", Align::Left},
+                   {"MDB"},
+                   {"visible [%]"},
+                   {"log10 p"}},
+                  title);
+  for (std::size_t i = 0; i < std::min(most, findings.size()); ++i) {
+    const EffectFinding& finding = findings[i];
+    const std::string visible = fixed_number(100.0 * finding.visible_fraction, 1);
+    const std::string p = fixed_number(finding.log10_p, 1);
+    if (finding.amplitudes.empty())
+      table.add_row({finding.label, finding.name.kind, "-", "-", "", "-", visible, p});
+    for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
+      const AmplitudeFigure& each = finding.amplitudes[k];
+      table.add_row({each.label, k == 0 ? finding.name.kind : "", edge(each.value, each.si_per_unit),
+                     edge(1.96 * each.u, each.si_per_unit, 2), each.unit, edge(each.mdb, each.si_per_unit, 2),
+                     k == 0 ? visible : "", k == 0 ? p : ""});
+    }
+  }
+  return table.text();
+}
+
+std::string noise_text(const Diagnosis& diagnosis) {
+  TextTable table({{"instrument", Align::Left},
+                   {"term", Align::Left},
+                   {"value"},
+                   {"95 % interval"},
+                   {"unit", Align::Left},
+                   {"", Align::Left}},
+                  "Noise (restricted maximum likelihood)");
+  for (const NoiseRow& row : diagnosis.noise) {
+    const bool is_length = row.unit == "m or rad" || row.unit == "m/m";
+    const double unit = is_length ? kMicro : 1.0;
+    const std::string name = row.unit == "m or rad" ? "um or urad"
+                             : row.unit == "m/m"    ? "um/m"
+                             : row.unit == "1"      ? ""
+                                                    : row.unit;
+    table.add_row({diagnosis.noise_instruments[row.instrument], row.term, edge(row.value, unit),
+                   fmt::format("{} .. {}", edge(row.low, unit), edge(row.high, unit)), name, row.remark});
+  }
+  return table.text();
+}
+
+std::string unknown_table(const Diagnosis& diagnosis) {
+  TextTable table({{"depends on", Align::Left}, {"along", Align::Left}, {"rms [um]"}, {"log10 p"}},
+                  "What the generic scans still see");
+  for (const UnknownFinding& unknown : diagnosis.unknown) {
+    table.add_row({fmt::format("{}", fmt::join(unknown.variables, ", ")), unknown.direction,
+                   edge(unknown.rms, kMicro), fixed_number(unknown.log10_p, 1)});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  std::string text = to_string(diagnosis.verdict) + "\n";
+  for (const std::string& words : diagnosis.words) text += words + "\n";
+  text += "\n" + ladder_table(diagnosis);
+  if (!diagnosis.effects.empty())
+    text += "\n" + evidence_table(diagnosis.effects, "Added", diagnosis.effects.size());
+  if (!diagnosis.one_of.empty())
+    text += "\n" + evidence_table(diagnosis.one_of, "Not told apart", diagnosis.one_of.size());
+  if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
+  text += "\n" + evidence_table(diagnosis.ranking, "Ranked evidence at the model reached", kRanked);
+  text += "\n" + noise_text(diagnosis);
+  text += fmt::format(
+      "\n{} families and {} generic tests; {} families of which less than 2 % is visible; {} readings "
+      "removed\n",
+      diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(), diagnosis.removed_readings);
+  return text;
+}
+
+}  // namespace volcal

@@ -250,8 +250,9 @@ class Measurer {
       for (const auto& change : conditions_.interference->instrument) change(occasion, instrument);
     }
     const Eigen::Vector3d& nominal_tool = truth.machine().tools.at(plan_.tool).offset;
-    Reading reading = read_({plan_, instrument, geometry_, truth, state, point.line,
-                             truth.point(state, tool) + repeatability, truth.nominal_point(state, nominal_tool)});
+    Reading reading =
+        read_({plan_, instrument, geometry_, truth, state, point.line,
+               truth.point(state, tool) + repeatability, truth.nominal_point(state, nominal_tool)});
     if (!conditions_.interference) return reading;
     const Channels undisturbed = reading.value;
     for (const auto& error : conditions_.interference->reading) {
@@ -293,7 +294,7 @@ double independent_sigma(const SetupPlan& plan, const Reading& reading, std::siz
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {
   if (plan.points.empty()) throw std::invalid_argument("setup " + plan.name + " has no points");
   const Measurer measurer(plan, conditions);
-  const CorrelatedNoise correlated(plan, conditions.seed, kMaxChannels);
+  const CorrelatedNoise correlated(plan, conditions.seed);
   RandomStream random(conditions.seed, "noise of " + plan.name);
   Turns turns;
   Setup setup = described(plan);

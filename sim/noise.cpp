@@ -53,7 +53,12 @@ std::vector<std::int8_t> outliers(const SetupPlan& plan, std::size_t channel, st
 
 }  // namespace
 
-CorrelatedNoise::CorrelatedNoise(const SetupPlan& plan, std::uint64_t seed, std::size_t channels) {
+std::size_t channels_of(const std::string& instrument) {
+  return instrument == "laser-tracker" || instrument == "volumetric-points" ? 3 : 1;
+}
+
+CorrelatedNoise::CorrelatedNoise(const SetupPlan& plan, std::uint64_t seed) {
+  const std::size_t channels = channels_of(plan.instrument);
   const std::size_t lengths = plan.instrument == "laser-tracker" ? 1 : channels;
   if (plan.noise.wander > 0.0 || plan.noise.line > 0.0) {
     for (std::size_t channel = 0; channel < lengths; ++channel) {

@@ -37,12 +37,13 @@ struct HiddenContext {
   std::uint64_t seed = 0;
 };
 
-class HiddenSettings;
 /// What effects act on.
 struct HiddenScene {
   TruthMachine& machine;
   Interference& interference;
 };
+
+class HiddenSettings;
 
 struct HiddenKind {
   std::string kind;

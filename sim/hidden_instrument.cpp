@@ -8,14 +8,14 @@ namespace volcal::sim {
 namespace {
 
 void length_scale(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.instrument.push_back(
+  scene.interference.instrument.emplace_back(
       [a = settings.amplitude(), here = settings.where()](const Occasion& occasion, InstrumentTruth& truth) {
         if (here(occasion)) truth.length_scale += a;
       });
 }
 
 void air_index(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.instrument.push_back(
+  scene.interference.instrument.emplace_back(
       [a = settings.amplitude(), here = settings.where(), excess = settings.excess_temperature("channel")](
           const Occasion& occasion, InstrumentTruth& truth) {
         if (here(occasion)) truth.length_scale += a * excess(occasion.state);
@@ -25,8 +25,8 @@ void air_index(const HiddenSettings& settings, HiddenScene& scene) {
 void dead_path_air(const HiddenSettings& settings, HiddenScene& scene) {
   const StateNumber driver = settings.has("channel") ? settings.excess_temperature("channel") : hours;
   const double given = settings.number("dead_path", 0.0);
-  scene.interference.reading.push_back([a = settings.amplitude(), here = settings.where(), driver, given](
-                                           const Occasion& occasion, std::size_t channel, double) {
+  scene.interference.reading.emplace_back([a = settings.amplitude(), here = settings.where(), driver, given](
+                                              const Occasion& occasion, std::size_t channel, double) {
     if (channel != 0 || !here(occasion)) return 0.0;
     const double dead_path = given != 0.0 ? given : occasion.plan.truth.dead_path;
     return a * dead_path * driver(occasion.state);
@@ -35,7 +35,7 @@ void dead_path_air(const HiddenSettings& settings, HiddenScene& scene) {
 
 /// Moves the stations that the keys leave along `direction` by amplitude times `size`.
 void move_station(const HiddenSettings& settings, const StateNumber& size, HiddenScene& scene) {
-  scene.interference.instrument.push_back(
+  scene.interference.instrument.emplace_back(
       [full = Eigen::Vector3d(settings.amplitude() * settings.direction(Eigen::Vector3d::Zero())),
        here = settings.where(), size](const Occasion& occasion, InstrumentTruth& truth) {
         if (here(occasion)) truth.station += full * size(occasion.state);
@@ -66,7 +66,7 @@ void station_swing(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void tool_offset(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.tool.push_back(
+  scene.interference.tool.emplace_back(
       [error = Eigen::Vector3d(settings.amplitude() * settings.direction(Eigen::Vector3d::Zero())),
        tool = settings.tool()](const Occasion& occasion) -> Eigen::Vector3d {
         return occasion.plan.tool == tool ? error : Eigen::Vector3d::Zero();
@@ -74,7 +74,7 @@ void tool_offset(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void tool_clamping(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.tool.push_back(
+  scene.interference.tool.emplace_back(
       [a = settings.amplitude(), seed = settings.seed()](const Occasion& occasion) -> Eigen::Vector3d {
         RandomStream random(seed, "clamping of " + occasion.plan.name);
         return a * random.normal_vector();
@@ -82,14 +82,14 @@ void tool_clamping(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void bar_length(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.instrument.push_back(
+  scene.interference.instrument.emplace_back(
       [a = settings.amplitude(), here = settings.where()](const Occasion& occasion, InstrumentTruth& truth) {
         if (here(occasion)) truth.length_error += a;
       });
 }
 
 void beam_cosine(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.interference.instrument.push_back(
+  scene.interference.instrument.emplace_back(
       [a = settings.amplitude(), here = settings.where()](const Occasion& occasion, InstrumentTruth& truth) {
         if (here(occasion)) truth.beam_angle += a;
       });
@@ -97,9 +97,9 @@ void beam_cosine(const HiddenSettings& settings, HiddenScene& scene) {
 
 void encoder_eccentricity(const HiddenSettings& settings, HiddenScene& scene) {
   const std::size_t encoder = settings.text("encoder", "azimuth") == "azimuth" ? 1 : 2;
-  scene.interference.reading.push_back([a = settings.amplitude(), phase = settings.number("phase", 0.0),
-                                        here = settings.where(), encoder](const Occasion& occasion,
-                                                                          std::size_t channel, double angle) {
+  scene.interference.reading.emplace_back([a = settings.amplitude(), phase = settings.number("phase", 0.0),
+                                           here = settings.where(), encoder](
+                                              const Occasion& occasion, std::size_t channel, double angle) {
     const bool applies = occasion.plan.instrument == "laser-tracker" && channel == encoder && here(occasion);
     return applies ? a * std::sin(angle + phase) : 0.0;
   });

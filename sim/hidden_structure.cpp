@@ -26,12 +26,13 @@ void foundation_tilt(const HiddenSettings& settings, HiddenScene& scene) {
   const std::string about = settings.text("about", "y");
   const int direction = about == "x" ? 0 : about == "y" ? 1 : 2;
   const Eigen::Vector3d pivot = settings.vector("pivot", settings.middle_of_travel());
-  scene.interference.instrument.push_back([=, a = settings.amplitude(),
-                                           u = settings.share(settings.axis("by")), power = settings.power()](
-                                              const Occasion& occasion, InstrumentTruth& truth) {
-    const double tilt = a * std::pow(u(occasion.state), power);
-    truth.floor = truth.floor * translation(pivot) * rotation_about(direction, tilt) * translation(-pivot);
-  });
+  scene.interference.instrument.emplace_back(
+      [=, a = settings.amplitude(), u = settings.share(settings.axis("by")), power = settings.power()](
+          const Occasion& occasion, InstrumentTruth& truth) {
+        const double tilt = a * std::pow(u(occasion.state), power);
+        truth.floor =
+            truth.floor * translation(pivot) * rotation_about(direction, tilt) * translation(-pivot);
+      });
 }
 
 void tool_load(const HiddenSettings& settings, HiddenScene& scene) {

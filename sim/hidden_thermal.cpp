@@ -21,7 +21,7 @@ OccasionTest with_tool(const HiddenSettings& settings) {
 
 void add_growth(const HiddenSettings& settings, const StateNumber& growth, HiddenScene& scene) {
   const Eigen::Vector3d full = settings.amplitude() * settings.direction(kDownTheSpindle);
-  scene.interference.tool.push_back(
+  scene.interference.tool.emplace_back(
       [full, growth, grows = with_tool(settings)](const Occasion& occasion) -> Eigen::Vector3d {
         return grows(occasion) ? Eigen::Vector3d(full * growth(occasion.state)) : Eigen::Vector3d::Zero();
       });

@@ -150,8 +150,8 @@ class Turns {
  public:
   const std::array<double, kAxisCount>& advance(const CommandedPoint& point) {
     for (std::size_t k = 0; k < kAxisCount; ++k) {
-      const double move = previous_ ? std::abs(point.position[k] - previous_->position[k]) : 0.0;
-      const bool turned = !previous_ || point.direction[k] != previous_->direction[k];
+      const double move = previous_ != nullptr ? std::abs(point.position[k] - previous_->position[k]) : 0.0;
+      const bool turned = previous_ == nullptr || point.direction[k] != previous_->direction[k];
       travelled_[k] = !turned ? travelled_[k] + move : move > 0.0 ? move : kOverrun;
     }
     previous_ = &point;

@@ -19,6 +19,8 @@ struct TemperatureChannel {
   double step_time = 0.0;   ///< s
 
   double at(double time) const;
+  /// What a body of first order with this time constant (s) has followed to, in balance at time 0.
+  double lagged(double time, double time_constant) const;
 };
 
 struct Environment {

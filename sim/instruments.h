@@ -5,8 +5,10 @@
 ///     laser-tracer       |P - S| (1 + length_scale) - dead_path
 ///     laser-tracker      |v| (1 + length_scale), azimuth (+x to +y) and elevation (from the xy plane) of
 ///                        v = R^T (P - S), R the station's rotation
+///                        (both: P as seen from the floor on which the station stands)
 ///     ball-bar           |P - centre| + length_error
-///     displacement       u.(P - P_first) (1 + length_scale) + offset; column set 1: less the commanded part
+///     displacement       u.(P - P_first) (1 + length_scale) + offset; column set 1: less the commanded part;
+///                        u turned by beam_angle from its direction towards the nearest axis across it
 ///     straightness       v.(P - P_first) - v.(artefact_rotation x a) s + offset; s the commanded distance
 ///                        along the line a
 ///     angle              O.axis + offset; O of the tool relative to the workpiece, or of one body in the
@@ -19,6 +21,7 @@
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/sim/environment.h"
+#include "volcal/sim/interference.h"
 #include "volcal/sim/setup_plan.h"
 #include "volcal/sim/truth_machine.h"
 
@@ -31,6 +34,8 @@ struct MeasuringConditions {
   std::vector<Eigen::Vector3d> tool_offsets;  ///< true ones, by index into Machine::tools, m
   std::uint64_t seed = 0;
   bool at_reference_temperature = false;  ///< all channels at 20 degC
+  bool noise_free = false;
+  const Interference* interference = nullptr;  ///< nothing interferes
 };
 
 /// `start_time`: of the first reading, s. Throws std::invalid_argument for an instrument that is not

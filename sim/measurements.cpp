@@ -79,7 +79,17 @@ std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine
     context.fail(std::string("the machine has no axis ") + letter_of(axis),
                  "simulated measurements need the axes X, Y and Z");
   }
-  return std::visit(Planner{context}, measurement.settings);
+  std::vector<SetupPlan> plans = std::visit(Planner{context}, measurement.settings);
+  for (SetupPlan& plan : plans) {
+    if (plan.unseen.empty()) {
+      RandomStream random(seed, "unseen positions of " + plan.name);
+      plan.unseen = points_between(plan.points, random);
+    }
+    if (!measurement.shuffled) continue;
+    RandomStream random(seed, "line order of " + plan.name);
+    shuffle_lines(random, plan);
+  }
+  return plans;
 }
 
 }  // namespace volcal::sim

@@ -30,6 +30,7 @@ struct Tracking {
   std::string instrument = "laser-tracer";  ///< or "laser-tracker"
   std::vector<Station> stations;
   std::vector<Run> runs;
+  int revisits = 0;                          ///< how often the list of runs is gone through again
   Eigen::Vector3i grid{9, 7, 6};             ///< positions per axis; readings per run are twice the product
   double jitter = 0.3;                       ///< largest, as a share of a grid step
   double station_guess_error = 5e-3;         ///< standard deviation per component of the campaign's guesses
@@ -48,6 +49,8 @@ struct BallBarCircles {
   Eigen::Vector3d at{0.5, 0.5, 0.5};
   double radius = 0.0;  ///< 0 = 150 mm, or 45 % of the shortest travel if that is less
   int points_per_turn = 180;
+  double feed = 0.0;                   ///< m/s; 0 = what seconds_per_reading gives, otherwise it gives that
+  bool records_feed = false;           ///< the campaign has the column feed_mm_min
   double centre_error = 20e-6;         ///< standard deviation of centre_mm, per component
   double length_error = 3e-6;          ///< standard deviation of the bar's length error
   std::optional<double> length_sigma;  ///< stated: 0 = calibrated (and the length error is 0), absent = free
@@ -142,11 +145,12 @@ struct Measurement {
   std::string name;  ///< prefix of its setups' names; empty = by kind
   MeasurementSettings settings;
   SourcePlace place = {};  ///< of the study file, for messages
+  bool shuffled = false;   ///< lines in random order instead of the path's
 };
 
-/// Setups of a measurement; nuisance truths are drawn from the stream of (seed, measurement name). The
-/// machine needs the axes X, Y and Z. Throws InputError for a tool, station, plane or number that makes no
-/// sense.
+/// Setups of a measurement, each with as many unseen positions as it has points; nuisance truths are drawn
+/// from the stream of (seed, measurement name). The machine needs the axes X, Y and Z. Throws InputError for
+/// a tool, station, plane or number that makes no sense.
 std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine& machine,
                                    std::uint64_t seed);
 

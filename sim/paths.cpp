@@ -167,6 +167,52 @@ std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eig
   return path;
 }
 
+std::vector<CommandedPoint> points_between(const std::vector<CommandedPoint>& points, RandomStream& random) {
+  constexpr double kNearest = 0.15;
+  const auto same_line = [&](std::size_t i, std::size_t j) {
+    return points[i].line == points[j].line && points[i].run == points[j].run;
+  };
+  std::vector<CommandedPoint> between_points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double share = random.uniform(kNearest, 1.0 - kNearest);
+    const bool has_next = i + 1 < points.size() && same_line(i, i + 1);
+    const bool has_previous = i > 0 && same_line(i - 1, i);
+    const std::size_t from = has_next || !has_previous ? i : i - 1;
+    const std::size_t to = has_next ? i + 1 : i;
+    CommandedPoint point = points[to];
+    for (std::size_t k = 0; k < kAxisCount; ++k) {
+      const double start = points[from].position[k];
+      point.position[k] = programmed(start + share * (points[to].position[k] - start));
+      point.velocity[k] =
+          points[from].velocity[k] + share * (points[to].velocity[k] - points[from].velocity[k]);
+    }
+    between_points.push_back(point);
+  }
+  return between_points;
+}
+
+void shuffle_lines(RandomStream& random, SetupPlan& plan) {
+  std::vector<std::vector<std::size_t>> lines;
+  for (std::size_t i = 0; i < plan.points.size(); ++i) {
+    if (i == 0 || plan.points[i].line != plan.points[i - 1].line) lines.emplace_back();
+    lines.back().push_back(i);
+  }
+  for (std::size_t i = lines.size(); i > 1; --i) {
+    const auto j = static_cast<std::size_t>(random.uniform() * static_cast<double>(i));
+    std::swap(lines[i - 1], lines[j]);
+  }
+  const auto in_new_order = [&](std::vector<CommandedPoint>& points) {
+    if (points.size() != plan.points.size()) return;
+    std::vector<CommandedPoint> ordered;
+    for (const auto& line : lines) {
+      for (const std::size_t i : line) ordered.push_back(points[i]);
+    }
+    points = std::move(ordered);
+  };
+  in_new_order(plan.unseen);
+  in_new_order(plan.points);
+}
+
 std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random) {
   std::vector<CommandedPoint> points;
   for (int i = 0; i < count; ++i) {

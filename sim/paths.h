@@ -34,6 +34,14 @@ std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName
 std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
                                                double jitter, RandomStream& random);
 
+/// Positions on the way from each point of a line to the next, at random shares of it; for the last point of
+/// a line, on the way to it. As many as `points`, with their lines, runs and speeds.
+std::vector<CommandedPoint> points_between(const std::vector<CommandedPoint>& points, RandomStream& random);
+
+/// Puts whole lines of a setup into random order, the unseen positions along with them. Each point keeps its
+/// direction of approach: the machine overruns it from the same side.
+void shuffle_lines(RandomStream& random, SetupPlan& plan);
+
 /// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home,
 /// direction not recorded.
 std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random);

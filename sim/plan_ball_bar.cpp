@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numbers>
 
 #include "volcal/sim/paths.h"
 #include "volcal/sim/plan_tools.h"
@@ -19,11 +20,26 @@ double radius_of(const BallBarCircles& settings, const Machine& machine) {
   return radius;
 }
 
+/// Run 0 is clockwise, run 1 counter-clockwise; `rate` in rad/s.
+void set_velocities(const Plane& plane, const CommandedPoint& centre, double rate,
+                    std::vector<CommandedPoint>& points) {
+  const std::size_t first = index_of(plane.first);
+  const std::size_t second = index_of(plane.second);
+  for (CommandedPoint& point : points) {
+    const double turn = point.run == 0 ? -rate : rate;
+    point.velocity[first] = -turn * (point.position[second] - centre.position[second]);
+    point.velocity[second] = turn * (point.position[first] - centre.position[first]);
+  }
+}
+
 }  // namespace
 
 std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context) {
   context.require_at_least(settings.points_per_turn, 8, "points_per_turn");
   const double radius = radius_of(settings, context.machine);
+  const double step = 2.0 * std::numbers::pi * radius / settings.points_per_turn;
+  const double feed = settings.feed > 0.0 ? settings.feed : step / settings.seconds_per_reading;
+  const double seconds_per_reading = step / feed;
   const CommandedPoint centre = at_fraction(context.machine, settings.at);
   const std::size_t tool = context.tool(settings.tool);
   const Eigen::Vector3d centre_w =
@@ -46,7 +62,9 @@ std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanC
     plan.tool = tool;
     plan.points = circular_path(centre, plane.first, plane.second, radius, settings.points_per_turn);
     plan.noise = settings.noise;
-    plan.seconds_per_reading = settings.seconds_per_reading;
+    plan.seconds_per_reading = seconds_per_reading;
+    plan.records_feed = settings.records_feed;
+    set_velocities(plane, centre, feed / radius, plan.points);
     RandomStream random(context.seed, "setup " + plan.name);
     plan.truth.centre = centre_w;
     const Eigen::Vector3d guess = centre_w + settings.centre_error * random.normal_vector();

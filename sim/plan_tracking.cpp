@@ -42,6 +42,9 @@ class TrackingPlanner {
     context.tool("");
     stations_ = settings.stations.empty() ? standard_stations(context.machine) : settings.stations;
     runs_ = settings.runs.empty() ? standard_runs(context.machine, stations_) : settings.runs;
+    context.require_at_least(settings.revisits, 0, "revisits");
+    const std::vector<Tracking::Run> once = runs_;
+    for (int i = 0; i < settings.revisits; ++i) runs_.insert(runs_.end(), once.begin(), once.end());
     for (const int count : settings.grid) context.require_at_least(count, 2, "grid");
     if (settings.length_scale_sigma) {
       RandomStream random(context.seed, "length scale " + context.prefix);
@@ -80,6 +83,8 @@ class TrackingPlanner {
     plan.noise = settings_.noise;
     RandomStream random(context_.seed, "setup " + plan.name);
     plan.points = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, random);
+    RandomStream elsewhere(context_.seed, "unseen positions of " + plan.name);
+    plan.unseen = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, elsewhere);
     plan.truth.station = station.position_w;
     plan.truth.length_scale = length_scale_;
     if (settings_.instrument == "laser-tracer") {

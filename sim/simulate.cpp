@@ -91,6 +91,45 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth) {
   return campaign;
 }
 
+/// The setups of a study read out one after another.
+class StudyReadout : public Readout {
+ public:
+  StudyReadout(const Study& study, const std::vector<Eigen::Vector3d>& tool_offsets,
+               std::vector<SetupPlan> plans)
+      : study_(study), tool_offsets_(tool_offsets), plans_(std::move(plans)) {}
+
+  Campaign noise_free(const TruthMachine& truth, const Interference& interference) const override {
+    return read(truth, interference, true);
+  }
+  Campaign with_noise(const TruthMachine& truth, const Interference& interference) const {
+    return read(truth, interference, false);
+  }
+
+ private:
+  Campaign read(const TruthMachine& truth, const Interference& interference, bool noise_free) const {
+    Campaign campaign;
+    campaign.machine = study_.machine;
+    const MeasuringConditions conditions{truth, study_.environment, tool_offsets_, study_.seed,
+                                         false, noise_free,         &interference};
+    double time = 0.0;
+    for (const SetupPlan& plan : plans_) {
+      campaign.setups.push_back(measure(plan, conditions, time));
+      time +=
+          plan.seconds_per_reading * static_cast<double>(plan.points.size()) + study_.pause_between_setups;
+    }
+    return campaign;
+  }
+
+  const Study& study_;
+  const std::vector<Eigen::Vector3d>& tool_offsets_;
+  std::vector<SetupPlan> plans_;
+};
+
+std::vector<SetupPlan> at_unseen_positions(std::vector<SetupPlan> plans) {
+  for (SetupPlan& plan : plans) plan.points = plan.unseen;
+  return plans;
+}
+
 }  // namespace
 
 TruthMachine true_machine(const Study& study) {
@@ -109,15 +148,23 @@ SimulatedCampaign simulate(const Study& study) {
   }
   check_channels(study);
   SimulatedCampaign simulated{{}, {}, true_machine(study), true_tool_offsets(study), all_plans(study)};
-  simulated.campaign.machine = study.machine;
-  const MeasuringConditions conditions{simulated.truth, study.environment, simulated.tool_offsets,
-                                       study.seed};
-  double time = 0.0;
-  for (const SetupPlan& plan : simulated.plans) {
-    simulated.campaign.setups.push_back(measure(plan, conditions, time));
-    time += plan.seconds_per_reading * static_cast<double>(plan.points.size()) + study.pause_between_setups;
+  const TruthMachine without_hidden = simulated.truth;
+  const StudyReadout readout{study, simulated.tool_offsets, simulated.plans};
+  const HiddenContext context{study.machine, study.environment, simulated.plans, study.seed};
+  simulated.hidden = resolve_hidden(study.hidden, context, without_hidden, readout);
+  Interference interference;
+  HiddenScene scene{simulated.truth, interference};
+  for (const HiddenAnswer& answer : simulated.hidden) {
+    add_hidden(answer.effect, answer.amplitude, context, scene);
   }
+  simulated.campaign = readout.with_noise(simulated.truth, interference);
   simulated.validation = validation_campaign(study, simulated.truth);
+  for (const SetupPlan& plan : simulated.plans) append_gross_errors(plan, study.seed, simulated.outliers);
+  if (study.unseen || !study.hidden.empty()) {
+    const StudyReadout elsewhere{study, simulated.tool_offsets, at_unseen_positions(simulated.plans)};
+    simulated.unseen = elsewhere.noise_free(simulated.truth, interference);
+    simulated.unseen_without_hidden = elsewhere.noise_free(without_hidden, {});
+  }
   return simulated;
 }
 

@@ -9,6 +9,8 @@
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/sim/environment.h"
+#include "volcal/sim/hidden_answer.h"
+#include "volcal/sim/hidden_effects.h"
 #include "volcal/sim/measurements.h"
 #include "volcal/sim/random_truth.h"
 #include "volcal/sim/truth_machine.h"
@@ -40,18 +42,26 @@ struct Study {
   std::vector<Measurement> measurements;
   ValidationSettings validation;
   double pause_between_setups = 600.0;  ///< s
+  std::vector<HiddenEffect> hidden;
+  bool unseen = false;  ///< make the campaigns at unseen positions, and what is sealed about the noise
 };
 
 struct SimulatedCampaign {
   Campaign campaign;
-  Campaign validation;
+  Campaign validation;  ///< what is hidden in the machine is in these errors too, at time 0
   TruthMachine truth;
   std::vector<Eigen::Vector3d> tool_offsets;  ///< true ones, by index into Machine::tools, m
   std::vector<SetupPlan> plans;               ///< of the campaign's setups, true nuisance values included
+  std::vector<HiddenAnswer> hidden = {};      ///< with the amplitudes used
+  /// Noise-free readings of the same setups (stations, tools, dead paths, clock) at other positions, with the
+  /// hidden effects and without. Empty unless the study asks for them or hides something.
+  Campaign unseen = {};
+  Campaign unseen_without_hidden = {};
+  std::vector<GrossError> outliers = {};
 };
 
 /// The truth of a study alone: the random machine with expansions (true coefficients drawn from the stated
-/// uncertainty) and what the study sets.
+/// uncertainty) and what the study sets, without its hidden effects.
 TruthMachine true_machine(const Study& study);
 
 /// Repeatable to the bit for a given study and seed. Throws InputError for a study that makes no sense.

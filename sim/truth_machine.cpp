@@ -31,13 +31,22 @@ void TruthMachine::set_error(ErrorSymbol symbol, ErrorFunction function) {
   functions_[symbol] = std::move(function);
 }
 
-void TruthMachine::set_location(LocationSymbol symbol, double value) {
+void TruthMachine::require_location(LocationSymbol symbol) const {
   const auto squareness = machine_.datum.squareness();
   if (!is_rotary(symbol.axis) && std::ranges::find(squareness, symbol) == squareness.end()) {
     throw std::invalid_argument(symbol.name() + " is not a squareness of this datum");
   }
   machine_.axis(symbol.axis);
+}
+
+void TruthMachine::set_location(LocationSymbol symbol, double value) {
+  require_location(symbol);
   locations_[symbol] = value;
+}
+
+void TruthMachine::add_location_change(LocationSymbol symbol, StateError change) {
+  require_location(symbol);
+  location_changes_[symbol].push_back(std::move(change));
 }
 
 void TruthMachine::set_reversal(ErrorSymbol symbol, double reversal) {
@@ -72,6 +81,14 @@ double TruthMachine::location(LocationSymbol symbol) const {
   return found == locations_.end() ? 0.0 : found->second;
 }
 
+double TruthMachine::location(LocationSymbol symbol, const MachineState& state) const {
+  double sum = location(symbol);
+  const auto changes = location_changes_.find(symbol);
+  if (changes == location_changes_.end()) return sum;
+  for (const StateError& change : changes->second) sum += change(state);
+  return sum;
+}
+
 double TruthMachine::reversal(ErrorSymbol symbol) const {
   const auto found = reversals_.find(symbol);
   return found == reversals_.end() ? 0.0 : found->second;
@@ -86,12 +103,12 @@ double TruthMachine::error(ErrorSymbol symbol, const MachineState& state) const 
   return sum;
 }
 
-Eigen::Vector3d TruthMachine::direction_of_travel(AxisName axis) const {
+Eigen::Vector3d TruthMachine::direction_of_travel(AxisName axis, const MachineState& state) const {
   const auto symbols = machine_.datum.squareness();
   Eigen::Vector3d u = unit(axis);
   for (const LocationSymbol& symbol : symbols) {
     if (symbol.axis != axis) continue;
-    u += location(symbol) * Eigen::Vector3d::Unit(direction_of(symbol.component)).cross(unit(axis));
+    u += location(symbol, state) * Eigen::Vector3d::Unit(direction_of(symbol.component)).cross(unit(axis));
   }
   return u.normalized();
 }
@@ -106,12 +123,14 @@ Eigen::Matrix4d TruthMachine::joint_transform(const Joint& joint, const MachineS
   const double q = state.position[index_of(joint.axis)];
   if (!is_rotary(joint.axis)) {
     const Eigen::Vector3d& r = axis.reference_point;
-    const Eigen::Matrix4d travel = translation(q * direction_of_travel(joint.axis));
+    const Eigen::Matrix4d travel = translation(q * direction_of_travel(joint.axis, state));
     const Eigen::Matrix4d at_reference = translation(r) * motion * translation(-r);
     return joint.workpiece_side ? at_reference * travel : travel * at_reference;
   }
   const int own = direction_of(joint.axis);
-  const auto location_error = [&](int component) { return location(location_symbol(component, joint.axis)); };
+  const auto location_error = [&](int component) {
+    return location(location_symbol(component, joint.axis), state);
+  };
   const Eigen::Vector3d shift{location_error(0), location_error(1), location_error(2)};
   Eigen::Vector3d tilt{location_error(3), location_error(4), location_error(5)};
   const Eigen::Matrix4d turn = rotation_about(own, q + tilt[own]);

@@ -32,6 +32,10 @@ struct MachineState {
   std::array<std::int8_t, kAxisCount> direction{};  ///< of approach: -1, 0 (neither), +1
   double time = 0.0;                                ///< s, campaign clock
   std::map<std::string, double> temperature;        ///< degC by channel
+  std::size_t tool = 0;                             ///< index into Machine::tools
+  std::array<double, kAxisCount> velocity{};        ///< while the reading is taken, m/s or rad/s
+  std::array<double, kAxisCount> since_reversal{};  ///< travelled since the axis last turned round, m or rad
+  bool settled = false;                             ///< has been at 20 degC for ever: nothing lags behind
 };
 
 using ErrorFunction = std::function<double(double position)>;         ///< m or rad
@@ -57,10 +61,14 @@ class TruthMachine {
   void set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel);
   /// Anything else that an error motion depends on.
   void add_state_error(ErrorSymbol symbol, StateError error);
+  /// A location error that changes; symbols as in set_location(). It adds to location().
+  void add_location_change(LocationSymbol symbol, StateError change);
 
   /// The error function alone, without reversal, expansion and state errors.
   double function_value(ErrorSymbol symbol, double position) const;
   double location(LocationSymbol symbol) const;
+  /// With its changes.
+  double location(LocationSymbol symbol, const MachineState& state) const;
   /// Full reversal; 0 where none is set.
   double reversal(ErrorSymbol symbol) const;
   /// All contributions at a state.
@@ -86,13 +94,15 @@ class TruthMachine {
   Eigen::Matrix4d joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d nominal_joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& state) const;
-  Eigen::Vector3d direction_of_travel(AxisName axis) const;
+  Eigen::Vector3d direction_of_travel(AxisName axis, const MachineState& state) const;
+  void require_location(LocationSymbol symbol) const;
 
   Machine machine_;
   std::map<ErrorSymbol, ErrorFunction> functions_;
   std::map<ErrorSymbol, double> reversals_;
   std::map<ErrorSymbol, std::vector<StateError>> state_errors_;
   std::map<LocationSymbol, double> locations_;
+  std::map<LocationSymbol, std::vector<StateError>> location_changes_;
 };
 
 }  // namespace volcal::sim

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/hidden_answer_writer.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/io/toml_writer.h"
 #include "volcal/model/description/errors.h"
@@ -224,6 +225,14 @@ void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolde
   std::filesystem::create_directories(truth);
   write_campaign(simulated.validation, truth, "../machine.toml");
   write_text(truth + "/error_functions.csv", truth_csv(simulated.truth));
+  if (simulated.unseen.setups.empty()) return;
+  write_text(truth + "/hidden.json", hidden_answer_json(simulated));
+  for (const auto& [name, campaign] :
+       {std::pair("/unseen", &simulated.unseen),
+        std::pair("/unseen_without_hidden", &simulated.unseen_without_hidden)}) {
+    std::filesystem::create_directories(truth + name);
+    write_campaign(*campaign, truth + name, "../../machine.toml");
+  }
 }
 
 }  // namespace volcal

@@ -26,7 +26,9 @@ void write_campaign(const Campaign& campaign, const std::string& folder, const s
 
 /// machine.toml, the campaign, model.toml (cubic splines, automatic knots), and truth/: the validation
 /// campaign and error_functions.csv (symbol,axis,position,position_unit,value,unit in the datum; squareness
-/// last with neither axis nor position). The caller commits the folder.
+/// last with neither axis nor position); of a study that hides something also hidden.json
+/// (hidden_answer_writer.h) and the noise-free campaigns unseen/ and unseen_without_hidden/. The caller
+/// commits the folder.
 void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolder& folder);
 
 }  // namespace volcal

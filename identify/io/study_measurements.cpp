@@ -67,8 +67,18 @@ void read_at(const TomlTable& table, Eigen::Vector3d& at) {
   at = Eigen::Vector3d((*shares)[0], (*shares)[1], (*shares)[2]);
 }
 
+/// What the campaign file does not say; `unit` of the readings.
+void read_sealed_noise(const TomlTable& inside, const std::string& unit, sim::NoiseLevel& noise) {
+  read(inside, ("wander_" + unit).c_str(), noise.wander);
+  if (const auto time = inside.number("wander_time_s", {1e-3, 1e9})) noise.wander_time = *time;
+  read(inside, ("line_" + unit).c_str(), noise.line);
+  if (const auto share = inside.number("outlier_share", {0.0, 0.5})) noise.outlier_share = *share;
+  read(inside, "outlier_sigma", noise.outlier_size);
+}
+
 void read_length_noise(const TomlTable& table, sim::NoiseLevel& noise) {
   if (const auto inside = table.table("noise")) {
+    read_sealed_noise(*inside, "um", noise);
     read(*inside, "constant_um", noise.constant);
     read(*inside, "per_metre_um", noise.per_metre);
     read(*inside, "repeatability_um", noise.repeatability);
@@ -93,6 +103,7 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
   for (const TomlTable& run : table.tables("runs")) {
     settings.runs.push_back({run.required_text("station"), run.required_text("tool")});
   }
+  read(table, "revisits", settings.revisits, 0);
   read_grid(table, settings.grid);
   if (const auto jitter = table.number("jitter", {0.0, 0.5})) settings.jitter = *jitter;
   read(table, "guess_error_mm", settings.station_guess_error);
@@ -116,6 +127,8 @@ sim::MeasurementSettings read_ball_bar(const TomlTable& table) {
   read_at(table, settings.at);
   read(table, "radius_mm", settings.radius);
   read(table, "points_per_turn", settings.points_per_turn, 8);
+  read(table, "feed_mm_min", settings.feed);
+  read(table, "record_feed", settings.records_feed);
   read(table, "centre_error_um", settings.centre_error);
   read(table, "length_error_um", settings.length_error);
   read(table, "length_sigma_um", settings.length_sigma);
@@ -174,7 +187,10 @@ sim::MeasurementSettings read_angles(const TomlTable& table) {
   if (const auto body = table.choice("body", {"relative", "tool", "table"})) settings.body = *body;
   read(table, "offset_spread_urad", settings.offset_spread);
   read_line_settings(table, settings);
-  if (const auto inside = table.table("noise")) read(*inside, "constant_urad", settings.noise.constant);
+  if (const auto inside = table.table("noise")) {
+    read(*inside, "constant_urad", settings.noise.constant);
+    read_sealed_noise(*inside, "urad", settings.noise);
+  }
   return settings;
 }
 
@@ -208,7 +224,8 @@ sim::Measurement read_measurement(const TomlTable& table) {
     if (*kind == "point-grid") return read_point_grid(table);
     return read_tracking(table, *kind);
   };
-  return {table.text("name").value_or(""), settings(), table.place()};
+  return {table.text("name").value_or(""), settings(), table.place(),
+          table.boolean("shuffled").value_or(false)};
 }
 
 }  // namespace volcal

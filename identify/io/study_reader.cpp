@@ -139,6 +139,8 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
   for (const TomlTable& table : root.required_tables("measurements")) {
     study.measurements.push_back(read_measurement(table));
   }
+  for (const TomlTable& table : root.tables("hidden")) study.hidden.push_back(read_hidden_effect(table));
+  study.unseen = root.boolean("unseen").value_or(false);
   document.reject_unknown();
   return study;
 }

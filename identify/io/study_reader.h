@@ -5,6 +5,7 @@
 ///     machine = "machine.toml"
 ///     seed = 1
 ///     pause_s = 600.0                    # between setups
+///     unseen = true                      # truth/unseen and hidden.json also when nothing is hidden
 ///     [truth]                            # all optional
 ///     kind = "random"                    # or "perfect"
 ///     volumetric_rms_um = [15.5, 21.5]   # after rigid alignment, drawn from this range
@@ -26,6 +27,14 @@
 ///     [[measurements]]                   # setups' names start with `name`
 ///     kind = "laser-tracer" | "laser-tracker" | "ball-bar-circles" | "diagonals" | "axis-lines" |
 ///            "straightness-lines" | "squares" | "angle-lines" | "point-grid"
+///     shuffled = true                    # lines in random order
+///     noise = { constant_um, per_metre_um, repeatability_um,            # the campaign file states these;
+///               wander_um, wander_time_s, line_um, outlier_share, outlier_sigma }   # these are sealed
+///     [[hidden]]                         # an effect that the campaign file does not know of
+///     kind = "screw-lead"                # the kinds and their keys: sim/hidden_effects.h, hidden_*.cpp
+///     symbol = "EXX"
+///     period_mm = 10.0
+///     amplitude_um = 2.0                 # or rms_um = 0.8, of its effect on the readings
 /// Keys of a measurement: study_measurements.cpp; defaults: sim/measurements.h.
 
 #include <string>
@@ -44,5 +53,8 @@ sim::Study parse_study(const std::string& text, const std::string& file, const M
 
 /// One [[measurements]] table.
 sim::Measurement read_measurement(const TomlTable& table);
+
+/// One [[hidden]] table.
+sim::HiddenEffect read_hidden_effect(const TomlTable& table);
 
 }  // namespace volcal

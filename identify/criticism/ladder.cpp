@@ -25,6 +25,19 @@ std::vector<double> noise_variance(const NoiseProblem& problem, std::span<const 
   return variance;
 }
 
+/// Derivatives of the held-out readings to all parameters, accepted columns last.
+Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const NoiseProblem& problem,
+                        const std::vector<Eigen::MatrixXd>& accepted, Eigen::Index parameters) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(observations.size()), parameters);
+  rows.leftCols(problem.jacobian.cols()) = problem.jacobian(observations, Eigen::all);
+  Eigen::Index at = problem.jacobian.cols();
+  for (const Eigen::MatrixXd& columns : accepted) {
+    rows.middleCols(at, columns.cols()) = columns(observations, Eigen::all);
+    at += columns.cols();
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::vector<bool> heldout_lines(const LinearModel& model, double share) {
@@ -52,44 +65,35 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
                        std::span<const NoiseParameters> noise, const Projector& projector,
                        const std::vector<Eigen::MatrixXd>& accepted, std::optional<double>& loglik) {
   const NoiseProblem& problem = model.problem();
-  const Eigen::VectorXd solution = projector.solution();
-  Eigen::VectorXd residual = problem.residual - problem.jacobian * solution.head(problem.jacobian.cols());
-  Eigen::Index at = problem.jacobian.cols();
-  for (const Eigen::MatrixXd& columns : accepted) {
-    residual -= columns * solution.segment(at, columns.cols());
-    at += columns.cols();
-  }
   const std::vector<double> variance = noise_variance(problem, noise);
-  double fit = 0.0, held = 0.0, floor = 0.0, squares_of_variance = 0.0, loglik_now = 0.0;
-  std::size_t fit_count = 0, held_count = 0;
+  const Eigen::VectorXd solution = projector.solution();
+  std::vector<Eigen::Index> fitted, held;
   for (std::size_t i = 0; i < model.size(); ++i) {
-    const double square = std::pow(residual[static_cast<Eigen::Index>(i)], 2);
-    if (!std::isfinite(variance[i])) continue;
-    if (!heldout[i]) {
-      fit += square;
-      ++fit_count;
-      continue;
-    }
-    held += square;
-    floor += variance[i];
-    squares_of_variance += variance[i] * variance[i];
-    loglik_now -= 0.5 * (square / variance[i] + std::log(2.0 * std::numbers::pi * variance[i]));
-    ++held_count;
+    if (std::isfinite(variance[i])) (heldout[i] ? held : fitted).push_back(static_cast<Eigen::Index>(i));
   }
   LadderStep step;
-  step.rms_fit = std::sqrt(fit / static_cast<double>(std::max<std::size_t>(fit_count, 1)));
+  const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, accepted, solution.size());
+  const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
+  step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
   const double dof =
       static_cast<double>(projector.observations()) - static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  if (held_count == 0) {
+  if (held.empty()) {
     step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
     return step;
   }
-  const auto count = static_cast<double>(held_count);
-  const double excess = (held - floor) / count;
-  const double spread = 1.96 * std::sqrt(2.0 * squares_of_variance) / count;
-  step.rms_heldout = std::sqrt(held / count);
-  step.noise_floor = std::sqrt(floor / count);
+  const Eigen::MatrixXd rows = rows_of(held, problem, accepted, solution.size());
+  const Eigen::ArrayXd squares = (problem.residual(held) - rows * solution).array().square();
+  Eigen::ArrayXd expected = projector.prediction_variance(rows).array();
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    expected[static_cast<Eigen::Index>(i)] += variance[static_cast<std::size_t>(held[i])];
+  }
+  const auto count = static_cast<double>(held.size());
+  const double excess = (squares - expected).mean();
+  const double spread = 1.96 * std::sqrt(2.0 * expected.square().sum()) / count;
+  const double loglik_now = -0.5 * (squares / expected + (2.0 * std::numbers::pi * expected).log()).sum();
+  step.rms_heldout = std::sqrt(squares.mean());
+  step.noise_floor = std::sqrt(expected.mean());
   step.systematic = std::sqrt(std::max(0.0, excess));
   step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
   step.systematic_high = std::sqrt(std::max(0.0, excess + spread));

@@ -68,6 +68,11 @@ void Projector::accept(const Eigen::MatrixXd& columns) {
 
 Eigen::VectorXd Projector::solution() const { return scale_.cwiseProduct(factor_.matrixU().solve(rotated_)); }
 
+Eigen::VectorXd Projector::prediction_variance(const Eigen::MatrixXd& rows) const {
+  const Eigen::MatrixXd rotated = factor_.matrixL().solve(scale_.asDiagonal() * rows.transpose());
+  return rotated.colwise().squaredNorm();
+}
+
 Eigen::MatrixXd Projector::accepted_covariance() const {
   const Eigen::Index count = accepted();
   Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(parameters(), count);

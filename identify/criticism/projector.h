@@ -43,6 +43,8 @@ class Projector {
 
   /// Correction of the model's parameters, accepted columns last, from the observations in use.
   Eigen::VectorXd solution() const;
+  /// Variance of predictions, one per row of `rows` (derivatives to all parameters, accepted ones last).
+  Eigen::VectorXd prediction_variance(const Eigen::MatrixXd& rows) const;
   /// Covariance of the accepted columns' amplitudes.
   Eigen::MatrixXd accepted_covariance() const;
   /// |r~|^2: what the model leaves, in units of the noise.

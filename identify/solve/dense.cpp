@@ -12,8 +12,6 @@ void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* inf
 void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const int* lda, double* w,
              double* work, const int* lwork, int* iwork, const int* liwork, int* info);
-void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
-            const double* a, const int* lda, const double* beta, double* c, const int* ldc);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -71,12 +69,6 @@ SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric) {
           integers.data(), &integer_size, &info);
   if (info != 0) throw std::runtime_error("eigen_decomposition did not converge");
   return result;
-}
-
-void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
-  const double one = 1.0, zero = 0.0;
-  const int ldc = static_cast<int>(c.rows());
-  dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 
 void symmetrise_from_upper(Eigen::MatrixXd& matrix) {

@@ -25,8 +25,6 @@ struct SymmetricEigen {
 };
 SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric);
 
-/// upper(C) = A A^T, A is n x k with leading dimension n.
-void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
 /// Copies the upper triangle to the lower.
 void symmetrise_from_upper(Eigen::MatrixXd& matrix);
 

@@ -11,7 +11,8 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
     : campaign_(campaign),
       spec_(spec),
       chain_(campaign.machine),
-      binding_(bind_campaign(campaign_, spec_, chain_)) {
+      binding_(bind_campaign(campaign_, spec_, chain_)),
+      tables_(campaign_, binding_.layout) {
   if (binding_.shared_terms.size() > kMaxSharedTerms) {
     throw InputError({spec_.file, 0},
                      "the model has " + std::to_string(binding_.shared_terms.size()) +
@@ -20,7 +21,9 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
   }
   for (const FunctionGroup& group : layout().groups) {
     value_count_ += static_cast<std::size_t>(group.basis->support());
-    slot_count_ += static_cast<std::size_t>(group.count());
+  }
+  for (const GroupBinding& group : binding_.groups) {
+    for (const int component : group.component) slot_motion_.push_back(6 * group.joint + component);
   }
   bool turns = false;
   for (const Joint& joint : campaign.machine.structure.joints) {

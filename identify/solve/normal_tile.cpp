@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
-#include "volcal/identify/solve/dense.h"
-
 namespace volcal {
 namespace {
 
-constexpr int kMaxColumns = 128;
+constexpr int kMaxColumns = 48;  // rows of three cubic axes stay in the first-level cache
 
 /// out[j * count + slot] = basis[j] * weight[slot]
 template <int kSupport, int kCount>
@@ -29,39 +27,37 @@ double* outer_product(const double* basis, int support, const double* weight, in
   return out;
 }
 
-// Compiled for several processors, chosen at run time. No sum is reordered and nothing contracted
-// (-ffp-contract=off): all versions round alike.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define VOLCAL_PROCESSOR_VERSIONS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VOLCAL_PROCESSOR_VERSIONS
-#endif
-
-/// sum += factor * values
-VOLCAL_PROCESSOR_VERSIONS
-void add_scaled(const double* values, double factor, int size, double* sum) {
-  for (int i = 0; i < size; ++i) sum[i] += factor * values[i];
-}
+int round_up(int size) { return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment; }
 
 }  // namespace
 
 NormalTile::NormalTile(const ParameterLayout& layout, int shared_tail, Eigen::MatrixXd& matrix,
                        Eigen::VectorXd& gradient)
-    : layout_(layout), shared_tail_(shared_tail), matrix_(matrix), gradient_(gradient) {
+    : layout_(layout),
+      kernel_(tile_kernel()),
+      shared_tail_(shared_tail),
+      matrix_(matrix),
+      gradient_(gradient) {
   for (const FunctionGroup& group : layout.groups) {
     segments_.push_back({group.offset, group.basis->support() * group.count()});
   }
   if (shared_tail > 0) segments_.push_back({layout.function_size, shared_tail});
   for (const Segment& segment : segments_) size_ += segment.size;
-  rows_.resize(size_ + 1, kMaxColumns);
-  tile_.resize(size_ + 1, size_ + 1);
+  reserve(kTileAlignment);
+}
+
+/// Makes room for rows with `own_size` own parameters, and as many more as the stride holds; nothing may be
+/// gathered.
+void NormalTile::reserve(int own_size) {
+  stride_ = round_up(size_ + 1 + own_size);
+  rows_.resize((stride_ + kTileAlignment) * kMaxColumns);
+  tile_.resize(stride_ * round_up(size_ + 1));
+  product_.resize(stride_ * round_up(stride_ - size_ - 1));
 }
 
 void NormalTile::add(const RowJacobian& row, int channel, double scale, double error) {
-  if (columns_ == kMaxColumns) flush();
-  if (columns_ == 0) {
-    begin_cell(row);
-  } else if (row.start != start_) {
+  if (columns_ == kMaxColumns) flush_rows();
+  if (!in_cell_ || row.start != start_) {
     flush();
     begin_cell(row);
   } else if (!std::equal(own_index_.begin(), own_index_.end(), row.tail_index.begin() + shared_tail_,
@@ -69,24 +65,25 @@ void NormalTile::add(const RowJacobian& row, int channel, double scale, double e
     flush_run();
     begin_run(row);
   }
-  double* out = rows_.col(columns_).data();
+  double* out = rows_.data() + columns_ * stride_;
   const double* basis = row.basis_value.data();
   const double* weight = row.weight[channel].data();
   for (const FunctionGroup& group : layout_.groups) {
-    out = outer_product(basis, group.basis->support(), weight, group.count(), scale, out);
-    basis += group.basis->support();
+    const int support = group.basis->support();
+    out = outer_product(basis, support, weight, group.count(), scale, out);
+    basis += support;
     weight += group.count();
   }
   const double* tail = row.tail_value[channel].data();
   for (int k = 0; k < shared_tail_; ++k) *out++ = scale * tail[k];
-  *out = scale * error;
-  double* own = own_.col(columns_).data();
-  for (std::size_t k = 0; k < own_index_.size(); ++k)
-    own[k] = scale * tail[shared_tail_ + static_cast<int>(k)];
+  *out++ = scale * error;
+  tail += shared_tail_;
+  for (std::size_t k = 0; k < own_index_.size(); ++k) out[k] = scale * tail[k];
   ++columns_;
 }
 
 void NormalTile::begin_cell(const RowJacobian& row) {
+  in_cell_ = true;
   start_ = row.start;
   for (std::size_t g = 0; g < layout_.groups.size(); ++g) {
     segments_[g].parameter = layout_.groups[g].index(start_[g], 0);
@@ -96,61 +93,74 @@ void NormalTile::begin_cell(const RowJacobian& row) {
 
 void NormalTile::begin_run(const RowJacobian& row) {
   run_begin_ = columns_;
+  const int own_size = static_cast<int>(row.tail_index.size()) - shared_tail_;
+  if (size_ + 1 + own_size > stride_) {
+    flush_rows();
+    flush_cell();
+    reserve(own_size);
+  }
   own_index_.assign(row.tail_index.begin() + shared_tail_, row.tail_index.end());
-  const auto own_size = static_cast<Eigen::Index>(own_index_.size());
-  if (own_.rows() != own_size) own_.resize(own_size, kMaxColumns);
 }
 
 /// Products of the run's own parameters with themselves and with everything else.
 void NormalTile::flush_run() {
-  const auto own_size = own_.rows();
-  product_.setZero(size_ + 1, own_size);
-  square_.setZero(own_size, own_size);
-  for (int column = run_begin_; column < columns_; ++column) {
-    const double* own = own_.col(column).data();
-    for (Eigen::Index k = 0; k < own_size; ++k) {
-      add_scaled(rows_.col(column).data(), own[k], size_ + 1, product_.col(k).data());
-      for (Eigen::Index i = 0; i <= k; ++i) square_(i, k) += own[i] * own[k];
-    }
-  }
-  for (Eigen::Index k = 0; k < own_size; ++k) {
+  const int own_size = static_cast<int>(own_index_.size());
+  if (columns_ == run_begin_ || own_size == 0) return;
+  const double* rows = rows_.data() + run_begin_ * stride_;
+  kernel_.multiply(rows, rows + size_ + 1, stride_, size_ + 1 + own_size, own_size, columns_ - run_begin_,
+                   product_.data());
+  for (int k = 0; k < own_size; ++k) {
     const int column = own_index_[static_cast<std::size_t>(k)];
-    const double* value = product_.col(k).data();
+    const double* value = product_.data() + k * stride_;
     for (const Segment& segment : segments_) {
-      double* sum = &matrix_(segment.parameter, column);
-      for (int i = 0; i < segment.size; ++i) sum[i] += *value++;
+      kernel_.add(value, 0, segment.size, 1, false, sums_at(segment.parameter, column), 0);
+      value += segment.size;
     }
-    gradient_[column] += *value;
-    for (Eigen::Index other = 0; other < own_size; ++other) {
+    gradient_[column] += *value++;
+    for (int other = 0; other < own_size; ++other) {
       const int row = own_index_[static_cast<std::size_t>(other)];
-      if (row <= column) matrix_(row, column) += square_(std::min(other, k), std::max(other, k));
+      if (row <= column) matrix_(row, column) += value[other];
     }
   }
 }
 
-void NormalTile::flush() {
+/// Brings the gathered rows into the cell's tile.
+void NormalTile::flush_rows() {
   if (columns_ == 0) return;
   flush_run();
-  outer_product_upper(rows_.data(), size_ + 1, columns_, tile_);
+  kernel_.outer_upper(rows_.data(), stride_, size_ + 1, columns_, tile_is_filled_, tile_.data());
+  tile_is_filled_ = true;
+  columns_ = run_begin_ = 0;
+}
+
+void NormalTile::flush_cell() {
+  if (!tile_is_filled_) return;
+  const int matrix_stride = static_cast<int>(matrix_.rows());
   int column = 0;
   for (std::size_t g = 0; g < segments_.size(); ++g) {
-    for (int c = 0; c < segments_[g].size; ++c, ++column) {
-      const double* value = tile_.col(column).data();
-      for (std::size_t h = 0; h <= g; ++h) {
-        const int count = h == g ? c + 1 : segments_[h].size;
-        double* sum = &matrix_(segments_[h].parameter, segments_[g].parameter + c);
-        for (int i = 0; i < count; ++i) sum[i] += value[i];
-        value += count;
-      }
+    const Segment& across = segments_[g];
+    const double* value = tile_.data() + column * stride_;
+    for (std::size_t h = 0; h <= g; ++h) {
+      const Segment& down = segments_[h];
+      kernel_.add(value, stride_, down.size, across.size, h == g, sums_at(down.parameter, across.parameter),
+                  matrix_stride);
+      value += down.size;
     }
+    column += across.size;
   }
-  const double* value = tile_.col(size_).data();
+  const double* value = tile_.data() + size_ * stride_;
   for (const Segment& segment : segments_) {
-    gradient_.segment(segment.parameter, segment.size) +=
-        Eigen::Map<const Eigen::VectorXd>(value, segment.size);
+    kernel_.add(value, 0, segment.size, 1, false, gradient_.data() + segment.parameter, 0);
     value += segment.size;
   }
-  columns_ = 0;
+  tile_is_filled_ = false;
+}
+
+void NormalTile::flush() {
+  if (!in_cell_) return;
+  flush_rows();
+  flush_cell();
+  in_cell_ = false;
 }
 
 }  // namespace volcal

@@ -5,10 +5,27 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "volcal/identify/solve/tile_kernel.h"
 #include "volcal/model/observation/parameters.h"
 #include "volcal/model/observation/row_jacobian.h"
 
 namespace volcal {
+
+/// Array of doubles that starts at a cache line.
+class TileArray {
+ public:
+  /// Sets all to zero.
+  void resize(int size) {
+    lines_.assign(static_cast<std::size_t>(size + kTileAlignment - 1) / kTileAlignment, {});
+  }
+  double* data() { return lines_.data()->values; }
+
+ private:
+  struct alignas(kTileAlignment * sizeof(double)) Line {
+    double values[kTileAlignment];
+  };
+  std::vector<Line> lines_;
+};
 
 class NormalTile {
  public:
@@ -31,23 +48,29 @@ class NormalTile {
 
   void begin_cell(const RowJacobian& row);
   void begin_run(const RowJacobian& row);
+  void reserve(int own_size);
   void flush_run();
+  void flush_rows();
+  void flush_cell();
+  double* sums_at(int row, int column) { return matrix_.data() + column * matrix_.rows() + row; }
 
   const ParameterLayout& layout_;
+  const TileKernel& kernel_;
   int shared_tail_;
   Eigen::MatrixXd& matrix_;
   Eigen::VectorXd& gradient_;
   std::vector<Segment> segments_;
   std::vector<int> start_;      ///< the cell
   std::vector<int> own_index_;  ///< own parameters of the run: rows with the same station, dead path ...
-  int size_ = 0;                ///< functions and shared tail of a row; the error follows as one more
+  int size_ = 0;                ///< functions and shared tail of a row; error and own parameters follow
+  int stride_ = 0;
   int columns_ = 0;
   int run_begin_ = 0;
-  Eigen::MatrixXd rows_;  ///< (size + 1) x observations
-  Eigen::MatrixXd own_;   ///< own parameters x observations
-  Eigen::MatrixXd tile_;
-  Eigen::MatrixXd product_;  ///< of the run: (size + 1) x own parameters
-  Eigen::MatrixXd square_;   ///< of the run: own x own
+  bool in_cell_ = false;
+  bool tile_is_filled_ = false;  ///< with earlier rows of the cell
+  TileArray rows_;               ///< stride x observations
+  TileArray tile_;               ///< of the cell: stride x (size + 1)
+  TileArray product_;            ///< of the run: stride x own parameters
 };
 
 }  // namespace volcal

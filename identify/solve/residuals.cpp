@@ -12,39 +12,26 @@ namespace {
 /// Indices and values of one observation's derivatives.
 struct SparseRow {
   std::vector<int> index;
-  Eigen::VectorXd value;
+  std::vector<double> value;
 };
 
 void gather(const ParameterLayout& layout, const RowJacobian& row, int channel, SparseRow& out) {
   out.index.clear();
-  std::vector<double> values;
-  const double* basis = row.basis_value.data();
-  const double* weight = row.weight[channel].data();
-  for (std::size_t g = 0; g < layout.groups.size(); ++g) {
-    const FunctionGroup& group = layout.groups[g];
-    for (int j = 0; j < group.basis->support(); ++j) {
-      for (int slot = 0; slot < group.count(); ++slot) {
-        out.index.push_back(group.index(row.start[g] + j, slot));
-        values.push_back(basis[j] * weight[slot]);
-      }
-    }
-    basis += group.basis->support();
-    weight += group.count();
-  }
-  out.index.insert(out.index.end(), row.tail_index.begin(), row.tail_index.end());
-  values.insert(values.end(), row.tail_value[channel].begin(), row.tail_value[channel].end());
-  out.value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  out.value.clear();
+  for_each_derivative(layout, row, channel, [&](int parameter, double derivative) {
+    out.index.push_back(parameter);
+    out.value.push_back(derivative);
+  });
 }
 
 /// a^T C a over the active parameters only.
 double variance_of(const SparseRow& row, const Eigen::MatrixXd& covariance) {
   double sum = 0.0;
-  const auto n = static_cast<Eigen::Index>(row.index.size());
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const double* column = &covariance(0, row.index[static_cast<std::size_t>(j)]);
+  const std::size_t n = row.index.size();
+  for (std::size_t j = 0; j < n; ++j) {
+    const double* column = &covariance(0, row.index[j]);
     double part = 0.0;
-    for (Eigen::Index i = 0; i < n; ++i)
-      part += column[row.index[static_cast<std::size_t>(i)]] * row.value[i];
+    for (std::size_t i = 0; i < n; ++i) part += column[row.index[i]] * row.value[i];
     sum += part * row.value[j];
   }
   return sum;

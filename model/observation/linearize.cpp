@@ -8,28 +8,37 @@
 
 namespace volcal {
 
-/// Everything about one reading that does not depend on the channel.
+/// Everything about one reading that does not depend on the channel. Made for every reading: only what the
+/// machine has is filled.
 struct MeasurementModel::RowState {
-  AxisPosition position{};
-  JointLever levers[kAxisCount];
-  double disturbance[kDisturbances] = {};  ///< motions of the joints, EX EY EZ EA EB EC each; tool; station
-  double driver[kMaxSharedTerms];          ///< per shared term, then what the effects need
+  AxisPosition position;
+  JointLever* levers;
+  double
+      disturbance[kDisturbances];  ///< motions of the joints, EX EY EZ EA EB EC each; tool; station; reading
+  double driver[kMaxSharedTerms];  ///< per shared term, then what the effects need
+  Eigen::Matrix3d rotation_wt;     ///< filled when the tool's offset is uncertain
 
   double* motion(int joint) { return disturbance + 6 * joint; }
-  Eigen::Matrix3d rotation_wt;  ///< filled when the tool's offset is uncertain
   ToolState<double> tool;
 };
 
 namespace {
 
-/// sum[slot] = sum over j of basis[j] * coefficients[j][slot]; kCount slots, or `count` when it is 0.
-template <int kCount>
+/// sum[slot] = sum over j of basis[j] * coefficients[j][slot]
+template <int kSupport, int kCount>
+void weighted_sum(const double* basis, const double* coefficients, double* sum) {
+  for (int s = 0; s < kCount; ++s) {
+    double value = 0.0;
+    for (int j = 0; j < kSupport; ++j) value += basis[j] * coefficients[j * kCount + s];
+    sum[s] = value;
+  }
+}
+
 void weighted_sum(const double* basis, int support, const double* coefficients, int count, double* sum) {
-  const int slots = kCount > 0 ? kCount : count;
-  for (int s = 0; s < slots; ++s) sum[s] = basis[0] * coefficients[s];
-  for (int j = 1; j < support; ++j) {
-    coefficients += slots;
-    for (int s = 0; s < slots; ++s) sum[s] += basis[j] * coefficients[s];
+  if (support == 4 && count == 6) return weighted_sum<4, 6>(basis, coefficients, sum);
+  for (int s = 0; s < count; ++s) sum[s] = 0.0;
+  for (int j = 0; j < support; ++j) {
+    for (int s = 0; s < count; ++s) sum[s] += basis[j] * *coefficients++;
   }
 }
 
@@ -70,25 +79,19 @@ void motion_weights(const JointLever& lever, bool turns, const double* d_state, 
 
 }  // namespace
 
-void MeasurementModel::add_functions(const Eigen::VectorXd& parameters, RowState& state,
-                                     RowJacobian& out) const {
+void MeasurementModel::add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                                     RowState& state, RowJacobian& out) const {
   double sum[6];
-  std::size_t first_value = 0;
+  double* values = out.basis_value.data();
   for (std::size_t g = 0; g < binding_.groups.size(); ++g) {
     const FunctionGroup& group = layout().groups[g];
     const GroupBinding& place = binding_.groups[g];
+    out.start[g] = tables_.evaluate(group, g, campaign_.setups[setup], setup, row, values);
     const int support = group.basis->support();
-    double* values = out.basis_value.data() + first_value;
-    out.start[g] = group.basis->evaluate(state.position[index_of(place.axis)], values);
-    const double* coefficients = parameters.data() + group.index(out.start[g], 0);
-    if (group.count() == 6) {
-      weighted_sum<6>(values, support, coefficients, 6, sum);
-    } else {
-      weighted_sum<0>(values, support, coefficients, group.count(), sum);
-    }
+    weighted_sum(values, support, parameters.data() + group.index(out.start[g], 0), group.count(), sum);
     double* motion = state.motion(place.joint);
     for (std::size_t s = 0; s < place.component.size(); ++s) motion[place.component[s]] += sum[s];
-    first_value += static_cast<std::size_t>(support);
+    values += support;
   }
 }
 
@@ -157,9 +160,7 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
   double sensitivity[kDisturbances];
   disturbance_sensitivity(state, reading, channel, false, sensitivity);
   double* weight = out.weight[channel].data();
-  for (const GroupBinding& group : binding_.groups) {
-    for (const int component : group.component) *weight++ = sensitivity[6 * group.joint + component];
-  }
+  for (const int motion : slot_motion_) *weight++ = sensitivity[motion];
   double* tail = out.tail_value[channel].data();
   const double* driver = state.driver;
   for (const MotionTerm& term : binding_.shared_terms) {
@@ -212,6 +213,9 @@ void MeasurementModel::evaluate(std::size_t setup, std::size_t row, const Eigen:
   const int local_size = bound.local_nuisance_size();
   resize(bound.channels(), (place.tool_error >= 0 ? 3 : 0) + local_size, out);
 
+  state.levers = out.levers.data();
+  std::fill_n(state.disturbance, 6 * joint_turns_.size(), 0.0);
+  std::fill(state.disturbance + kToolDisturbance, state.disturbance + kDisturbances, 0.0);
   for (const Joint& joint : campaign_.machine.structure.joints) {
     const std::size_t axis = index_of(joint.axis);
     state.position[axis] = source.readings.position[axis][row];
@@ -221,7 +225,7 @@ void MeasurementModel::evaluate(std::size_t setup, std::size_t row, const Eigen:
   if (place.tool_error >= 0 || binding_.effect_moves_tool) {
     state.rotation_wt = chain_.nominal_rotation_wt(state.position);
   }
-  add_functions(parameters, state, out);
+  add_functions(setup, row, parameters, state, out);
   add_terms(setup, row, parameters, state);
   move_tool(state);
 
@@ -244,10 +248,11 @@ void MeasurementModel::resize(int channels, int own_tail, RowJacobian& out) cons
   const auto shared = static_cast<std::size_t>(shared_tail_size());
   const std::size_t tail = shared + static_cast<std::size_t>(own_tail);
   out.channels = channels;
+  out.levers.resize(joint_turns_.size());
   out.start.resize(binding_.groups.size());
   out.basis_value.resize(value_count_);
   for (int channel = 0; channel < channels; ++channel) {
-    out.weight[channel].resize(slot_count_);
+    out.weight[channel].resize(slot_motion_.size());
     out.tail_value[channel].resize(tail);
   }
   out.tail_index.resize(tail);

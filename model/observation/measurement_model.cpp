@@ -12,7 +12,8 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
     : campaign_(campaign),
       spec_(spec),
       chain_(campaign.machine),
-      binding_(bind_campaign(campaign_, spec_, chain_)) {
+      binding_(bind_campaign(campaign_, spec_, chain_)),
+      tables_(campaign_, binding_.layout) {
   const std::size_t terms = binding_.shared_terms.size() + static_cast<std::size_t>(binding_.effect_drivers);
   if (terms > kMaxSharedTerms) {
     throw InputError({spec_.file, 0},
@@ -22,7 +23,9 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
   }
   for (const FunctionGroup& group : layout().groups) {
     value_count_ += static_cast<std::size_t>(group.basis->support());
-    slot_count_ += static_cast<std::size_t>(group.count());
+  }
+  for (const GroupBinding& group : binding_.groups) {
+    for (const int component : group.component) slot_motion_.push_back(6 * group.joint + component);
   }
   bool turns = false;
   for (const Joint& joint : campaign.machine.structure.joints) {

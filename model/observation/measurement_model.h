@@ -12,6 +12,7 @@
 #include "volcal/model/kinematics/chain.h"
 #include "volcal/model/observation/campaign_binding.h"
 #include "volcal/model/observation/parameters.h"
+#include "volcal/model/observation/position_tables.h"
 #include "volcal/model/observation/row_jacobian.h"
 
 namespace volcal {
@@ -71,7 +72,8 @@ class MeasurementModel {
 
   PoseErrors<double> errors_at_reading(std::size_t setup, std::size_t row, const AxisPosition& position,
                                        const Eigen::VectorXd& parameters) const;
-  void add_functions(const Eigen::VectorXd& parameters, RowState& state, RowJacobian& out) const;
+  void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowState& state,
+                     RowJacobian& out) const;
   void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowState& state) const;
   void move_tool(RowState& state) const;
@@ -87,9 +89,10 @@ class MeasurementModel {
   ModelSpec spec_;
   KinematicChain chain_;
   CampaignBinding binding_;
-  std::vector<bool> joint_turns_;  ///< whether the joint's stator frame turns with rotary axes
+  PositionTables tables_;
+  std::vector<char> joint_turns_;  ///< whether the joint's stator frame turns with rotary axes
+  std::vector<int> slot_motion_;   ///< per function: 6 x joint + component
   std::size_t value_count_ = 0;    ///< basis values of a row
-  std::size_t slot_count_ = 0;     ///< functions
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 

@@ -14,20 +14,8 @@ std::vector<int> touched_parameters(const ParameterLayout& layout, const RowJaco
 
 Eigen::VectorXd dense_row(const ParameterLayout& layout, const RowJacobian& row, int channel) {
   Eigen::VectorXd dense = Eigen::VectorXd::Zero(layout.size);
-  const double* basis = row.basis_value.data();
-  const double* weight = row.weight[channel].data();
-  for (std::size_t g = 0; g < layout.groups.size(); ++g) {
-    const FunctionGroup& group = layout.groups[g];
-    for (int j = 0; j < group.basis->support(); ++j) {
-      for (int slot = 0; slot < group.count(); ++slot) {
-        dense[group.index(row.start[g] + j, slot)] = basis[j] * weight[slot];
-      }
-    }
-    basis += group.basis->support();
-    weight += group.count();
-  }
-  for (std::size_t t = 0; t < row.tail_index.size(); ++t)
-    dense[row.tail_index[t]] += row.tail_value[channel][t];
+  for_each_derivative(layout, row, channel,
+                      [&](int parameter, double derivative) { dense[parameter] += derivative; });
   return dense;
 }
 

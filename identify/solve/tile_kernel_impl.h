@@ -1,0 +1,87 @@
+// Body of the tile kernels for one instruction set. Included by one source file per set, which defines
+// `Simd`: the vector type and its operations. Everything has internal linkage: the linker must not merge code
+// of different instruction sets.
+
+#include "volcal/identify/solve/tile_kernel.h"
+
+namespace volcal {
+namespace {
+
+/// out(i, j) (+)= sum over k of a(i, k) b(j, k), kVectors vectors of rows by kColumns columns.
+template <int kVectors, int kColumns, bool kAdd>
+void multiply_block(const double* a, const double* b, int stride, int observations, double* out) {
+  Simd::Vector sum[kColumns][kVectors];
+  for (int c = 0; c < kColumns; ++c) {
+    for (int v = 0; v < kVectors; ++v) {
+      sum[c][v] = kAdd ? Simd::load(out + c * stride + v * Simd::kLanes) : Simd::zero();
+    }
+  }
+  for (int k = 0; k < observations; ++k, a += stride, b += stride) {
+    Simd::Vector rows[kVectors];
+    for (int v = 0; v < kVectors; ++v) rows[v] = Simd::load(a + v * Simd::kLanes);
+    for (int c = 0; c < kColumns; ++c) {
+      const Simd::Vector column = Simd::broadcast(b[c]);
+      for (int v = 0; v < kVectors; ++v) sum[c][v] = Simd::multiply_add(rows[v], column, sum[c][v]);
+    }
+  }
+  for (int c = 0; c < kColumns; ++c) {
+    for (int v = 0; v < kVectors; ++v) Simd::store(sum[c][v], out + c * stride + v * Simd::kLanes);
+  }
+}
+
+/// All `vectors` vectors of rows by kColumns columns.
+template <int kColumns, bool kAdd>
+void multiply_columns(const double* a, const double* b, int stride, int vectors, int observations,
+                      double* out) {
+  constexpr int kStep = 3;
+  int v = 0;
+  for (; v + kStep <= vectors; v += kStep) {
+    const int row = v * Simd::kLanes;
+    multiply_block<kStep, kColumns, kAdd>(a + row, b, stride, observations, out + row);
+  }
+  const int row = v * Simd::kLanes;
+  if (vectors - v == 2) multiply_block<2, kColumns, kAdd>(a + row, b, stride, observations, out + row);
+  if (vectors - v == 1) multiply_block<1, kColumns, kAdd>(a + row, b, stride, observations, out + row);
+}
+
+int vectors_for(int size) { return (size + Simd::kLanes - 1) / Simd::kLanes; }
+
+template <bool kAdd>
+void outer_upper(const double* a, int stride, int size, int observations, double* product) {
+  for (int column = 0; column < size; column += Simd::kColumns) {
+    const int rows = column + Simd::kColumns < size ? column + Simd::kColumns : size;
+    multiply_columns<Simd::kColumns, kAdd>(a, a + column, stride, vectors_for(rows), observations,
+                                           product + column * stride);
+  }
+}
+
+void outer_upper(const double* a, int stride, int size, int observations, bool add, double* product) {
+  if (add) {
+    outer_upper<true>(a, stride, size, observations, product);
+  } else {
+    outer_upper<false>(a, stride, size, observations, product);
+  }
+}
+
+void multiply(const double* a, const double* b, int stride, int size, int b_size, int observations,
+              double* product) {
+  constexpr int kColumns = 4;
+  for (int column = 0; column < b_size; column += kColumns) {
+    multiply_columns<kColumns, false>(a, b + column, stride, vectors_for(size), observations,
+                                      product + column * stride);
+  }
+}
+
+void add(const double* from, int from_stride, int rows, int columns, bool upper, double* to, int to_stride) {
+  for (int c = 0; c < columns; ++c, from += from_stride, to += to_stride) {
+    const int count = upper ? c + 1 : rows;
+    int i = 0;
+    for (; i + Simd::kLanes <= count; i += Simd::kLanes) {
+      Simd::store(Simd::add(Simd::load(to + i), Simd::load(from + i)), to + i);
+    }
+    for (; i < count; ++i) to[i] += from[i];
+  }
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,61 @@
+#include "volcal/model/observation/position_tables.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace volcal {
+namespace {
+
+/// Numbers the distinct positions of one axis; neighbouring readings often share one.
+class PositionNumbers {
+ public:
+  std::uint16_t number_of(double position) {
+    if (!positions_.empty() && position == positions_[last_]) return last_;
+    const auto [place, is_new] =
+        numbers_.try_emplace(position, static_cast<std::uint16_t>(positions_.size()));
+    if (is_new) positions_.push_back(position);
+    return last_ = place->second;
+  }
+  const std::vector<double>& positions() const { return positions_; }
+
+ private:
+  std::unordered_map<double, std::uint16_t> numbers_;
+  std::vector<double> positions_;
+  std::uint16_t last_ = 0;
+};
+
+}  // namespace
+
+PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& layout)
+    : tables_(layout.groups.size()), entry_(campaign.setups.size()) {
+  for (const AxisName axis : kAllAxes) {
+    const auto on_axis = [axis](const FunctionGroup& group) { return group.axis == axis; };
+    if (std::ranges::none_of(layout.groups, on_axis)) continue;
+    PositionNumbers numbers;
+    for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
+      const std::vector<double>& positions = campaign.setups[setup].readings.position[index_of(axis)];
+      std::vector<std::uint16_t>& entries = entry_[setup][index_of(axis)];
+      entries.reserve(positions.size());
+      for (const double position : positions) {
+        entries.push_back(numbers.number_of(position));
+        if (numbers.positions().size() > kMaxTabulated) break;
+      }
+    }
+    if (numbers.positions().size() > kMaxTabulated) {
+      for (auto& entries : entry_) entries[index_of(axis)] = {};
+      continue;
+    }
+    for (std::size_t g = 0; g < tables_.size(); ++g) {
+      const FunctionGroup& group = layout.groups[g];
+      if (group.axis != axis) continue;
+      const auto support = static_cast<std::size_t>(group.basis->support());
+      tables_[g].values.resize(support * numbers.positions().size());
+      for (std::size_t i = 0; i < numbers.positions().size(); ++i) {
+        tables_[g].start.push_back(
+            group.basis->evaluate(numbers.positions()[i], tables_[g].values.data() + support * i));
+      }
+    }
+  }
+}
+
+}  // namespace volcal

@@ -1,0 +1,85 @@
+// Tile kernels of every instruction set that this processor runs, against Eigen's products.
+
+#include "volcal/identify/solve/tile_kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+
+namespace volcal {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr double kRounding = 1e-14;
+
+class TileKernelOn : public ::testing::TestWithParam<InstructionSet> {
+ protected:
+  void SetUp() override {
+    kernel_ = tile_kernel_for(GetParam());
+    if (kernel_ == nullptr) GTEST_SKIP() << "this processor does not run it";
+  }
+
+  static int padded(int size) { return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment; }
+
+  const TileKernel* kernel_ = nullptr;
+};
+
+TEST_P(TileKernelOn, FormsAndAddsOuterProducts) {
+  for (const int size : {1, 7, 8, 9, 25, 76, 90}) {
+    for (const int observations : {1, 2, 48}) {
+      const int stride = padded(size);
+      const MatrixXd rows = MatrixXd::Random(stride, observations);
+      const MatrixXd before = MatrixXd::Random(stride, stride);
+      for (const bool add : {false, true}) {
+        MatrixXd product = before;
+        kernel_->outer_upper(rows.data(), stride, size, observations, add, product.data());
+        const MatrixXd expected = (add ? 1.0 : 0.0) * before + rows * rows.transpose();
+        const MatrixXd wrong = (product - expected).topLeftCorner(size, size).triangularView<Eigen::Upper>();
+        EXPECT_LT(wrong.cwiseAbs().maxCoeff(), kRounding * observations) << size << " x " << observations;
+      }
+    }
+  }
+}
+
+TEST_P(TileKernelOn, Multiplies) {
+  for (const int size : {3, 8, 76, 90}) {
+    for (const int columns : {1, 4, 5, 11}) {
+      const int stride = padded(size + columns);
+      const int observations = 7;
+      // Elements past the last row of b are read, not used.
+      const MatrixXd a = MatrixXd::Random(stride, observations + 1);
+      const double* b = a.data() + size;
+      MatrixXd product = MatrixXd::Constant(stride, padded(columns), 1e300);
+      kernel_->multiply(a.data(), b, stride, size + columns, columns, observations, product.data());
+      const MatrixXd used = a.leftCols(observations).topRows(size + columns);
+      const MatrixXd expected = used * used.bottomRows(columns).transpose();
+      EXPECT_LT((product.topLeftCorner(size + columns, columns) - expected).cwiseAbs().maxCoeff(),
+                kRounding * observations)
+          << size << " x " << columns;
+    }
+  }
+}
+
+TEST_P(TileKernelOn, AddsBlocksAndLeavesTheRestAlone) {
+  for (const int rows : {0, 1, 5, 8, 24, 27}) {
+    const MatrixXd from = MatrixXd::Random(32, 32);
+    const MatrixXd before = MatrixXd::Random(40, 40);
+    for (const bool upper : {false, true}) {
+      MatrixXd to = before;
+      kernel_->add(from.data(), 32, rows, rows, upper, &to(1, 2), 40);
+      MatrixXd expected = before;
+      for (int c = 0; c < rows; ++c) {
+        for (int r = 0; r < (upper ? c + 1 : rows); ++r) expected(1 + r, 2 + c) += from(r, c);
+      }
+      EXPECT_TRUE(to == expected) << rows << (upper ? " upper" : "");
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sets, TileKernelOn,
+                         ::testing::Values(InstructionSet::Plain, InstructionSet::Avx2,
+                                           InstructionSet::Avx512));
+
+}  // namespace
+}  // namespace volcal

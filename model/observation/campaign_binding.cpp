@@ -124,8 +124,8 @@ class CampaignBinder {
   CampaignBinding bind() {
     add_function_groups();
     for (const LocationSymbol& symbol : active_locations()) add_location(symbol);
-    for (const EffectSpec& effect : spec_.effects) add_effect(effect);
     for (const Axis& axis : machine_.axes) add_expansion(axis);
+    for (const EffectSpec& effect : spec_.effects) add_effect(effect);
     for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
     for (const Setup& setup : campaign_.setups) add_setup(setup);
     const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);

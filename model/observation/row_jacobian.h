@@ -12,8 +12,8 @@ namespace volcal {
 
 /// Derivatives of one row (all channels of one reading). Function part: coefficient j of slot s in group g
 /// has derivative basis_value[g][j - start] * weight[channel][g-th group's first weight + s]. The tail holds
-/// the other parameters: first those that every row of the campaign has (locations, effects, expansions;
-/// their number is MeasurementModel::shared_tail_size()), then the row's own.
+/// the other parameters: first those that every row of the campaign has (locations, expansions, effects, in
+/// the order of their parameters; their number is MeasurementModel::shared_tail_size()), then the row's own.
 struct RowJacobian {
   int channels = 0;
   double predicted[kMaxChannels];

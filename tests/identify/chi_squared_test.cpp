@@ -31,5 +31,26 @@ TEST(ChiSquared, EdgesAndLargeSamples) {
   EXPECT_LT(chi_squared_exceedance(3000.0, 10), 1e-300);
 }
 
+/// exp(-x / 2) far below the smallest number; where both exist, the two functions agree.
+TEST(ChiSquared, LogarithmsOfFarTails) {
+  EXPECT_NEAR(log10_chi_squared_exceedance(5000.0, 2), -2500.0 / std::log(10.0), 1e-9);
+  for (const double chi2 : {3.0, 150.0, 260.0, 600.0}) {
+    for (const double dof : {1.0, 3.0, 8.0}) {
+      EXPECT_NEAR(log10_chi_squared_exceedance(chi2, dof), std::log10(chi_squared_exceedance(chi2, dof)),
+                  1e-9);
+    }
+  }
+  EXPECT_NEAR(chi_squared_quantile(-2.0, 100), 135.807, 1e-3);
+}
+
+/// (z_0.975 + z_0.8)^2 = 7.849 for one degree of freedom; 9.635 for two and 10.903 for three from tables of
+/// the noncentral distribution (level 0.05, power 0.8).
+TEST(ChiSquared, DetectableNoncentrality) {
+  const double level = std::log10(0.05);
+  EXPECT_NEAR(detectable_noncentrality(level, 1, 0.8), 7.849, 0.08);
+  EXPECT_NEAR(detectable_noncentrality(level, 2, 0.8), 9.635, 0.10);
+  EXPECT_NEAR(detectable_noncentrality(level, 3, 0.8), 10.903, 0.11);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -67,7 +67,9 @@ TEST(Fit, CompressedAndPerReadingProblemsAgree) {
   const FitResult reference = fit(simulated.campaign, spline_model(3), options);
   ASSERT_NE(reference.status, FitStatus::NotConverged);
   ASSERT_NE(compressed.status, FitStatus::NotConverged);
-  EXPECT_NEAR(compressed.final_cost / reference.final_cost, 1.0, 1e-11);
+  // A length of 1.5 m is rounded to 2e-16 m, 3e-10 of its sigma; over 1,024 readings the cost knows no better
+  // than some 1e-11.
+  EXPECT_NEAR(compressed.final_cost / reference.final_cost, 1.0, 3e-11);
   const double scale = reference.parameters.cwiseAbs().maxCoeff();
   EXPECT_LT((compressed.parameters - reference.parameters).cwiseAbs().maxCoeff(), 1e-9 * scale);
 }

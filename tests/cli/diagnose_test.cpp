@@ -1,0 +1,76 @@
+/// The commands that criticise and extend a model, and what they say of bad input.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+const std::string kData = VOLCAL_TEST_DATA;
+
+TEST(DiagnoseProgram, ListsEveryKind) {
+  const auto run = run_program({"diagnose", "--list"});
+  EXPECT_EQ(run.exit_code, 0);
+  for (const char* kind :
+       {"reversal", "lead-error", "scale-expansion", "axis-coupling", "length-scale", "station-event"}) {
+    EXPECT_THAT(run.output, HasSubstr(kind));
+  }
+}
+
+TEST(DiagnoseProgram, AsksForACampaign) {
+  const auto run = run_program({"diagnose"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no campaign is given"));
+}
+
+class ExtendProgram : public ::testing::Test {
+ protected:
+  auto extend(const std::vector<std::string>& effects) {
+    std::vector<std::string> arguments = {"extend", kData + "/small/model.toml", "-o", output_};
+    for (const std::string& effect : effects) {
+      arguments.emplace_back("--effect");
+      arguments.push_back(effect);
+    }
+    return run_program(arguments);
+  }
+
+  testing::ScratchFolder scratch_;
+  std::string output_ = (fs::path(scratch_.path()) / "extended.toml").string();
+};
+
+TEST_F(ExtendProgram, AddsAnEffectByName) {
+  const auto run = extend({"axis-coupling:EAY:z:linear"});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  const std::string text = content(output_);
+  EXPECT_THAT(text, HasSubstr("kind = \"axis-coupling\""));
+  EXPECT_THAT(text, HasSubstr("symbol = \"EAY\""));
+  EXPECT_THAT(text, HasSubstr("shape = \"linear\""));
+}
+
+TEST_F(ExtendProgram, SaysWhatANameCouldMean) {
+  const auto several = extend({"axis-coupling:EAY"});
+  EXPECT_EQ(several.exit_code, 2);
+  EXPECT_THAT(several.errors, HasSubstr("axis-coupling:EAY:z:quadratic"));
+  const auto none = extend({"reversal:EC0Y"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.errors, HasSubstr("names nothing that could act here"));
+  const auto unknown = extend({"gremlins:EXX"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("no kind of effect"));
+  EXPECT_FALSE(fs::exists(output_));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,135 @@
+// Projection and score test against a brute-force orthogonal basis of dense, whitened, augmented matrices.
+
+#include "volcal/identify/criticism/projector.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <random>
+
+#include "volcal/identify/criticism/score_test.h"
+
+namespace volcal {
+namespace {
+
+constexpr Eigen::Index kObservations = 120;
+constexpr Eigen::Index kParameters = 7;
+
+Eigen::MatrixXd random_matrix(std::mt19937_64& random, Eigen::Index rows, Eigen::Index columns) {
+  std::normal_distribution<double> normal;
+  return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+NoiseProblem random_problem(std::mt19937_64& random) {
+  NoiseProblem problem;
+  problem.jacobian = random_matrix(random, kObservations, kParameters);
+  problem.residual = random_matrix(random, kObservations, 1);
+  const Eigen::MatrixXd root = random_matrix(random, 3, kParameters);
+  problem.prior_precision = root.transpose() * root;
+  problem.prior_mean = random_matrix(random, kParameters, 1);
+  NoiseSequence sequence;
+  for (Eigen::Index i = 0; i < kObservations; ++i) {
+    sequence.observation.push_back(static_cast<std::size_t>(i));
+    sequence.time.push_back(7.0 * static_cast<double>(i));
+    sequence.line.push_back(static_cast<std::int32_t>(i / 15));
+    problem.data.sigma.push_back(0.8 + 0.1 * static_cast<double>(i % 4));
+  }
+  problem.data.sequences.push_back(sequence);
+  return problem;
+}
+
+/// The same by the definition: Sigma from its formula, priors as further observations, an orthogonal basis.
+struct BruteForce {
+  Eigen::MatrixXd root;      ///< of Sigma
+  Eigen::MatrixXd jacobian;  ///< whitened and augmented
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd prior_root;
+
+  BruteForce(const NoiseProblem& problem, const NoiseParameters& noise) {
+    Eigen::MatrixXd sigma(kObservations, kObservations);
+    for (Eigen::Index i = 0; i < kObservations; ++i) {
+      for (Eigen::Index j = 0; j < kObservations; ++j) {
+        const double apart = 7.0 * std::abs(static_cast<double>(i - j));
+        sigma(i, j) = noise.wander * noise.wander * std::exp(-apart / noise.tau);
+        if (i / 15 == j / 15) sigma(i, j) += noise.line * noise.line;
+      }
+      sigma(i, i) += std::pow(noise.white * problem.data.sigma[static_cast<std::size_t>(i)], 2);
+    }
+    root = sigma.llt().matrixL();
+    const Eigen::LDLT<Eigen::MatrixXd> ldlt(problem.prior_precision);
+    prior_root = (ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * Eigen::MatrixXd(ldlt.matrixU()) *
+                  ldlt.transpositionsP())
+                     .eval();
+    jacobian = augmented(problem.jacobian, prior_root);
+    residual = augmented(problem.residual, prior_root * problem.prior_mean);
+  }
+
+  Eigen::MatrixXd augmented(const Eigen::MatrixXd& top, const Eigen::MatrixXd& bottom) const {
+    Eigen::MatrixXd all(top.rows() + bottom.rows(), top.cols());
+    all << root.triangularView<Eigen::Lower>().solve(top), bottom;
+    return all;
+  }
+  Eigen::MatrixXd projected(const Eigen::MatrixXd& columns) const {
+    const Eigen::MatrixXd q =
+        jacobian.householderQr().householderQ() * Eigen::MatrixXd::Identity(jacobian.rows(), jacobian.cols());
+    return columns - q * (q.transpose() * columns);
+  }
+};
+
+const NoiseParameters kNoise{.white = 1.1, .wander = 0.6, .tau = 60.0, .line = 0.4, .per_metre = 0.0};
+
+TEST(Projector, EqualsAnOrthogonalBasis) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    std::mt19937_64 random(seed);
+    const NoiseProblem problem = random_problem(random);
+    const Eigen::MatrixXd columns = random_matrix(random, kObservations, 3);
+    const BruteForce exact(problem, kNoise);
+    const Eigen::MatrixXd remaining = exact.projected(
+        exact.augmented(columns, Eigen::MatrixXd::Zero(exact.prior_root.rows(), columns.cols())));
+    const Eigen::VectorXd residual = exact.projected(exact.residual);
+
+    const Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+    const ProjectedColumns projected = projector.project(columns);
+    EXPECT_LT((projected.gram(0, 3) - remaining.transpose() * remaining).norm(),
+              1e-10 * remaining.squaredNorm());
+    EXPECT_LT((projected.score - remaining.transpose() * residual).norm(), 1e-9);
+    EXPECT_NEAR(projector.residual_squares(), residual.squaredNorm(), 1e-9);
+
+    const ScoreTest test = score_test(projected, 0, 3);
+    const Eigen::VectorXd amplitude = remaining.householderQr().solve(residual);
+    EXPECT_LT((test.amplitude - amplitude).norm(), 1e-9);
+    EXPECT_NEAR(test.lm, (remaining * amplitude).squaredNorm(), 1e-9);
+    EXPECT_EQ(test.dof, 3);
+  }
+}
+
+/// Taken into the model, columns get the amplitudes that the test had estimated, and nothing of them is left.
+TEST(Projector, AcceptedColumnsAreExplained) {
+  std::mt19937_64 random(5);
+  const NoiseProblem problem = random_problem(random);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
+  Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+  const ScoreTest before = score_test(projector.project(columns), 0, 2);
+  const double squares = projector.residual_squares();
+  projector.accept(columns);
+  EXPECT_LT((projector.solution().tail(2) - before.amplitude).norm(), 1e-10);
+  EXPECT_LT((projector.accepted_covariance() - before.covariance).norm(), 1e-10 * before.covariance.norm());
+  EXPECT_NEAR(projector.residual_squares(), squares - before.lm, 1e-9);
+  const ScoreTest after = score_test(projector.project(columns), 0, 2);
+  EXPECT_EQ(after.dof, 0) << "nothing of them is visible beside themselves";
+}
+
+TEST(ScoreTest, AColumnThatTheModelCanImitateIsInvisible) {
+  std::mt19937_64 random(6);
+  NoiseProblem problem = random_problem(random);
+  problem.prior_precision.setZero();
+  const Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+  const Eigen::MatrixXd imitated = problem.jacobian * random_matrix(random, kParameters, 1);
+  const ScoreTest test = score_test(projector.project(imitated), 0, 1);
+  EXPECT_EQ(test.dof, 0);
+  EXPECT_LT(test.visible_fraction, 1e-6);
+}
+
+}  // namespace
+}  // namespace volcal

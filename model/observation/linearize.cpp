@@ -21,24 +21,6 @@ struct MeasurementModel::RowState {
 
 namespace {
 
-/// sum[slot] = sum over j of basis[j] * coefficients[j][slot]
-template <int kSupport, int kCount>
-void weighted_sum(const double* basis, const double* coefficients, double* sum) {
-  for (int s = 0; s < kCount; ++s) {
-    double value = 0.0;
-    for (int j = 0; j < kSupport; ++j) value += basis[j] * coefficients[j * kCount + s];
-    sum[s] = value;
-  }
-}
-
-void weighted_sum(const double* basis, int support, const double* coefficients, int count, double* sum) {
-  if (support == 4 && count == 6) return weighted_sum<4, 6>(basis, coefficients, sum);
-  for (int s = 0; s < count; ++s) sum[s] = 0.0;
-  for (int j = 0; j < support; ++j) {
-    for (int s = 0; s < count; ++s) sum[s] += basis[j] * *coefficients++;
-  }
-}
-
 /// Derivatives of one channel to a unit of each motion component of a joint.
 void motion_weights(const JointLever& lever, bool turns, const double* d_state, double* weight) {
   using Eigen::Vector3d;
@@ -55,18 +37,28 @@ void motion_weights(const JointLever& lever, bool turns, const double* d_state, 
 }  // namespace
 
 void MeasurementModel::add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                                     RowState& state, RowJacobian& out) const {
-  double sum[6];
-  double* values = out.basis_value.data();
+                                     const TabulatedFunctions* tabulated, RowState& state,
+                                     RowJacobian& out) const {
+  double computed[6];
+  double* basis = out.basis_value.data();
+  double* motion = &state.motion[0][0];
+  const int* slot_motion = slot_motion_.data();
   for (std::size_t g = 0; g < binding_.groups.size(); ++g) {
     const FunctionGroup& group = layout().groups[g];
     const GroupBinding& place = binding_.groups[g];
-    out.start[g] = tables_.evaluate(group, g, campaign_.setups[setup], setup, row, values);
-    const int support = group.basis->support();
-    weighted_sum(values, support, parameters.data() + group.index(out.start[g], 0), group.count(), sum);
-    double* motion = state.motion[place.joint];
-    for (std::size_t s = 0; s < place.component.size(); ++s) motion[place.component[s]] += sum[s];
-    values += support;
+    const std::size_t axis = index_of(place.axis);
+    const int support = group_support_[g];
+    const double* values = computed;
+    if (tables_.has_table(setup, axis)) {
+      const std::size_t entry = tables_.entry(setup, axis, row);
+      out.start[g] = tables_.basis_values(g, support, entry, basis);
+      if (tabulated != nullptr) values = (*tabulated)[g].data() + entry * place.component.size();
+    } else {
+      out.start[g] = group.basis->evaluate(state.position[axis], basis);
+    }
+    if (values == computed) function_values(group, out.start[g], basis, parameters, computed);
+    for (std::size_t s = 0; s < place.component.size(); ++s) motion[*slot_motion++] += values[s];
+    basis += support;
   }
 }
 
@@ -130,8 +122,12 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
   std::copy_n(reading.d_nuisance[channel], place.bound->local_nuisance_size(), tail);
 }
 
+TabulatedFunctions MeasurementModel::tabulate(const Eigen::VectorXd& parameters) const {
+  return tables_.tabulate(layout(), parameters);
+}
+
 void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                                 RowJacobian& out) const {
+                                 RowJacobian& out, const TabulatedFunctions* tabulated) const {
   const Setup& source = campaign_.setups[setup];
   const SetupBinding& place = binding_.setups[setup];
   const BoundSetup& bound = *place.bound;
@@ -147,7 +143,7 @@ void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen
   }
   state.tool.point_w = chain_.levers(state.position, place.tool_offset, state.levers);
   if (!remainder_w_.empty()) state.tool.point_w += remainder_w_[setup][row];
-  add_functions(setup, row, parameters, state, out);
+  add_functions(setup, row, parameters, tabulated, state, out);
   add_terms(setup, row, parameters, state);
   move_tool(state);
 

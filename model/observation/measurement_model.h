@@ -40,9 +40,12 @@ class MeasurementModel {
   /// Prediction of one reading, `channels` values, SI.
   void predict(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                double* predicted) const;
-  /// Prediction and derivatives; `out` is reused between calls.
-  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                 RowJacobian& out) const;
+  /// Function values for many calls of linearize() with the same parameters.
+  TabulatedFunctions tabulate(const Eigen::VectorXd& parameters) const;
+  /// Prediction and derivatives; `out` is reused between calls. `tabulated`: those of `parameters`, or null;
+  /// the result is the same to the bit.
+  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowJacobian& out,
+                 const TabulatedFunctions* tabulated = nullptr) const;
 
   /// Fixes the second-order remainder (exact minus first-order functional point) at these parameters; it is
   /// added to every later prediction. Without it predictions are first order.
@@ -60,8 +63,8 @@ class MeasurementModel {
 
   PoseErrors<double> errors_at_reading(std::size_t setup, std::size_t row, const AxisPosition& position,
                                        const Eigen::VectorXd& parameters) const;
-  void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowState& state,
-                     RowJacobian& out) const;
+  void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                     const TabulatedFunctions* tabulated, RowState& state, RowJacobian& out) const;
   void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowState& state) const;
   void move_tool(RowState& state) const;
@@ -74,9 +77,10 @@ class MeasurementModel {
   KinematicChain chain_;
   CampaignBinding binding_;
   PositionTables tables_;
-  std::vector<char> joint_turns_;  ///< whether the joint's stator frame turns with rotary axes
-  std::vector<int> slot_motion_;   ///< per function: 6 x joint + component
-  std::size_t value_count_ = 0;    ///< basis values of a row
+  std::vector<char> joint_turns_;   ///< whether the joint's stator frame turns with rotary axes
+  std::vector<int> slot_motion_;    ///< per function: 6 x joint + component
+  std::vector<int> group_support_;  ///< per function group: basis values of a row
+  std::size_t value_count_ = 0;     ///< basis values of a row
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 

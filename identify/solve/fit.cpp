@@ -210,8 +210,8 @@ class Identification {
     datum_ = std::make_unique<DatumSpace>(model_.layout(), campaign_.machine, parameters_);
     z_ = datum_->reduced(parameters_);
     const std::vector<double> weight = weights(stated_sigma_);
-    const NormalAccumulator accumulator(index_, weight, nullptr, threads_);
-    const NormalEquations sums = accumulator.accumulate(parameters_);
+    NormalAccumulator accumulator(index_, weight, nullptr, threads_);
+    const NormalEquations& sums = accumulator.accumulate(parameters_);
     result_.initial_cost = sums.cost;
     const GaussianPrior priors = block_priors(*datum_);
     const GaussianPrior wide = wide_prior(model_, *datum_, z_);
@@ -251,11 +251,11 @@ class Identification {
   std::vector<InstrumentEquations> instrument_equations() const {
     std::vector<InstrumentEquations> equations;
     const std::vector<double> weight = weights(stated_sigma_);
-    const NormalAccumulator accumulator(index_, weight, nullptr, threads_);
+    NormalAccumulator accumulator(index_, weight, nullptr, threads_);
     for (std::size_t g = 0; g < instruments_.size(); ++g) {
       std::vector<bool> include;
       for (const std::size_t instrument : instrument_of_setup_) include.push_back(instrument == g);
-      const NormalEquations sums =
+      const NormalEquations& sums =
           accumulator.accumulate(parameters_, instruments_.size() == 1 ? nullptr : &include);
       equations.push_back({datum_->reduce_matrix(sums.matrix), datum_->reduce_gradient(sums.gradient),
                            sums.squares, static_cast<double>(sums.observations)});
@@ -293,8 +293,8 @@ class Identification {
 
   void update_covariance() {
     const std::vector<double> weight = weights(sigma());
-    const NormalAccumulator accumulator(index_, weight, nullptr, threads_);
-    const NormalEquations sums = accumulator.accumulate(parameters_);
+    NormalAccumulator accumulator(index_, weight, nullptr, threads_);
+    const NormalEquations& sums = accumulator.accumulate(parameters_);
     const auto factor = cholesky_lower(datum_->reduce_matrix(sums.matrix) + prior().precision);
     if (!factor)
       throw std::runtime_error("the normal matrix is not positive definite after the rank analysis");

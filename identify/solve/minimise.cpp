@@ -56,7 +56,7 @@ void square_root(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,
 
 class CompressedCost final : public ceres::CostFunction {
  public:
-  CompressedCost(const NormalAccumulator& accumulator, const DatumSpace& datum, const GaussianPrior& prior)
+  CompressedCost(NormalAccumulator& accumulator, const DatumSpace& datum, const GaussianPrior& prior)
       : accumulator_(accumulator), datum_(datum), prior_(prior) {
     mutable_parameter_block_sizes()->push_back(datum.size());
     set_num_residuals(datum.size() + 1);
@@ -90,13 +90,13 @@ class CompressedCost final : public ceres::CostFunction {
   void refresh(const Eigen::Map<const Eigen::VectorXd>& z) const {
     if (z_.size() == z.size() && z_ == z) return;
     z_ = z;
-    const NormalEquations sums = accumulator_.accumulate(datum_.raw(z_));
+    const NormalEquations& sums = accumulator_.accumulate(datum_.raw(z_));
     matrix_ = datum_.reduce_matrix(sums.matrix) + prior_.precision;
     gradient_ = datum_.reduce_gradient(sums.gradient) + prior_.gradient(z_);
     cost_ = sums.cost + prior_.cost(z_);
   }
 
-  const NormalAccumulator& accumulator_;
+  NormalAccumulator& accumulator_;
   const DatumSpace& datum_;
   const GaussianPrior& prior_;
   mutable Eigen::VectorXd z_;
@@ -129,7 +129,7 @@ MinimiseSummary minimise_compressed(const ReadingIndex& index, const std::vector
                                     const DatumSpace& datum, const GaussianPrior& prior,
                                     const MinimiseOptions& options, Eigen::VectorXd& z) {
   const auto loss = make_loss(options);
-  const NormalAccumulator accumulator(index, weight, loss.get(), options.threads);
+  NormalAccumulator accumulator(index, weight, loss.get(), options.threads);
   ceres::Problem problem;
   problem.AddResidualBlock(new CompressedCost(accumulator, datum, prior), nullptr, z.data());
   ceres::Solver::Options ceres_options = solver_options(options);

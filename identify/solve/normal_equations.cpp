@@ -77,30 +77,34 @@ void NormalAccumulator::for_each_chunk(const Work& work) const {
   for (std::thread& worker : workers) worker.join();
 }
 
-NormalEquations NormalAccumulator::accumulate(const Eigen::VectorXd& parameters,
-                                              const std::vector<bool>* include) const {
-  std::vector<NormalEquations> sums(chunk_ends_.size());
-  for_each_chunk([&](std::size_t chunk) { sums[chunk] = accumulate_chunk(chunk, parameters, include); });
-  NormalEquations total = std::move(sums[0]);
-  for (std::size_t chunk = 1; chunk < sums.size(); ++chunk) {
-    total.matrix += sums[chunk].matrix;
-    total.gradient += sums[chunk].gradient;
-    total.cost += sums[chunk].cost;
-    total.squares += sums[chunk].squares;
-    total.observations += sums[chunk].observations;
+const NormalEquations& NormalAccumulator::accumulate(const Eigen::VectorXd& parameters,
+                                                     const std::vector<bool>* include) {
+  const TabulatedFunctions tabulated = index_.model().tabulate(parameters);
+  sums_.resize(chunk_ends_.size());
+  for_each_chunk(
+      [&](std::size_t chunk) { accumulate_chunk(chunk, parameters, tabulated, include, sums_[chunk]); });
+  NormalEquations& total = sums_[0];
+  for (std::size_t chunk = 1; chunk < sums_.size(); ++chunk) {
+    total.matrix += sums_[chunk].matrix;
+    total.gradient += sums_[chunk].gradient;
+    total.cost += sums_[chunk].cost;
+    total.squares += sums_[chunk].squares;
+    total.observations += sums_[chunk].observations;
   }
   symmetrise_from_upper(total.matrix);
   return total;
 }
 
-NormalEquations NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
-                                                    const std::vector<bool>* include) const {
+void NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
+                                         const TabulatedFunctions& tabulated,
+                                         const std::vector<bool>* include, NormalEquations& sums) const {
   const MeasurementModel& model = index_.model();
   const auto& setups = model.campaign().setups;
   const int size = model.layout().size;
-  NormalEquations sums;
-  sums.matrix = Eigen::MatrixXd::Zero(size, size);
-  sums.gradient = Eigen::VectorXd::Zero(size);
+  sums.matrix.setZero(size, size);
+  sums.gradient.setZero(size);
+  sums.cost = sums.squares = 0.0;
+  sums.observations = 0;
   NormalTile tile(model.layout(), model.shared_tail_size(), sums.matrix, sums.gradient);
   RowJacobian row;
   double rho[3] = {0.0, 1.0, 0.0};
@@ -108,7 +112,7 @@ NormalEquations NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eig
   for (std::size_t i = begin; i < chunk_ends_[chunk]; ++i) {
     const auto [setup, reading] = index_.sorted()[i];
     if (include != nullptr && !(*include)[setup]) continue;
-    model.linearize(setup, reading, parameters, row);
+    model.linearize(setup, reading, parameters, row, &tabulated);
     const std::size_t observation = index_.first_observation(setup, reading);
     for (int channel = 0; channel < row.channels; ++channel) {
       const double weight = weight_[observation + static_cast<std::size_t>(channel)];
@@ -125,7 +129,6 @@ NormalEquations NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eig
     }
   }
   tile.flush();
-  return sums;
 }
 
 }  // namespace volcal

@@ -56,13 +56,14 @@ class NormalAccumulator {
   NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                     const ceres::LossFunction* loss, int threads);
 
-  /// All readings, or only those of setups for which `include[setup]`.
-  NormalEquations accumulate(const Eigen::VectorXd& parameters,
-                             const std::vector<bool>* include = nullptr) const;
+  /// All readings, or only those of setups for which `include[setup]`. The sums hold until the next call.
+  const NormalEquations& accumulate(const Eigen::VectorXd& parameters,
+                                    const std::vector<bool>* include = nullptr);
 
  private:
-  NormalEquations accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
-                                   const std::vector<bool>* include) const;
+  void accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
+                        const TabulatedFunctions& tabulated, const std::vector<bool>* include,
+                        NormalEquations& sums) const;
   template <class Work>
   void for_each_chunk(const Work& work) const;
 
@@ -71,6 +72,8 @@ class NormalAccumulator {
   const ceres::LossFunction* loss_;
   int threads_;
   std::vector<std::size_t> chunk_ends_;  ///< reading one past the end of each chunk
+  std::vector<NormalEquations>
+      sums_;  ///< per chunk, kept because memory is slow to come by; the first is the total
 };
 
 }  // namespace volcal

@@ -34,6 +34,20 @@ double log_upper_gamma(double a, double x) {
   return a * std::log(x) - x - std::lgamma(a) + std::log(h);
 }
 
+/// Poisson mixture of central distributions (Johnson, Kotz and Balakrishnan 1995, Continuous Univariate
+/// Distributions 2, 29.3).
+double noncentral_exceedance(double chi2, double dof, double noncentrality) {
+  const double mean = 0.5 * noncentrality;
+  const int last = static_cast<int>(mean + 12.0 * std::sqrt(mean + 1.0)) + 20;
+  double sum = 0.0;
+  for (int j = 0; j <= last; ++j) {
+    const double log_weight =
+        (j > 0 ? j * std::log(std::max(mean, 1e-300)) : 0.0) - mean - std::lgamma(j + 1.0);
+    sum += std::exp(log_weight) * chi_squared_exceedance(chi2, dof + 2.0 * j);
+  }
+  return sum;
+}
+
 /// Root of a falling function between two abscissae that enclose it.
 template <class Function>
 double root_of_falling(double low, double high, const Function& function) {
@@ -69,9 +83,7 @@ double chi_squared_quantile(double log10_probability, double dof) {
 double detectable_noncentrality(double log10_level, double dof, double power) {
   const double critical = chi_squared_quantile(log10_level, dof);
   const auto missed_power = [&](double noncentrality) {
-    const double scale = (dof + 2.0 * noncentrality) / (dof + noncentrality);
-    const double equivalent = (dof + noncentrality) * (dof + noncentrality) / (dof + 2.0 * noncentrality);
-    return power - chi_squared_exceedance(critical / scale, equivalent);
+    return power - noncentral_exceedance(critical, dof, noncentrality);
   };
   double high = critical + 10.0;
   while (missed_power(high) > 0.0) high *= 2.0;

@@ -10,8 +10,7 @@ double log10_chi_squared_exceedance(double chi2, double dof);
 /// chi2 that is exceeded with probability 10^log10_probability.
 double chi_squared_quantile(double log10_probability, double dof);
 /// Noncentrality at which a chi-squared test with `dof` degrees of freedom and the level 10^log10_level
-/// detects with probability `power` (Patnaik's approximation of the noncentral distribution, Biometrika 36
-/// (1949) 202; within 1 % for powers of 0.5 to 0.95).
+/// detects with probability `power`.
 double detectable_noncentrality(double log10_level, double dof, double power);
 
 }  // namespace volcal

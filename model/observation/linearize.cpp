@@ -24,24 +24,6 @@ struct MeasurementModel::RowState {
 
 namespace {
 
-/// sum[slot] = sum over j of basis[j] * coefficients[j][slot]
-template <int kSupport, int kCount>
-void weighted_sum(const double* basis, const double* coefficients, double* sum) {
-  for (int s = 0; s < kCount; ++s) {
-    double value = 0.0;
-    for (int j = 0; j < kSupport; ++j) value += basis[j] * coefficients[j * kCount + s];
-    sum[s] = value;
-  }
-}
-
-void weighted_sum(const double* basis, int support, const double* coefficients, int count, double* sum) {
-  if (support == 4 && count == 6) return weighted_sum<4, 6>(basis, coefficients, sum);
-  for (int s = 0; s < count; ++s) sum[s] = 0.0;
-  for (int j = 0; j < support; ++j) {
-    for (int s = 0; s < count; ++s) sum[s] += basis[j] * *coefficients++;
-  }
-}
-
 /// Adds an effect's contribution; writes the drivers of its amplitudes and, per free shape parameter,
 /// amplitude times slope. Returns the place after them.
 double* add_effect(const EffectBinding& effect, std::size_t setup, std::size_t row,
@@ -80,18 +62,28 @@ void motion_weights(const JointLever& lever, bool turns, const double* d_state, 
 }  // namespace
 
 void MeasurementModel::add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                                     RowState& state, RowJacobian& out) const {
-  double sum[6];
-  double* values = out.basis_value.data();
+                                     const TabulatedFunctions* tabulated, RowState& state,
+                                     RowJacobian& out) const {
+  double computed[6];
+  double* basis = out.basis_value.data();
+  double* motion = state.disturbance;
+  const int* slot_motion = slot_motion_.data();
   for (std::size_t g = 0; g < binding_.groups.size(); ++g) {
     const FunctionGroup& group = layout().groups[g];
     const GroupBinding& place = binding_.groups[g];
-    out.start[g] = tables_.evaluate(group, g, campaign_.setups[setup], setup, row, values);
-    const int support = group.basis->support();
-    weighted_sum(values, support, parameters.data() + group.index(out.start[g], 0), group.count(), sum);
-    double* motion = state.motion(place.joint);
-    for (std::size_t s = 0; s < place.component.size(); ++s) motion[place.component[s]] += sum[s];
-    values += support;
+    const std::size_t axis = index_of(place.axis);
+    const int support = group_support_[g];
+    const double* values = computed;
+    if (tables_.has_table(setup, axis)) {
+      const std::size_t entry = tables_.entry(setup, axis, row);
+      out.start[g] = tables_.basis_values(g, support, entry, basis);
+      if (tabulated != nullptr) values = (*tabulated)[g].data() + entry * place.component.size();
+    } else {
+      out.start[g] = group.basis->evaluate(state.position[axis], basis);
+    }
+    if (values == computed) function_values(group, out.start[g], basis, parameters, computed);
+    for (std::size_t s = 0; s < place.component.size(); ++s) motion[*slot_motion++] += values[s];
+    basis += support;
   }
 }
 
@@ -182,12 +174,16 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
   std::copy_n(reading.d_nuisance[channel], place.bound->local_nuisance_size(), tail);
 }
 
+TabulatedFunctions MeasurementModel::tabulate(const Eigen::VectorXd& parameters) const {
+  return tables_.tabulate(layout(), parameters);
+}
+
 void MeasurementModel::linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                                 RowJacobian& out) const {
+                                 RowJacobian& out, const TabulatedFunctions* tabulated) const {
   const SetupBinding& place = binding_.setups[setup];
   RowState state;
   Linearization reading;
-  evaluate(setup, row, parameters, state, reading, out);
+  evaluate(setup, row, parameters, tabulated, state, reading, out);
   for (int channel = 0; channel < out.channels; ++channel) fill_channel(place, state, reading, channel, out);
 }
 
@@ -196,7 +192,7 @@ void MeasurementModel::disturbance_rows(std::size_t setup, std::size_t row, cons
   RowJacobian scratch;
   RowState state;
   Linearization reading;
-  evaluate(setup, row, parameters, state, reading, scratch);
+  evaluate(setup, row, parameters, nullptr, state, reading, scratch);
   state.rotation_wt = chain_.nominal_rotation_wt(state.position);
   out.setZero();
   for (int channel = 0; channel < scratch.channels; ++channel) {
@@ -206,7 +202,8 @@ void MeasurementModel::disturbance_rows(std::size_t setup, std::size_t row, cons
 
 /// State of the tool and linearised reading; sizes `out`, writes its basis values and its tail's indices.
 void MeasurementModel::evaluate(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                                RowState& state, Linearization& reading, RowJacobian& out) const {
+                                const TabulatedFunctions* tabulated, RowState& state, Linearization& reading,
+                                RowJacobian& out) const {
   const Setup& source = campaign_.setups[setup];
   const SetupBinding& place = binding_.setups[setup];
   const BoundSetup& bound = *place.bound;
@@ -225,7 +222,7 @@ void MeasurementModel::evaluate(std::size_t setup, std::size_t row, const Eigen:
   if (place.tool_error >= 0 || binding_.effect_moves_tool) {
     state.rotation_wt = chain_.nominal_rotation_wt(state.position);
   }
-  add_functions(setup, row, parameters, state, out);
+  add_functions(setup, row, parameters, tabulated, state, out);
   add_terms(setup, row, parameters, state);
   move_tool(state);
 

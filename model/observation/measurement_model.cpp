@@ -22,6 +22,7 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
                      "leave effects out");
   }
   for (const FunctionGroup& group : layout().groups) {
+    group_support_.push_back(group.basis->support());
     value_count_ += static_cast<std::size_t>(group.basis->support());
   }
   for (const GroupBinding& group : binding_.groups) {

@@ -43,9 +43,12 @@ class MeasurementModel {
   /// Prediction of one reading, `channels` values, SI.
   void predict(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                double* predicted) const;
-  /// Prediction and derivatives; `out` is reused between calls.
-  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
-                 RowJacobian& out) const;
+  /// Function values for many calls of linearize() with the same parameters.
+  TabulatedFunctions tabulate(const Eigen::VectorXd& parameters) const;
+  /// Prediction and derivatives; `out` is reused between calls. `tabulated`: those of `parameters`, or null;
+  /// the result is the same to the bit.
+  void linearize(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowJacobian& out,
+                 const TabulatedFunctions* tabulated = nullptr) const;
 
   /// Derivatives of a reading's channels to a unit of every disturbance (campaign_binding.h).
   using DisturbanceRows = Eigen::Matrix<double, kMaxChannels, kDisturbances, Eigen::RowMajor>;
@@ -72,15 +75,16 @@ class MeasurementModel {
 
   PoseErrors<double> errors_at_reading(std::size_t setup, std::size_t row, const AxisPosition& position,
                                        const Eigen::VectorXd& parameters) const;
-  void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowState& state,
-                     RowJacobian& out) const;
+  void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                     const TabulatedFunctions* tabulated, RowState& state, RowJacobian& out) const;
   void add_terms(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
                  RowState& state) const;
   void move_tool(RowState& state) const;
   void disturbance_sensitivity(const RowState& state, const Linearization& reading, int channel, bool all,
                                double* sensitivity) const;
-  void evaluate(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters, RowState& state,
-                Linearization& reading, RowJacobian& out) const;
+  void evaluate(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                const TabulatedFunctions* tabulated, RowState& state, Linearization& reading,
+                RowJacobian& out) const;
   void resize(int channels, int own_tail, RowJacobian& out) const;
   void fill_channel(const SetupBinding& place, const RowState& state, const Linearization& reading,
                     int channel, RowJacobian& out) const;
@@ -90,9 +94,10 @@ class MeasurementModel {
   KinematicChain chain_;
   CampaignBinding binding_;
   PositionTables tables_;
-  std::vector<char> joint_turns_;  ///< whether the joint's stator frame turns with rotary axes
-  std::vector<int> slot_motion_;   ///< per function: 6 x joint + component
-  std::size_t value_count_ = 0;    ///< basis values of a row
+  std::vector<char> joint_turns_;   ///< whether the joint's stator frame turns with rotary axes
+  std::vector<int> slot_motion_;    ///< per function: 6 x joint + component
+  std::vector<int> group_support_;  ///< per function group: basis values of a row
+  std::size_t value_count_ = 0;     ///< basis values of a row
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 

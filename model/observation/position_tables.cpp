@@ -24,7 +24,29 @@ class PositionNumbers {
   std::uint16_t last_ = 0;
 };
 
+/// sum[slot] = sum over j of basis[j] * coefficients[j][slot]
+template <int kSupport, int kCount>
+void weighted_sum(const double* basis, const double* coefficients, double* sum) {
+  for (int s = 0; s < kCount; ++s) {
+    double value = 0.0;
+    for (int j = 0; j < kSupport; ++j) value += basis[j] * coefficients[j * kCount + s];
+    sum[s] = value;
+  }
+}
+
 }  // namespace
+
+void function_values(const FunctionGroup& group, int start, const double* basis,
+                     const Eigen::VectorXd& parameters, double* values) {
+  const double* coefficients = parameters.data() + group.index(start, 0);
+  const int support = group.basis->support();
+  const int count = group.count();
+  if (support == 4 && count == 6) return weighted_sum<4, 6>(basis, coefficients, values);
+  for (int s = 0; s < count; ++s) values[s] = 0.0;
+  for (int j = 0; j < support; ++j) {
+    for (int s = 0; s < count; ++s) values[s] += basis[j] * *coefficients++;
+  }
+}
 
 PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& layout)
     : tables_(layout.groups.size()), entry_(campaign.setups.size()) {
@@ -56,6 +78,21 @@ PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& 
       }
     }
   }
+}
+
+TabulatedFunctions PositionTables::tabulate(const ParameterLayout& layout,
+                                            const Eigen::VectorXd& parameters) const {
+  TabulatedFunctions functions(tables_.size());
+  for (std::size_t g = 0; g < tables_.size(); ++g) {
+    const FunctionGroup& group = layout.groups[g];
+    const auto count = static_cast<std::size_t>(group.count());
+    const double* basis = tables_[g].values.data();
+    functions[g].resize(count * tables_[g].start.size());
+    for (std::size_t i = 0; i < tables_[g].start.size(); ++i, basis += group.basis->support()) {
+      function_values(group, tables_[g].start[i], basis, parameters, functions[g].data() + count * i);
+    }
+  }
+  return functions;
 }
 
 }  // namespace volcal

@@ -3,6 +3,9 @@
 /// campaigns visit each position of an axis many times: grids, lines, several set-ups. An axis with more
 /// positions than kMaxTabulated has no table, and its values are computed at every reading.
 
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -11,23 +14,36 @@
 
 namespace volcal {
 
+/// Values of a group's functions, one per slot, from the values of its active basis functions.
+void function_values(const FunctionGroup& group, int start, const double* basis,
+                     const Eigen::VectorXd& parameters, double* values);
+
+/// The values of all functions at the tabulated positions for one parameter vector: [group][position, slot].
+using TabulatedFunctions = std::vector<std::vector<double>>;
+
 class PositionTables {
  public:
   static constexpr std::size_t kMaxTabulated = 4096;
 
   PositionTables(const Campaign& campaign, const ParameterLayout& layout);
 
-  /// Writes the values of group `group`'s active functions at a reading; returns the first active function.
-  int evaluate(const FunctionGroup& group, std::size_t group_index, const Setup& setup,
-               std::size_t setup_index, std::size_t row, double* values) const {
-    const std::size_t axis = index_of(group.axis);
-    const int support = group.basis->support();
-    const std::vector<std::uint16_t>& entry = entry_[setup_index][axis];
-    if (entry.empty()) return group.basis->evaluate(setup.readings.position[axis][row], values);
-    const Table& table = tables_[group_index];
-    const double* from = table.values.data() + static_cast<std::size_t>(support) * entry[row];
-    for (int j = 0; j < support; ++j) values[j] = from[j];
-    return table.start[entry[row]];
+  TabulatedFunctions tabulate(const ParameterLayout& layout, const Eigen::VectorXd& parameters) const;
+
+  /// Whether there is a table for this axis, and which of its positions a reading has.
+  bool has_table(std::size_t setup, std::size_t axis) const { return !entry_[setup][axis].empty(); }
+  std::size_t entry(std::size_t setup, std::size_t axis, std::size_t row) const {
+    return entry_[setup][axis][row];
+  }
+  /// Writes the `support` values of a group's active functions; returns the first active function.
+  int basis_values(std::size_t group, int support, std::size_t entry, double* values) const {
+    const Table& table = tables_[group];
+    const double* from = table.values.data() + static_cast<std::size_t>(support) * entry;
+    if (support == 4) {
+      std::copy_n(from, 4, values);
+    } else {
+      std::copy_n(from, support, values);
+    }
+    return table.start[entry];
   }
 
  private:

@@ -18,10 +18,10 @@ using testing::content;
 using ::testing::HasSubstr;
 using testing::run_program;
 
-const std::string kData = VOLCAL_TEST_DATA;
+const std::string kData = VOLCAL_SOURCE_DIR "/tests/data";
 
 TEST(DiagnoseProgram, ListsEveryKind) {
-  const auto run = run_program({"diagnose", "--list"});
+  const auto run = run_program("diagnose --list");
   EXPECT_EQ(run.exit_code, 0);
   for (const char* kind :
        {"reversal", "lead-error", "scale-expansion", "axis-coupling", "length-scale", "station-event"}) {
@@ -30,7 +30,7 @@ TEST(DiagnoseProgram, ListsEveryKind) {
 }
 
 TEST(DiagnoseProgram, AsksForACampaign) {
-  const auto run = run_program({"diagnose"});
+  const auto run = run_program("diagnose");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.errors, HasSubstr("no campaign is given"));
 }
@@ -38,16 +38,13 @@ TEST(DiagnoseProgram, AsksForACampaign) {
 class ExtendProgram : public ::testing::Test {
  protected:
   auto extend(const std::vector<std::string>& effects) {
-    std::vector<std::string> arguments = {"extend", kData + "/small/model.toml", "-o", output_};
-    for (const std::string& effect : effects) {
-      arguments.emplace_back("--effect");
-      arguments.push_back(effect);
-    }
+    std::string arguments = "extend " + kData + "/small/model.toml -o " + output_;
+    for (const std::string& effect : effects) arguments += " --effect " + effect;
     return run_program(arguments);
   }
 
   testing::ScratchFolder scratch_;
-  std::string output_ = (fs::path(scratch_.path()) / "extended.toml").string();
+  std::string output_ = (scratch_.path() / "extended.toml").string();
 };
 
 TEST_F(ExtendProgram, AddsAnEffectByName) {

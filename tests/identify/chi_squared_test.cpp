@@ -47,9 +47,9 @@ TEST(ChiSquared, LogarithmsOfFarTails) {
 /// the noncentral distribution (level 0.05, power 0.8).
 TEST(ChiSquared, DetectableNoncentrality) {
   const double level = std::log10(0.05);
-  EXPECT_NEAR(detectable_noncentrality(level, 1, 0.8), 7.849, 0.08);
-  EXPECT_NEAR(detectable_noncentrality(level, 2, 0.8), 9.635, 0.10);
-  EXPECT_NEAR(detectable_noncentrality(level, 3, 0.8), 10.903, 0.11);
+  EXPECT_NEAR(detectable_noncentrality(level, 1, 0.8), 7.849, 0.001);
+  EXPECT_NEAR(detectable_noncentrality(level, 2, 0.8), 9.635, 0.001);
+  EXPECT_NEAR(detectable_noncentrality(level, 3, 0.8), 10.903, 0.001);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 #include <random>
@@ -57,10 +58,9 @@ struct BruteForce {
       sigma(i, i) += std::pow(noise.white * problem.data.sigma[static_cast<std::size_t>(i)], 2);
     }
     root = sigma.llt().matrixL();
-    const Eigen::LDLT<Eigen::MatrixXd> ldlt(problem.prior_precision);
-    prior_root = (ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * Eigen::MatrixXd(ldlt.matrixU()) *
-                  ldlt.transpositionsP())
-                     .eval();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(problem.prior_precision);
+    prior_root =
+        eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
     jacobian = augmented(problem.jacobian, prior_root);
     residual = augmented(problem.residual, prior_root * problem.prior_mean);
   }

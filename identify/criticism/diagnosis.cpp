@@ -53,6 +53,9 @@ class Diagnostician {
     progress("noise model", 0.05);
     find_noise();
     families_ = families(model_);
+    std::erase_if(families_, [this](const Family& family) {
+      return std::ranges::find(options_.leave_out, family.name().kind) != options_.leave_out.end();
+    });
     variables_ = scan_variables(model_);
     diagnosis_.families = families_.size();
     add_step("");

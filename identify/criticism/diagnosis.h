@@ -73,6 +73,7 @@ struct DiagnoseOptions {
   bool climb = false;  ///< add effects until nothing is left
   int most_effects = 8;
   double heldout_share = 0.2;
+  std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
   std::function<void(const std::string& stage, double done)> progress;
 };
 

@@ -34,13 +34,18 @@ std::unique_ptr<ceres::LossFunction> make_loss(const MinimiseOptions& options) {
   return nullptr;
 }
 
-/// Root R and vector v with R^T R = matrix and R^T v = gradient; falls back on the visible eigenspace.
-void square_root(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient, Eigen::MatrixXd& root,
+constexpr double kContraction = 1e-3;
+constexpr double kFar = 100.0;
+constexpr double kNegligible = 1e-13;  // of the cost
+
+/// Root R and vector v with R^T R = matrix and R^T v = gradient; true for a triangular R, false when it had
+/// to fall back on the visible eigenspace.
+bool square_root(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient, Eigen::MatrixXd& root,
                  Eigen::VectorXd& vector) {
   if (const auto lower = cholesky_lower(matrix)) {
     root = lower->transpose();
     vector = lower->triangularView<Eigen::Lower>().solve(gradient);
-    return;
+    return true;
   }
   const SymmetricEigen eigen = eigen_decomposition(matrix);
   const double floor = 1e-14 * std::max(eigen.values.maxCoeff(), 0.0);
@@ -52,6 +57,7 @@ void square_root(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& gradient,
     root.row(i) = s * eigen.vectors.col(i).transpose();
     vector[i] = eigen.vectors.col(i).dot(gradient) / s;
   }
+  return false;
 }
 
 class CompressedCost final : public ceres::CostFunction {
@@ -65,35 +71,59 @@ class CompressedCost final : public ceres::CostFunction {
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const int n = datum_.size();
     const Eigen::Map<const Eigen::VectorXd> z(parameters[0], n);
-    refresh(z);
+    const bool wants_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
+    const bool is_first = root_.size() == 0;
+    if (z_.size() != z.size() || z_ != z) accumulate(z, is_first ? wants_jacobian : is_far_from_minimum());
     if (!std::isfinite(cost_)) return false;
     Eigen::Map<Eigen::VectorXd> out(residuals, n + 1);
     out.setZero();
-    if (jacobians == nullptr || jacobians[0] == nullptr) {
+    if (!wants_jacobian) {
       out[n] = std::sqrt(2.0 * cost_);
       return true;
     }
-    Eigen::MatrixXd root;
-    Eigen::VectorXd vector;
-    square_root(matrix_, gradient_, root, vector);
-    out.head(n) = vector;
-    out[n] = std::sqrt(std::max(0.0, 2.0 * cost_ - vector.squaredNorm()));
+    if (is_first || matrix_is_here_ || !matrix_serves()) renew_root();
+    out.head(n) = newton_;
+    out[n] = std::sqrt(std::max(0.0, 2.0 * cost_ - newton_.squaredNorm()));
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor> jacobian(jacobians[0], n + 1, n);
-    jacobian.topRows(n) = root;
+    jacobian.topRows(n) = root_;
     jacobian.row(n).setZero();
     return true;
   }
 
  private:
   /// Ceres asks for the cost of a step first and, when it is taken, for the Jacobian at the same point.
-  void refresh(const Eigen::Map<const Eigen::VectorXd>& z) const {
-    if (z_.size() == z.size() && z_ == z) return;
+  void accumulate(const Eigen::VectorXd& z, bool with_matrix) const {
     z_ = z;
-    const NormalEquations& sums = accumulator_.accumulate(datum_.raw(z_));
-    matrix_ = datum_.reduce_matrix(sums.matrix) + prior_.precision;
+    const NormalEquations& sums =
+        accumulator_.accumulate(datum_.raw(z_), nullptr, with_matrix ? Sums::All : Sums::AllButMatrix);
+    if (with_matrix) matrix_ = datum_.reduce_matrix(sums.matrix) + prior_.precision;
+    matrix_is_here_ = with_matrix;
     gradient_ = datum_.reduce_gradient(sums.gradient) + prior_.gradient(z_);
     cost_ = sums.cost + prior_.cost(z_);
+  }
+
+  /// The step that leads away from here is so large that the matrix will have to be renewed.
+  bool is_far_from_minimum() const {
+    const double promise = 0.5 * newton_.squaredNorm();
+    return promise > kFar * (cost_ - promise);
+  }
+
+  /// Whether the root of an earlier point still makes good steps (chord method): the step that it promises
+  /// has fallen by kContraction since the step before, or is negligible. Sets `newton_`.
+  bool matrix_serves() const {
+    const double before = newton_.norm();
+    const Eigen::VectorXd newton = root_.transpose().triangularView<Eigen::Lower>().solve(gradient_);
+    const double now = newton.norm();
+    const bool serves =
+        is_triangular_ && (now < kContraction * before || 0.5 * now * now < kNegligible * cost_);
+    if (serves) newton_ = newton;
+    return serves;
+  }
+
+  void renew_root() const {
+    if (!matrix_is_here_) accumulate(Eigen::VectorXd(z_), true);
+    is_triangular_ = square_root(matrix_, gradient_, root_, newton_);
   }
 
   NormalAccumulator& accumulator_;
@@ -101,8 +131,12 @@ class CompressedCost final : public ceres::CostFunction {
   const GaussianPrior& prior_;
   mutable Eigen::VectorXd z_;
   mutable Eigen::MatrixXd matrix_;
+  mutable bool matrix_is_here_ = false;  ///< at z_
   mutable Eigen::VectorXd gradient_;
   mutable double cost_ = 0.0;
+  mutable Eigen::MatrixXd root_;  ///< of this or an earlier point's matrix
+  mutable bool is_triangular_ = false;
+  mutable Eigen::VectorXd newton_;  ///< R^-T g: half its square is what a step promises
 };
 
 ceres::Solver::Options solver_options(const MinimiseOptions& options) {

@@ -2,9 +2,11 @@
 /// Weighted least squares with priors by Ceres. The readings enter as one compressed cost function: it
 /// accumulates M = J^T W J and the gradient g, factors M + prior = L L^T and hands Ceres the Jacobian L^T
 /// with residual (L^-1 g, sqrt(2 cost - |L^-1 g|^2)), so that Ceres sees the exact cost, gradient and
-/// Gauss-Newton model and keeps its trust region and convergence tests. `SolverKind::PerReading` is the plain
-/// problem, one residual block per reading, solved by SuiteSparse's sparse Cholesky: the reference that tests
-/// hold the compressed form to, and the path for what it cannot take.
+/// Gauss-Newton model and keeps its trust region and convergence tests. While steps contract, M is kept from
+/// an earlier point (chord method: exact cost and gradient, M of a Jacobian that hardly changes).
+/// `SolverKind::PerReading` is the plain problem, one residual block per reading, solved by SuiteSparse's
+/// sparse Cholesky: the reference that tests hold the compressed form to, and the path for what it cannot
+/// take.
 
 #include <Eigen/Core>
 #include <string>

@@ -78,34 +78,58 @@ void NormalAccumulator::for_each_chunk(const Work& work) const {
 }
 
 const NormalEquations& NormalAccumulator::accumulate(const Eigen::VectorXd& parameters,
-                                                     const std::vector<bool>* include) {
+                                                     const std::vector<bool>* include, Sums what) {
   const TabulatedFunctions tabulated = index_.model().tabulate(parameters);
   sums_.resize(chunk_ends_.size());
-  for_each_chunk(
-      [&](std::size_t chunk) { accumulate_chunk(chunk, parameters, tabulated, include, sums_[chunk]); });
+  for_each_chunk([&](std::size_t chunk) {
+    accumulate_chunk(chunk, parameters, tabulated, include, what, sums_[chunk]);
+  });
   NormalEquations& total = sums_[0];
   for (std::size_t chunk = 1; chunk < sums_.size(); ++chunk) {
-    total.matrix += sums_[chunk].matrix;
+    if (what == Sums::All) total.matrix += sums_[chunk].matrix;
     total.gradient += sums_[chunk].gradient;
     total.cost += sums_[chunk].cost;
     total.squares += sums_[chunk].squares;
     total.observations += sums_[chunk].observations;
   }
-  symmetrise_from_upper(total.matrix);
+  if (what == Sums::All) symmetrise_from_upper(total.matrix);
   return total;
 }
 
 void NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
                                          const TabulatedFunctions& tabulated,
-                                         const std::vector<bool>* include, NormalEquations& sums) const {
+                                         const std::vector<bool>* include, Sums what,
+                                         NormalEquations& sums) const {
+  const ParameterLayout& layout = index_.model().layout();
+  sums.gradient.setZero(layout.size);
+  if (what == Sums::AllButMatrix) {
+    visit_chunk(chunk, parameters, tabulated, include, sums,
+                [&](const RowJacobian& row, int channel, double weight, double error) {
+                  const double weighted = weight * error;
+                  for_each_derivative(layout, row, channel, [&](int parameter, double derivative) {
+                    sums.gradient[parameter] += weighted * derivative;
+                  });
+                });
+    return;
+  }
+  sums.matrix.setZero(layout.size, layout.size);
+  NormalTile tile(layout, index_.model().shared_tail_size(), sums.matrix, sums.gradient);
+  visit_chunk(chunk, parameters, tabulated, include, sums,
+              [&](const RowJacobian& row, int channel, double weight, double error) {
+                tile.add(row, channel, std::sqrt(weight), error);
+              });
+  tile.flush();
+}
+
+/// Cost, squares and count; `add` gets every observation's row, weight (of the loss, too) and error.
+template <class Add>
+void NormalAccumulator::visit_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
+                                    const TabulatedFunctions& tabulated, const std::vector<bool>* include,
+                                    NormalEquations& sums, const Add& add) const {
   const MeasurementModel& model = index_.model();
   const auto& setups = model.campaign().setups;
-  const int size = model.layout().size;
-  sums.matrix.setZero(size, size);
-  sums.gradient.setZero(size);
   sums.cost = sums.squares = 0.0;
   sums.observations = 0;
-  NormalTile tile(model.layout(), model.shared_tail_size(), sums.matrix, sums.gradient);
   RowJacobian row;
   double rho[3] = {0.0, 1.0, 0.0};
   const std::size_t begin = chunk == 0 ? 0 : chunk_ends_[chunk - 1];
@@ -125,10 +149,9 @@ void NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eigen::VectorX
       sums.cost += 0.5 * rho[0];
       sums.squares += square;
       ++sums.observations;
-      tile.add(row, channel, std::sqrt(weight * rho[1]), error);
+      add(row, channel, weight * rho[1], error);
     }
   }
-  tile.flush();
 }
 
 }  // namespace volcal

@@ -50,20 +50,27 @@ class ReadingIndex {
   std::vector<Reading> sorted_;
 };
 
+/// What an accumulation computes: M costs more than all the rest.
+enum class Sums { All, AllButMatrix };
+
 class NormalAccumulator {
  public:
   /// `weight`: 1/sigma^2 per observation, 0 = left out. `loss` may be null (least squares).
   NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                     const ceres::LossFunction* loss, int threads);
 
-  /// All readings, or only those of setups for which `include[setup]`. The sums hold until the next call.
+  /// All readings, or only those of setups for which `include[setup]`. The sums hold until the next call;
+  /// AllButMatrix leaves an undefined M.
   const NormalEquations& accumulate(const Eigen::VectorXd& parameters,
-                                    const std::vector<bool>* include = nullptr);
+                                    const std::vector<bool>* include = nullptr, Sums what = Sums::All);
 
  private:
   void accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
-                        const TabulatedFunctions& tabulated, const std::vector<bool>* include,
+                        const TabulatedFunctions& tabulated, const std::vector<bool>* include, Sums what,
                         NormalEquations& sums) const;
+  template <class Add>
+  void visit_chunk(std::size_t chunk, const Eigen::VectorXd& parameters, const TabulatedFunctions& tabulated,
+                   const std::vector<bool>* include, NormalEquations& sums, const Add& add) const;
   template <class Work>
   void for_each_chunk(const Work& work) const;
 

@@ -109,8 +109,8 @@ class Diagnostician {
   }
 
   void test() {
-    tests_ = test_families(model_, families_, *projector_);
-    generic_ = generic_scan(model_, variables_, *projector_);
+    tests_ = test_families(model_, families_, *projector_, options_.threads);
+    generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
     diagnosis_.generic_tests = generic_.size();
     log10_families_ = std::log10(static_cast<double>(std::max<std::size_t>(families_.size(), 1)));
     log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));

@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
+#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
 
-constexpr Eigen::Index kBlockColumns = 768;
+constexpr Eigen::Index kBlockColumns = 256;
 constexpr int kLowestExtraDegree = 4;
 constexpr int kHighestExtraDegree = 11;
 
@@ -27,13 +29,11 @@ double legendre(int degree, double x) {
 }
 
 /// Higher polynomials of an axis' own position: what a function with too few knots leaves.
-Eigen::MatrixXd resolution_columns(const LinearModel& model, ErrorSymbol symbol) {
+void resolution_columns(const LinearModel& model, ErrorSymbol symbol, Eigen::Ref<Eigen::MatrixXd> columns) {
   const Campaign& campaign = model.campaign();
   const MeasuredRange range = measured_range(campaign, symbol.axis);
   const int target =
       disturbance_of({.kind = TargetKind::Motion, .symbol = symbol, .component = 0}, campaign.machine);
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()),
-                          kHighestExtraDegree - kLowestExtraDegree + 1);
   for (std::size_t i = 0; i < model.size(); ++i) {
     const auto& [setup, row, channel] = model.observations()[i];
     const double q = campaign.setups[setup].readings.position[index_of(symbol.axis)][row];
@@ -44,7 +44,6 @@ Eigen::MatrixXd resolution_columns(const LinearModel& model, ErrorSymbol symbol)
       columns(at, degree - kLowestExtraDegree) = legendre(degree, x) * model.sensitivity(at, target);
     }
   }
-  return columns;
 }
 
 /// Effective number of independent directions among unit vectors with this Gram matrix: (sum l)^2 / sum l^2
@@ -66,6 +65,21 @@ double scan_multiplicity(const ProjectedColumns& projected, Eigen::Index first, 
   return effective_number(gram);
 }
 
+/// Families that are tested together, and the columns of all their shapes.
+struct FamilyBlock {
+  std::vector<std::size_t> family;
+  Eigen::Index columns = 0;
+};
+
+void fill_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                  Eigen::Ref<Eigen::MatrixXd> out) {
+  if (family.resolution) {
+    resolution_columns(model, *family.resolution, out);
+  } else {
+    model.columns(*family.effect, shape, out);
+  }
+}
+
 class FamilyTester {
  public:
   FamilyTester(const LinearModel& model, const std::vector<Family>& families, const Projector& projector)
@@ -74,46 +88,47 @@ class FamilyTester {
     log_count_ = std::log(static_cast<double>(projector.observations()));
   }
 
-  std::vector<FamilyTest> run() {
-    for (std::size_t i = 0; i < families_.size(); ++i) {
-      add(i);
-      if (used_ >= kBlockColumns) test_block();
-    }
-    test_block();
+  std::vector<FamilyTest> run(int threads) {
+    const std::vector<FamilyBlock> all = blocks();
+    run_parallel(all.size(), threads, [&](std::size_t i) { test(all[i]); });
     return std::move(tests_);
   }
 
  private:
-  void add(std::size_t family) {
-    for (const Eigen::VectorXd& shape : families_[family].scan) {
-      parts_.push_back(family_columns(model_, families_[family], shape));
-      used_ += parts_.back().cols();
-    }
-    pending_.push_back(family);
+  Eigen::Index shapes(std::size_t family) const {
+    return static_cast<Eigen::Index>(families_[family].scan.size());
   }
 
-  void test_block() {
-    if (pending_.empty()) return;
-    Eigen::MatrixXd block(static_cast<Eigen::Index>(model_.size()), used_);
+  /// Widest first.
+  std::vector<FamilyBlock> blocks() const {
+    std::vector<FamilyBlock> all;
+    for (std::size_t family = 0; family < families_.size(); ++family) {
+      const Eigen::Index columns = shapes(family) * families_[family].amplitudes();
+      if (all.empty() || all.back().columns + columns > kBlockColumns) all.emplace_back();
+      all.back().family.push_back(family);
+      all.back().columns += columns;
+    }
+    std::ranges::stable_sort(all, std::greater{}, &FamilyBlock::columns);
+    return all;
+  }
+
+  void test(const FamilyBlock& block) {
+    Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), block.columns);
     Eigen::Index at = 0;
-    for (const Eigen::MatrixXd& part : parts_) {
-      block.middleCols(at, part.cols()) = part;
-      at += part.cols();
+    for (const std::size_t family : block.family) {
+      const Eigen::Index amplitudes = families_[family].amplitudes();
+      for (const Eigen::VectorXd& shape : families_[family].scan) {
+        fill_columns(model_, families_[family], shape, columns.middleCols(at, amplitudes));
+        at += amplitudes;
+      }
     }
-    std::vector<Eigen::Index> width;
-    for (const Eigen::MatrixXd& part : parts_) width.push_back(part.cols());
-    parts_.clear();
-    const ProjectedColumns projected = projector_.project(std::move(block));
+    const ProjectedColumns projected = projector_.project(std::move(columns));
     at = 0;
-    std::size_t part = 0;
-    for (const std::size_t family : pending_) {
-      const Eigen::Index columns = width[part];
-      tests_[family] = best_shape(projected, family, at, columns);
-      at += columns * static_cast<Eigen::Index>(families_[family].scan.size());
-      part += families_[family].scan.size();
+    for (const std::size_t family : block.family) {
+      const Eigen::Index amplitudes = families_[family].amplitudes();
+      tests_[family] = best_shape(projected, family, at, amplitudes);
+      at += amplitudes * shapes(family);
     }
-    pending_.clear();
-    used_ = 0;
   }
 
   FamilyTest best_shape(const ProjectedColumns& projected, std::size_t family, Eigen::Index first,
@@ -139,9 +154,6 @@ class FamilyTester {
   const std::vector<Family>& families_;
   const Projector& projector_;
   std::vector<FamilyTest> tests_;
-  std::vector<std::size_t> pending_;
-  std::vector<Eigen::MatrixXd> parts_;
-  Eigen::Index used_ = 0;
   double log_count_ = 0.0;
 };
 
@@ -152,6 +164,11 @@ std::string Family::label() const {
   std::string label = effect->amplitudes().front().label;
   if (effect->amplitudes().size() > 1) label = label.substr(0, label.rfind(' '));
   return label;
+}
+
+Eigen::Index Family::amplitudes() const {
+  return resolution ? kHighestExtraDegree - kLowestExtraDegree + 1
+                    : static_cast<Eigen::Index>(effect->amplitudes().size());
 }
 
 EffectName Family::name() const {
@@ -178,13 +195,14 @@ std::vector<Family> families(const LinearModel& model) {
 }
 
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {
-  return family.resolution ? resolution_columns(model, *family.resolution)
-                           : model.columns(*family.effect, shape);
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()), family.amplitudes());
+  fill_columns(model, family, shape, columns);
+  return columns;
 }
 
 std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
-                                      const Projector& projector) {
-  return FamilyTester(model, families, projector).run();
+                                      const Projector& projector, int threads) {
+  return FamilyTester(model, families, projector).run(threads);
 }
 
 }  // namespace volcal

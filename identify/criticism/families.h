@@ -21,6 +21,7 @@ struct Family {
 
   std::string label() const;
   EffectName name() const;
+  Eigen::Index amplitudes() const;
 };
 
 /// The model's own effects are left out.
@@ -39,8 +40,9 @@ struct FamilyTest {
   double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof
 };
 
-/// Tests of all families, in their order. Blocks of columns bound the memory.
+/// Tests of all families, in their order, the same for any number of threads. Blocks of columns bound the
+/// memory: 2 kB per observation and thread, and those of the widest scan.
 std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
-                                      const Projector& projector);
+                                      const Projector& projector, int threads);
 
 }  // namespace volcal

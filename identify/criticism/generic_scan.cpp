@@ -5,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/score_test.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -14,39 +15,24 @@ namespace {
 
 constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
-constexpr int kDirections = 4;
+constexpr std::size_t kDirections = 4;
+constexpr Eigen::Index kBlockColumns = 256;
 
-using Columns = std::vector<Eigen::VectorXd>;
+/// What the columns of a variable are made of.
+struct Features {
+  Eigen::MatrixXd powers;
+  Eigen::MatrixXd waves;  ///< cos(k pi (v + 1) / 2) / k: a Brownian-like prior, rough enough for kinks
+};
 
-Columns powers(const ScanVariable& a) {
-  if (a.two_valued) return {a.value};
-  return {a.value, a.value.array().square(), a.value.array().cube()};
-}
-
-Columns products(const ScanVariable& a, const ScanVariable& b) {
-  Columns columns = {a.value.cwiseProduct(b.value)};
-  if (!a.two_valued) columns.emplace_back(columns[0].cwiseProduct(a.value));
-  if (!b.two_valued) columns.emplace_back(columns[0].cwiseProduct(b.value));
-  return columns;
-}
-
-/// cos(k pi (v + 1) / 2) / k: a Brownian-like prior, rough enough for kinks.
-Columns waves(const ScanVariable& a, int count) {
-  if (a.two_valued) return {a.value};
-  Columns columns;
-  for (int k = 1; k <= count; ++k) {
-    columns.emplace_back(((a.value.array() + 1.0) * (0.5 * k * std::numbers::pi)).cos() / k);
+Features features_of(const ScanVariable& variable) {
+  if (variable.two_valued) return {variable.value, variable.value};
+  const Eigen::ArrayXd v = variable.value.array();
+  Features features{Eigen::MatrixXd(v.size(), 3), Eigen::MatrixXd(v.size(), kSingleWaves)};
+  features.powers << v, v.square(), v.cube();
+  for (int k = 1; k <= kSingleWaves; ++k) {
+    features.waves.col(k - 1) = ((v + 1.0) * (0.5 * k * std::numbers::pi)).cos() / k;
   }
-  return columns;
-}
-
-Columns wave_products(const ScanVariable& a, const ScanVariable& b) {
-  Columns columns;
-  const Columns of_b = waves(b, kPairWaves);
-  for (const Eigen::VectorXd& left : waves(a, kPairWaves)) {
-    for (const Eigen::VectorXd& right : of_b) columns.emplace_back(left.cwiseProduct(right));
-  }
-  return columns;
+  return features;
 }
 
 void add_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value) {
@@ -58,56 +44,120 @@ void add_variable(std::vector<ScanVariable>& variables, const std::string& name,
   variables.push_back({name, std::move(value), two_valued});
 }
 
+/// One variable, or two.
+struct ScanItem {
+  std::size_t a = 0;
+  std::size_t b = 0;  ///< same as a: one
+  Eigen::Index polynomials = 0;
+  Eigen::Index waves = 0;
+  std::size_t first_test = 0;
+
+  Eigen::Index columns() const { return static_cast<Eigen::Index>(kDirections) * (polynomials + waves); }
+};
+
+struct ScanBlock {
+  std::vector<ScanItem> items;
+  Eigen::Index columns = 0;
+};
+
 class GenericScanner {
  public:
   GenericScanner(const LinearModel& model, const std::vector<ScanVariable>& variables,
                  const Projector& projector)
-      : model_(model), variables_(variables), projector_(projector) {
-    for (int k = 0; k < kDirections; ++k) direction_[k] = model.direction(k);
+      : model_(model), variables_(variables), projector_(projector), typical_sigma_(typical_sigma()) {
+    for (std::size_t k = 0; k < kDirections; ++k) direction_[k] = model.direction(static_cast<int>(k));
+    for (const ScanVariable& variable : variables) features_.push_back(features_of(variable));
     log_count_ = std::log(static_cast<double>(projector.observations()));
   }
 
-  std::vector<GenericTest> run() {
-    for (std::size_t i = 0; i < variables_.size(); ++i) {
-      const ScanVariable& a = variables_[i];
-      test({a.name}, powers(a), waves(a, kSingleWaves));
-      for (std::size_t j = i + 1; j < variables_.size(); ++j) {
-        const ScanVariable& b = variables_[j];
-        if (exclude_each_other(a, b)) continue;
-        test({a.name, b.name}, products(a, b), wave_products(a, b));
-      }
-    }
+  std::vector<GenericTest> run(int threads) {
+    const std::vector<ScanBlock> all = blocks();
+    run_parallel(all.size(), threads, [&](std::size_t i) { test(all[i]); });
     return std::move(tests_);
   }
 
  private:
+  std::vector<ScanBlock> blocks() {
+    std::vector<ScanBlock> all;
+    std::size_t tests = 0;
+    const auto add = [&](ScanItem item) {
+      if (all.empty() || all.back().columns + item.columns() > kBlockColumns) all.emplace_back();
+      item.first_test = tests;
+      all.back().items.push_back(item);
+      all.back().columns += item.columns();
+      tests += 2 * kDirections;
+    };
+    for (std::size_t a = 0; a < variables_.size(); ++a) {
+      add({a, a, features_[a].powers.cols(), features_[a].waves.cols()});
+      for (std::size_t b = a + 1; b < variables_.size(); ++b) {
+        if (exclude_each_other(variables_[a], variables_[b])) continue;
+        add({a, b, 1 + (variables_[a].two_valued ? 0 : 1) + (variables_[b].two_valued ? 0 : 1),
+             pair_waves(a) * pair_waves(b)});
+      }
+    }
+    tests_.resize(tests);
+    return all;
+  }
+
+  Eigen::Index pair_waves(std::size_t variable) const {
+    return std::min<Eigen::Index>(kPairWaves, features_[variable].waves.cols());
+  }
+
   /// Indicators of tools, and of stations, do not meet in one reading.
   static bool exclude_each_other(const ScanVariable& a, const ScanVariable& b) {
     const auto family = [](const std::string& name) { return name.substr(0, name.find(' ')); };
     return a.name.find(' ') != std::string::npos && family(a.name) == family(b.name);
   }
 
-  void test(const std::vector<std::string>& names, const Columns& polynomials, const Columns& features) {
-    const auto count = static_cast<Eigen::Index>(polynomials.size());
-    const auto wide = static_cast<Eigen::Index>(features.size());
-    Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), kDirections * (count + wide));
-    for (int d = 0; d < kDirections; ++d) {
-      Eigen::Index at = d * (count + wide);
-      for (const Eigen::VectorXd& column : polynomials)
-        columns.col(at++) = column.cwiseProduct(direction_[d]);
-      for (const Eigen::VectorXd& column : features) columns.col(at++) = column.cwiseProduct(direction_[d]);
+  /// Of every direction: polynomials, then waves.
+  void fill(const ScanItem& item, Eigen::Ref<Eigen::MatrixXd> columns) const {
+    Eigen::Index at = 0;
+    for (const Eigen::VectorXd& direction : direction_) {
+      if (item.a == item.b) {
+        const Features& own = features_[item.a];
+        columns.middleCols(at, item.polynomials) = direction.asDiagonal() * own.powers;
+        columns.middleCols(at + item.polynomials, item.waves) = direction.asDiagonal() * own.waves;
+        at += item.polynomials + item.waves;
+        continue;
+      }
+      const ScanVariable &a = variables_[item.a], &b = variables_[item.b];
+      const Eigen::VectorXd product = a.value.cwiseProduct(b.value).cwiseProduct(direction);
+      columns.col(at++) = product;
+      if (!a.two_valued) columns.col(at++) = product.cwiseProduct(a.value);
+      if (!b.two_valued) columns.col(at++) = product.cwiseProduct(b.value);
+      for (Eigen::Index k = 0; k < pair_waves(item.a); ++k) {
+        const Eigen::VectorXd left = features_[item.a].waves.col(k).cwiseProduct(direction);
+        columns.middleCols(at, pair_waves(item.b)) =
+            left.asDiagonal() * features_[item.b].waves.leftCols(pair_waves(item.b));
+        at += pair_waves(item.b);
+      }
+    }
+  }
+
+  void test(const ScanBlock& block) {
+    Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), block.columns);
+    Eigen::Index at = 0;
+    for (const ScanItem& item : block.items) {
+      fill(item, columns.middleCols(at, item.columns()));
+      at += item.columns();
     }
     const ProjectedColumns projected = projector_.project(std::move(columns));
-    for (int d = 0; d < kDirections; ++d) {
-      const Eigen::Index at = d * (count + wide);
-      add_polynomial(names, d, score_test(projected, at, count));
-      add_kernel(names, d, projected, at + count, wide);
+    at = 0;
+    for (const ScanItem& item : block.items) {
+      std::vector<std::string> names = {variables_[item.a].name};
+      if (item.b != item.a) names.push_back(variables_[item.b].name);
+      for (std::size_t d = 0; d < kDirections; ++d) {
+        tests_[item.first_test + 2 * d] = polynomial(names, d, score_test(projected, at, item.polynomials));
+        at += item.polynomials;
+        tests_[item.first_test + 2 * d + 1] = kernel(names, d, projected, at, item.waves);
+        at += item.waves;
+      }
     }
   }
 
   /// The best fit's size follows from the test: LM = |g~ a|^2 in units of the noise.
   double explained_rms(double lm) const {
-    return std::sqrt(std::max(0.0, lm) / static_cast<double>(projector_.observations())) * typical_sigma();
+    return std::sqrt(std::max(0.0, lm) / static_cast<double>(projector_.observations())) * typical_sigma_;
   }
 
   double typical_sigma() const {
@@ -121,14 +171,20 @@ class GenericScanner {
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
   }
 
-  void add_polynomial(const std::vector<std::string>& names, int direction, const ScoreTest& score) {
-    tests_.push_back({names, kScanDirections[direction], false, score.log10_p, score.lm,
-                      static_cast<double>(score.dof), score.lm - score.dof * log_count_,
-                      explained_rms(score.lm)});
+  GenericTest polynomial(const std::vector<std::string>& names, std::size_t direction,
+                         const ScoreTest& score) const {
+    return {names,
+            kScanDirections[direction],
+            false,
+            score.log10_p,
+            score.lm,
+            static_cast<double>(score.dof),
+            score.lm - score.dof * log_count_,
+            explained_rms(score.lm)};
   }
 
-  void add_kernel(const std::vector<std::string>& names, int direction, const ProjectedColumns& projected,
-                  Eigen::Index first, Eigen::Index columns) {
+  GenericTest kernel(const std::vector<std::string>& names, std::size_t direction,
+                     const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) const {
     const Eigen::MatrixXd gram = projected.gram(first, columns);
     const double trace = gram.trace();
     const double floor = kInvisibleShare * projected.norm.segment(first, columns).squaredNorm();
@@ -140,13 +196,15 @@ class GenericScanner {
       test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
       test.rms = explained_rms(test.lm - test.dof);
     }
-    tests_.push_back(test);
+    return test;
   }
 
   const LinearModel& model_;
   const std::vector<ScanVariable>& variables_;
   const Projector& projector_;
+  double typical_sigma_;
   Eigen::VectorXd direction_[kDirections];
+  std::vector<Features> features_;
   std::vector<GenericTest> tests_;
   double log_count_ = 0.0;
 };
@@ -208,8 +266,8 @@ std::vector<ScanVariable> scan_variables(const LinearModel& model) {
 }
 
 std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,
-                                      const Projector& projector) {
-  return GenericScanner(model, variables, projector).run();
+                                      const Projector& projector, int threads) {
+  return GenericScanner(model, variables, projector).run(threads);
 }
 
 }  // namespace volcal

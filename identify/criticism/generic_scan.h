@@ -34,8 +34,8 @@ struct GenericTest {
   double rms = 0.0;   ///< SI: root mean square over the readings of what it would explain
 };
 
-/// All tests, polynomials and kernels.
+/// All tests, polynomials and kernels; the same for any number of threads.
 std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,
-                                      const Projector& projector);
+                                      const Projector& projector, int threads);
 
 }  // namespace volcal

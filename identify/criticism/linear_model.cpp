@@ -31,6 +31,7 @@ void LinearModel::add_observations(const FitResult& result) {
   MeasurementModel::DisturbanceRows disturbance;
   for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
     const Readings& readings = campaign_.setups[setup].readings;
+    first_.push_back(static_cast<Eigen::Index>(observations_.size()));
     for (std::size_t i = 0; i < readings.size(); ++i) {
       model_.linearize(setup, i, result.parameters, row);
       model_.disturbance_rows(setup, i, result.parameters, disturbance);
@@ -47,6 +48,7 @@ void LinearModel::add_observations(const FitResult& result) {
       }
     }
   }
+  first_.push_back(static_cast<Eigen::Index>(observations_.size()));
 }
 
 void LinearModel::add_sequences() {
@@ -71,28 +73,27 @@ void LinearModel::add_sequences() {
   }
 }
 
-Eigen::MatrixXd LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape) const {
-  std::vector<int> target;
-  for (const EffectAmplitude& amplitude : effect.amplitudes()) {
-    target.push_back(disturbance_of(amplitude.target, campaign_.machine));
-  }
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(size()), static_cast<Eigen::Index>(target.size()));
-  std::size_t setup = views_.size();
-  Eigen::MatrixXd drivers;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const Observation& observation = observations_[i];
-    if (observation.setup != setup) {
-      setup = observation.setup;
-      drivers = effect.drivers(views_[setup], shape);
-    }
-    const auto at = static_cast<Eigen::Index>(i);
-    for (std::size_t k = 0; k < target.size(); ++k) {
+void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape,
+                          Eigen::Ref<Eigen::MatrixXd> out) const {
+  const auto& amplitudes = effect.amplitudes();
+  for (std::size_t setup = 0; setup < views_.size(); ++setup) {
+    const Eigen::Index first = first_[setup], count = first_[setup + 1] - first;
+    const Eigen::MatrixXd drivers = effect.drivers(views_[setup], shape);
+    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
       const auto column = static_cast<Eigen::Index>(k);
-      columns(at, column) =
-          drivers(static_cast<Eigen::Index>(observation.row), column) * sensitivity_(at, target[k]);
+      const auto sensitivity =
+          sensitivity_.col(disturbance_of(amplitudes[k].target, campaign_.machine)).segment(first, count);
+      auto target = out.col(column).segment(first, count);
+      if (drivers.rows() == count) {
+        target = drivers.col(column).cwiseProduct(sensitivity);
+        continue;
+      }
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const std::size_t row = observations_[static_cast<std::size_t>(first + i)].row;
+        target[i] = drivers(static_cast<Eigen::Index>(row), column) * sensitivity[i];
+      }
     }
   }
-  return columns;
 }
 
 Eigen::VectorXd LinearModel::direction(int which) const {

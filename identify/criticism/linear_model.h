@@ -36,7 +36,7 @@ class LinearModel {
   const NoiseProblem& problem() const { return problem_; }
 
   /// Columns of the readings that an effect's amplitudes would add: observations x amplitudes.
-  Eigen::MatrixXd columns(const Effect& effect, const Eigen::VectorXd& shape) const;
+  void columns(const Effect& effect, const Eigen::VectorXd& shape, Eigen::Ref<Eigen::MatrixXd> out) const;
   double sensitivity(Eigen::Index observation, int disturbance) const {
     return sensitivity_(observation, disturbance);
   }
@@ -51,9 +51,10 @@ class LinearModel {
   const Campaign& campaign_;
   MeasurementModel model_;
   std::vector<Observation> observations_;
+  std::vector<Eigen::Index> first_;  ///< observation of every setup, and the end
   std::vector<std::string> instruments_;
   std::vector<SetupView> views_;
-  Eigen::Matrix<double, Eigen::Dynamic, kDisturbances, Eigen::RowMajor> sensitivity_;
+  Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;
   NoiseProblem problem_;
 };
 

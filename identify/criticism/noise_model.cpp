@@ -1,15 +1,14 @@
 #include "volcal/identify/criticism/noise_model.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <unordered_map>
 
+#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/solve/dense.h"
 
 namespace volcal {
@@ -23,20 +22,6 @@ constexpr std::size_t kFactorsPerLog = 8;  // variances multiplied before a loga
 
 void require(bool condition, const char* problem) {
   if (!condition) throw std::invalid_argument(std::string("noise model: ") + problem);
-}
-
-template <class Work>
-void run_parallel(std::size_t items, int threads, const Work& work) {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t item = next++; item < items; item = next++) work(item);
-  };
-  std::vector<std::thread> workers;
-  const int extra = std::min(threads, static_cast<int>(items)) - 1;
-  workers.reserve(static_cast<std::size_t>(std::max(extra, 0)));
-  for (int i = 0; i < extra; ++i) workers.emplace_back(run);
-  run();
-  for (std::thread& worker : workers) worker.join();
 }
 
 void check(const NoiseData& data) {

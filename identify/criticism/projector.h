@@ -9,7 +9,6 @@
 /// (added variables in generalised least squares; the prior counts as further observations). Nothing of size
 /// N x N and no orthogonal basis is formed.
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <span>
 #include <vector>
@@ -37,7 +36,8 @@ class Projector {
   Projector(const NoiseProblem& problem, const NoiseData& data, std::span<const NoiseParameters> noise,
             int threads);
 
-  ProjectedColumns project(Eigen::MatrixXd columns) const;
+  /// On `threads` of its own; may be called from several threads at once.
+  ProjectedColumns project(Eigen::MatrixXd columns, int threads = 1) const;
   /// Takes columns into the model, without prior.
   void accept(const Eigen::MatrixXd& columns);
 
@@ -50,8 +50,8 @@ class Projector {
   /// |r~|^2: what the model leaves, in units of the noise.
   double residual_squares() const;
   std::size_t observations() const { return whitener_.observations(); }
-  Eigen::Index parameters() const { return whitened_.cols(); }
-  Eigen::Index accepted() const { return whitened_.cols() - base_parameters_; }
+  Eigen::Index parameters() const { return whitened_.cols() - 1; }
+  Eigen::Index accepted() const { return parameters() - base_parameters_; }
 
  private:
   void factorise();
@@ -59,13 +59,13 @@ class Projector {
   Whitener whitener_;
   int threads_;
   Eigen::Index base_parameters_;
-  Eigen::MatrixXd whitened_;   ///< N x p, columns divided by scale_
-  Eigen::VectorXd residual_;   ///< whitened
+  Eigen::MatrixXd whitened_;   ///< N x (p + 1): columns of the model, residual last
   Eigen::MatrixXd precision_;  ///< of the base parameters, not scaled
   Eigen::VectorXd pull_;       ///< P m, base parameters
   double prior_squares_ = 0.0;
+  double residual_squares_ = 0.0;
   Eigen::VectorXd scale_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd lower_;    ///< C of the columns times scale_
   Eigen::VectorXd rotated_;  ///< C^-1 (J_w^T r_w + P m)
 };
 

@@ -109,7 +109,7 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   Eigen::VectorXd right = transform_.transpose() * (precision * mean);
   for (Group& group : groups_) {
     Eigen::MatrixXd rows(kept + 1, group.rows.cols());
-    rows.topRows(kept).noalias() = transform_.transpose() * group.rows.topRows(p);
+    rows.topRows(kept) = transposed_product(transform_, group.rows.topRows(p));
     rows.row(kept) = group.rows.row(p);
     group.rows = std::move(rows);
     const Eigen::Map<const Eigen::ArrayXd> sigma(group.data.sigma.data(), group.rows.cols());

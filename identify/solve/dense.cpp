@@ -14,6 +14,11 @@ void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const 
              double* work, const int* lwork, int* iwork, const int* liwork, int* info);
 void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
             const double* a, const int* lda, const double* beta, double* c, const int* ldc);
+void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
+            const double* alpha, const double* a, const int* lda, const double* b, const int* ldb,
+            const double* beta, double* c, const int* ldc);
+void dtrsm_(const char* side, const char* uplo, const char* transa, const char* diag, const int* m,
+            const int* n, const double* alpha, const double* a, const int* lda, double* b, const int* ldb);
 }
 // NOLINTEND(readability-identifier-naming)
 
@@ -77,6 +82,38 @@ void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
   const double one = 1.0, zero = 0.0;
   const int ldc = static_cast<int>(c.rows());
   dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
+}
+
+Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& b) {
+  use_single_threaded_blas();
+  const double one = 1.0, zero = 0.0;
+  const int m = static_cast<int>(a.cols()), n = static_cast<int>(b.cols()), k = static_cast<int>(a.rows());
+  const int lda = static_cast<int>(a.outerStride()), ldb = static_cast<int>(b.outerStride());
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(m, n);
+  if (m == 0 || n == 0 || k == 0) return product;
+  dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &zero, product.data(), &m);
+  return product;
+}
+
+Eigen::MatrixXd gram_of_columns(const Eigen::Ref<const Eigen::MatrixXd>& a) {
+  use_single_threaded_blas();
+  const double one = 1.0, zero = 0.0;
+  const int n = static_cast<int>(a.cols()), k = static_cast<int>(a.rows());
+  const int lda = static_cast<int>(a.outerStride());
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
+  if (n == 0 || k == 0) return gram;
+  dsyrk_("U", "T", &n, &k, &one, a.data(), &lda, &zero, gram.data(), &n);
+  symmetrise_from_upper(gram);
+  return gram;
+}
+
+void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b) {
+  use_single_threaded_blas();
+  const double one = 1.0;
+  const int m = static_cast<int>(b.rows()), n = static_cast<int>(b.cols());
+  if (m == 0 || n == 0) return;
+  dtrsm_("L", "L", "N", "N", &m, &n, &one, lower.data(), &m, b.data(), &m);
 }
 
 void symmetrise_from_upper(Eigen::MatrixXd& matrix) {

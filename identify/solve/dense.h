@@ -27,6 +27,13 @@ SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric);
 
 /// upper(C) = A A^T, A is n x k with leading dimension n.
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
+/// A^T B.
+Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& b);
+/// A^T A, full.
+Eigen::MatrixXd gram_of_columns(const Eigen::Ref<const Eigen::MatrixXd>& a);
+/// B = L^-1 B, L lower triangular.
+void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b);
 /// Copies the upper triangle to the lower.
 void symmetrise_from_upper(Eigen::MatrixXd& matrix);
 

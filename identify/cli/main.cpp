@@ -1,14 +1,27 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/io/nearest_name.h"
 #include "volcal/model/description/errors.h"
 
 namespace {
+
+/// What is wrong with a command line, and a remedy.
+std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (first.empty() || first.front() == '-') return error.what();
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  if (std::ranges::find(names, first) != names.end()) return error.what();
+  return "there is no command \"" + first + "\"; " + volcal::suggest_name(first, names, "commands");
+}
 
 int run(int argc, char** argv) {
   using volcal::cli::commands;
@@ -32,7 +45,7 @@ int run(int argc, char** argv) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "volcal: %s\nRun `volcal --help` or `volcal COMMAND --help` to see what there is.\n",
-                 error.what());
+                 explain(app, error, argc, argv).c_str());
     return volcal::cli::kBadInput;
   }
   return work.at(app.get_subcommands().front())();

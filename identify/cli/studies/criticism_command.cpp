@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/studies/criticism.h"
+#include "volcal/identify/cli/studies/criticism_figures.h"
+#include "volcal/identify/cli/studies/criticism_plan.h"
+#include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/report/text_tables.h"
+
+namespace volcal::cli {
+namespace {
+
+struct Arguments {
+  CriticismOptions options;
+  bool json = false;
+};
+
+std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
+  TextTable figures({{"", Align::Left}, {"share (95 % interval), count", Align::Left}, {"goal", Align::Left}},
+                    "Figures; s is the visible signal to noise |g~ a|");
+  for (const Figure& figure : figures_of(campaigns))
+    figures.add_row({figure.what, figure.share.text(), figure.goal});
+  TextTable detections(
+      {{"effect", Align::Left}, {"campaigns"}, {"ratio"}, {"95 % interval"}},
+      "Amplitude found in 80 % of campaigns over the stated detectable one (goal 0.9 to 1.1)");
+  for (const Detection& detection : detections_of(campaigns)) {
+    detections.add_row({detection.effect, count_number(detection.campaigns), fixed_number(detection.ratio, 3),
+                        fixed_number(detection.low, 3) + " to " + fixed_number(detection.high, 3)});
+  }
+  TextTable confusion({{"row | hidden", Align::Left}, {"said", Align::Left}, {"campaigns"}},
+                      "What was hidden, and what was said");
+  for (const auto& [hidden, answers] : confusion_of(campaigns)) {
+    for (const auto& [said, count] : answers) confusion.add_row({hidden, said, count_number(count)});
+  }
+  const CriticismOptions& options = arguments.options;
+  return fmt::format(
+      "model criticism, {} campaigns a row (nothing hidden: a kind of noise) of about {} readings, seeds "
+      "from "
+      "{}; intervals after Wilson\n\n{}\n{}{}{}",
+      options.campaigns, count_number(options.readings), options.seed, figures.text(), detections.text(),
+      detections.empty() ? "" : "\n", confusion.text());
+}
+
+nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& campaigns) {
+  nlohmann::ordered_json json = {
+      {"study", "criticism"}, {"seed", arguments.options.seed}, {"readings", arguments.options.readings}};
+  for (const Figure& figure : figures_of(campaigns)) {
+    const auto [low, high] = figure.share.interval();
+    json["figures"].push_back({{"figure", figure.what},
+                               {"count", figure.share.count},
+                               {"of", figure.share.of},
+                               {"share", figure.share.value()},
+                               {"low95", low},
+                               {"high95", high},
+                               {"goal", figure.goal}});
+  }
+  for (const Detection& detection : detections_of(campaigns)) {
+    json["detection"].push_back({{"effect", detection.effect},
+                                 {"campaigns", detection.campaigns},
+                                 {"ratio", detection.ratio},
+                                 {"low95", detection.low},
+                                 {"high95", detection.high}});
+  }
+  json["confusion"] = confusion_of(campaigns);
+  for (const CampaignRecord& record : campaigns) {
+    nlohmann::json entry = record;
+    entry["outcome"] = to_string(outcome_of(record));
+    json["campaigns"].push_back(nlohmann::ordered_json(entry));
+  }
+  return json;
+}
+
+int run(Arguments arguments) {
+  CriticismOptions& options = arguments.options;
+  if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
+  ProgressBar bar("criticism");
+  options.progress = [&bar](int done, int all) {
+    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
+  };
+  const Campaigns campaigns = criticism(options);
+  bar.finish();
+  if (arguments.json) {
+    fmt::print("{}\n", json_of(arguments, campaigns).dump(1));
+  } else {
+    fmt::print("{}", text_of(arguments, campaigns));
+  }
+  return kDone;
+}
+
+std::function<int()> define(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CriticismOptions& options = arguments->options;
+  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
+  app.add_option("--rows", options.rows,
+                 "null, listed, unlisted, pairs, left-out, partial, mdb; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(rows));
+  app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
+  app.add_option("--readings", options.readings, "of a campaign, about")
+      ->check(CLI::Range(400, 100'000))
+      ->capture_default_str();
+  app.add_option("-o,--output", options.output,
+                 "folder that keeps every finished campaign (campaigns.jsonl)");
+  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace
+
+const Command& criticism_study() {
+  static const Command command = {
+      "criticism", "effects hidden in simulated campaigns: what diagnose says of them, counted",
+      "  volcal study criticism --rows null,listed -n 40 -o counted\n"
+      "  volcal study criticism --rows null,listed -n 200 -o counted --resume\n"
+      "  volcal study criticism --rows unlisted -n 20 --json\n",
+      define};
+  return command;
+}
+
+}  // namespace volcal::cli

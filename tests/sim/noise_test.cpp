@@ -33,7 +33,7 @@ TEST(Wander, HasItsSizeAndCorrelationTime) {
     square += noise.slow(row, 0) * noise.slow(row, 0);
     product += noise.slow(row, 0) * noise.slow(row + kLag, 0);
   }
-  // 10,000 correlation times: the autocorrelation at one of them is known to 0.01 (k = 1), the variance to
+  // 2,000 correlation times: the autocorrelation at one of them is known to 0.02 (k = 1), the variance to
   // 1 %.
   EXPECT_NEAR(product / square, std::exp(-1.0), 0.03);
   EXPECT_NEAR(std::sqrt(square / kReadings), 0.4e-6, 0.4e-6 * 0.02);

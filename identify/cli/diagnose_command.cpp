@@ -61,7 +61,7 @@ int run(const Arguments& arguments) {
   };
   const FitResult result = fit(campaign, model, fit_options);
   DiagnoseOptions options;
-  options.threads = std::max(1, arguments.threads);
+  options.threads = arguments.threads;
   options.climb = arguments.climb;
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
   const Diagnosis diagnosis = diagnose(campaign, result, options);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <thread>
 
 #include "volcal/identify/criticism/ladder.h"
 #include "volcal/identify/stats/chi_squared.h"
@@ -44,7 +45,11 @@ constexpr std::size_t kMostAlternatives = 6;
 class Diagnostician {
  public:
   Diagnostician(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options)
-      : options_(options), model_(campaign, result), heldout_(heldout_lines(model_, options.heldout_share)) {
+      : options_(options),
+        threads_(options.threads > 0 ? options.threads
+                                     : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        model_(campaign, result),
+        heldout_(heldout_lines(model_, options.heldout_share)) {
     diagnosis_.removed_readings = static_cast<std::size_t>(
         std::ranges::count_if(result.residuals, [](const ResidualRecord& record) { return record.removed; }));
   }
@@ -69,6 +74,7 @@ class Diagnostician {
         break;
       }
     }
+    list_noise();
     rank();
     drop_unneeded();
     conclude();
@@ -84,14 +90,21 @@ class Diagnostician {
   /// Noise of all readings; the projector that chooses sees those that are not held out.
   void find_noise() {
     NoiseOptions noise;
-    noise.threads = options_.threads;
-    const NoiseEstimate estimate = estimate_noise(with_accepted(), noise);
-    noise_ = estimate.parameters();
-    diagnosis_.noise = noise_table(estimate);
-    diagnosis_.noise_instruments = model_.instruments();
+    noise.threads = threads_;
+    noise.uncertainty = false;
+    noise_estimate_ = estimate_noise(with_accepted(), noise, accepted_.empty() ? nullptr : &noise_estimate_);
+    noise_ = noise_estimate_.parameters();
     projector_ = std::make_unique<Projector>(model_.problem(), without(model_.problem().data, heldout_),
-                                             noise_, options_.threads);
+                                             noise_, threads_, model_.parts());
     for (const Eigen::MatrixXd& columns : accepted_columns_) projector_->accept(columns);
+  }
+
+  void list_noise() {
+    NoiseOptions noise;
+    noise.threads = threads_;
+    noise_estimate_ = estimate_noise(with_accepted(), noise, &noise_estimate_);
+    diagnosis_.noise = noise_table(noise_estimate_);
+    diagnosis_.noise_instruments = model_.instruments();
   }
 
   /// The linear model with the accepted effects as further columns.
@@ -109,8 +122,8 @@ class Diagnostician {
   }
 
   void test() {
-    tests_ = test_families(model_, families_, *projector_, options_.threads);
-    generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
+    tests_ = test_families(model_, families_, *projector_, threads_);
+    generic_ = generic_scan(model_, variables_, *projector_, threads_);
     diagnosis_.generic_tests = generic_.size();
     log10_families_ = std::log10(static_cast<double>(std::max<std::size_t>(families_.size(), 1)));
     log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
@@ -358,11 +371,13 @@ class Diagnostician {
   }
 
   const DiagnoseOptions& options_;
+  int threads_;
   LinearModel model_;
   std::vector<bool> heldout_;
   Diagnosis diagnosis_;
   std::vector<Family> families_;
   std::vector<ScanVariable> variables_;
+  NoiseEstimate noise_estimate_;
   std::vector<NoiseParameters> noise_;
   std::unique_ptr<Projector> projector_;
   std::vector<FamilyTest> tests_;

@@ -69,7 +69,7 @@ struct LadderStep {
 };
 
 struct DiagnoseOptions {
-  int threads = 1;
+  int threads = 1;     ///< 0 = as many as the machine has; results do not depend on it
   bool climb = false;  ///< add effects until nothing is left
   int most_effects = 8;
   double heldout_share = 0.2;

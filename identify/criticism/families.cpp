@@ -29,19 +29,20 @@ double legendre(int degree, double x) {
 }
 
 /// Higher polynomials of an axis' own position: what a function with too few knots leaves.
-void resolution_columns(const LinearModel& model, ErrorSymbol symbol, Eigen::Ref<Eigen::MatrixXd> columns) {
+void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_t setup,
+                        Eigen::Ref<Eigen::MatrixXd> columns) {
   const Campaign& campaign = model.campaign();
   const MeasuredRange range = measured_range(campaign, symbol.axis);
   const int target =
       disturbance_of({.kind = TargetKind::Motion, .symbol = symbol, .component = 0}, campaign.machine);
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const auto& [setup, row, channel] = model.observations()[i];
-    const double q = campaign.setups[setup].readings.position[index_of(symbol.axis)][row];
+  const auto& position = campaign.setups[setup].readings.position[index_of(symbol.axis)];
+  const Eigen::Index first = model.parts()[setup];
+  for (Eigen::Index i = 0; i < columns.rows(); ++i) {
+    const double q = position[model.observations()[static_cast<std::size_t>(first + i)].row];
     const double x =
         std::clamp(2.0 * (q - range.min) / std::max(1e-12, range.max - range.min) - 1.0, -1.0, 1.0);
-    const auto at = static_cast<Eigen::Index>(i);
     for (int degree = kLowestExtraDegree; degree <= kHighestExtraDegree; ++degree) {
-      columns(at, degree - kLowestExtraDegree) = legendre(degree, x) * model.sensitivity(at, target);
+      columns(i, degree - kLowestExtraDegree) = legendre(degree, x) * model.sensitivity(first + i, target);
     }
   }
 }
@@ -72,11 +73,11 @@ struct FamilyBlock {
 };
 
 void fill_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
-                  Eigen::Ref<Eigen::MatrixXd> out) {
+                  std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out) {
   if (family.resolution) {
-    resolution_columns(model, *family.resolution, out);
+    resolution_columns(model, *family.resolution, setup, out);
   } else {
-    model.columns(*family.effect, shape, out);
+    model.columns(*family.effect, shape, setup, out);
   }
 }
 
@@ -113,21 +114,27 @@ class FamilyTester {
   }
 
   void test(const FamilyBlock& block) {
-    Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), block.columns);
+    CandidateColumns candidates{block.columns, {}, [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
+                                  fill(block, setup, rows);
+                                }};
+    for (const std::size_t family : block.family) {
+      candidates.groups.push_back(shapes(family) * families_[family].amplitudes());
+    }
+    const ProjectedColumns projected = projector_.project(candidates);
+    for (std::size_t i = 0; i < block.family.size(); ++i) {
+      const std::size_t family = block.family[i];
+      tests_[family] = best_shape(projected, family, projected.first[i], families_[family].amplitudes());
+    }
+  }
+
+  void fill(const FamilyBlock& block, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) const {
     Eigen::Index at = 0;
     for (const std::size_t family : block.family) {
       const Eigen::Index amplitudes = families_[family].amplitudes();
       for (const Eigen::VectorXd& shape : families_[family].scan) {
-        fill_columns(model_, families_[family], shape, columns.middleCols(at, amplitudes));
+        fill_columns(model_, families_[family], shape, setup, rows.middleCols(at, amplitudes));
         at += amplitudes;
       }
-    }
-    const ProjectedColumns projected = projector_.project(std::move(columns));
-    at = 0;
-    for (const std::size_t family : block.family) {
-      const Eigen::Index amplitudes = families_[family].amplitudes();
-      tests_[family] = best_shape(projected, family, at, amplitudes);
-      at += amplitudes * shapes(family);
     }
   }
 
@@ -196,7 +203,11 @@ std::vector<Family> families(const LinearModel& model) {
 
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()), family.amplitudes());
-  fill_columns(model, family, shape, columns);
+  const auto& parts = model.parts();
+  for (std::size_t setup = 0; setup + 1 < parts.size(); ++setup) {
+    fill_columns(model, family, shape, setup,
+                 columns.middleRows(parts[setup], parts[setup + 1] - parts[setup]));
+  }
   return columns;
 }
 

@@ -109,40 +109,53 @@ class GenericScanner {
     return a.name.find(' ') != std::string::npos && family(a.name) == family(b.name);
   }
 
-  /// Of every direction: polynomials, then waves.
-  void fill(const ScanItem& item, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  /// Of every direction: polynomials, then waves. Rows of one setup.
+  void fill(const ScanItem& item, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> columns) const {
+    const Eigen::Index first = model_.parts()[setup], count = columns.rows();
+    const auto rows = [&](const auto& all) { return all.middleRows(first, count); };
     Eigen::Index at = 0;
-    for (const Eigen::VectorXd& direction : direction_) {
+    for (const Eigen::VectorXd& all : direction_) {
+      const Eigen::VectorXd direction = rows(all);
       if (item.a == item.b) {
         const Features& own = features_[item.a];
-        columns.middleCols(at, item.polynomials) = direction.asDiagonal() * own.powers;
-        columns.middleCols(at + item.polynomials, item.waves) = direction.asDiagonal() * own.waves;
+        columns.middleCols(at, item.polynomials) = direction.asDiagonal() * rows(own.powers);
+        columns.middleCols(at + item.polynomials, item.waves) = direction.asDiagonal() * rows(own.waves);
         at += item.polynomials + item.waves;
         continue;
       }
       const ScanVariable &a = variables_[item.a], &b = variables_[item.b];
-      const Eigen::VectorXd product = a.value.cwiseProduct(b.value).cwiseProduct(direction);
+      const Eigen::VectorXd product = direction.cwiseProduct(rows(a.value)).cwiseProduct(rows(b.value));
       columns.col(at++) = product;
-      if (!a.two_valued) columns.col(at++) = product.cwiseProduct(a.value);
-      if (!b.two_valued) columns.col(at++) = product.cwiseProduct(b.value);
+      if (!a.two_valued) columns.col(at++) = product.cwiseProduct(rows(a.value));
+      if (!b.two_valued) columns.col(at++) = product.cwiseProduct(rows(b.value));
       for (Eigen::Index k = 0; k < pair_waves(item.a); ++k) {
-        const Eigen::VectorXd left = features_[item.a].waves.col(k).cwiseProduct(direction);
+        const Eigen::VectorXd left = direction.cwiseProduct(rows(features_[item.a].waves).col(k));
         columns.middleCols(at, pair_waves(item.b)) =
-            left.asDiagonal() * features_[item.b].waves.leftCols(pair_waves(item.b));
+            left.asDiagonal() * rows(features_[item.b].waves).leftCols(pair_waves(item.b));
         at += pair_waves(item.b);
       }
     }
   }
 
-  void test(const ScanBlock& block) {
-    Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), block.columns);
+  void fill(const ScanBlock& block, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) const {
     Eigen::Index at = 0;
     for (const ScanItem& item : block.items) {
-      fill(item, columns.middleCols(at, item.columns()));
+      fill(item, setup, rows.middleCols(at, item.columns()));
       at += item.columns();
     }
-    const ProjectedColumns projected = projector_.project(std::move(columns));
-    at = 0;
+  }
+
+  void test(const ScanBlock& block) {
+    CandidateColumns candidates{block.columns, {}, [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
+                                  fill(block, setup, rows);
+                                }};
+    for (const ScanItem& item : block.items) {
+      for (std::size_t d = 0; d < kDirections; ++d) {
+        candidates.groups.insert(candidates.groups.end(), {item.polynomials, item.waves});
+      }
+    }
+    const ProjectedColumns projected = projector_.project(candidates);
+    Eigen::Index at = 0;
     for (const ScanItem& item : block.items) {
       std::vector<std::string> names = {variables_[item.a].name};
       if (item.b != item.a) names.push_back(variables_[item.b].name);

@@ -31,7 +31,7 @@ void LinearModel::add_observations(const FitResult& result) {
   MeasurementModel::DisturbanceRows disturbance;
   for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
     const Readings& readings = campaign_.setups[setup].readings;
-    first_.push_back(static_cast<Eigen::Index>(observations_.size()));
+    parts_.push_back(static_cast<Eigen::Index>(observations_.size()));
     for (std::size_t i = 0; i < readings.size(); ++i) {
       model_.linearize(setup, i, result.parameters, row);
       model_.disturbance_rows(setup, i, result.parameters, disturbance);
@@ -48,7 +48,7 @@ void LinearModel::add_observations(const FitResult& result) {
       }
     }
   }
-  first_.push_back(static_cast<Eigen::Index>(observations_.size()));
+  parts_.push_back(static_cast<Eigen::Index>(observations_.size()));
 }
 
 void LinearModel::add_sequences() {
@@ -73,25 +73,22 @@ void LinearModel::add_sequences() {
   }
 }
 
-void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape,
+void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
                           Eigen::Ref<Eigen::MatrixXd> out) const {
   const auto& amplitudes = effect.amplitudes();
-  for (std::size_t setup = 0; setup < views_.size(); ++setup) {
-    const Eigen::Index first = first_[setup], count = first_[setup + 1] - first;
-    const Eigen::MatrixXd drivers = effect.drivers(views_[setup], shape);
-    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      const auto sensitivity =
-          sensitivity_.col(disturbance_of(amplitudes[k].target, campaign_.machine)).segment(first, count);
-      auto target = out.col(column).segment(first, count);
-      if (drivers.rows() == count) {
-        target = drivers.col(column).cwiseProduct(sensitivity);
-        continue;
-      }
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const std::size_t row = observations_[static_cast<std::size_t>(first + i)].row;
-        target[i] = drivers(static_cast<Eigen::Index>(row), column) * sensitivity[i];
-      }
+  const Eigen::Index first = parts_[setup], count = parts_[setup + 1] - first;
+  const Eigen::MatrixXd drivers = effect.drivers(views_[setup], shape);
+  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    const auto sensitivity =
+        sensitivity_.col(disturbance_of(amplitudes[k].target, campaign_.machine)).segment(first, count);
+    if (drivers.rows() == count) {
+      out.col(column) = drivers.col(column).cwiseProduct(sensitivity);
+      continue;
+    }
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const std::size_t row = observations_[static_cast<std::size_t>(first + i)].row;
+      out(i, column) = drivers(static_cast<Eigen::Index>(row), column) * sensitivity[i];
     }
   }
 }

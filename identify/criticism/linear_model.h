@@ -35,8 +35,12 @@ class LinearModel {
   /// what the noise model needs. Readings that the fit removed have an infinite sigma.
   const NoiseProblem& problem() const { return problem_; }
 
-  /// Columns of the readings that an effect's amplitudes would add: observations x amplitudes.
-  void columns(const Effect& effect, const Eigen::VectorXd& shape, Eigen::Ref<Eigen::MatrixXd> out) const;
+  /// Boundaries 0 ... N of the setups among the observations.
+  const std::vector<Eigen::Index>& parts() const { return parts_; }
+  /// Columns of the readings that an effect's amplitudes would add, rows of one setup: observations x
+  /// amplitudes.
+  void columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
+               Eigen::Ref<Eigen::MatrixXd> out) const;
   double sensitivity(Eigen::Index observation, int disturbance) const {
     return sensitivity_(observation, disturbance);
   }
@@ -51,7 +55,7 @@ class LinearModel {
   const Campaign& campaign_;
   MeasurementModel model_;
   std::vector<Observation> observations_;
-  std::vector<Eigen::Index> first_;  ///< observation of every setup, and the end
+  std::vector<Eigen::Index> parts_;
   std::vector<std::string> instruments_;
   std::vector<SetupView> views_;
   Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;

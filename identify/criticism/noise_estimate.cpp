@@ -101,7 +101,8 @@ std::vector<NoiseParameters> NoiseEstimate::parameters() const {
   return result;
 }
 
-NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options) {
+NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options,
+                             const NoiseEstimate* previous) {
   RestrictedLikelihood likelihood(problem, options.threads);
   NoiseEstimate estimate;
   estimate.instruments.resize(likelihood.groups());
@@ -118,13 +119,19 @@ NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& op
     shares.set(g, estimate.instruments[g].parameters);
   }
   estimate.white_log_likelihood = likelihood.log_likelihood(shares.total());
+  if (previous != nullptr && likelihood.groups() > 1) {
+    for (std::size_t g = 0; g < likelihood.groups(); ++g) shares.set(g, previous->instruments[g].parameters);
+  }
   const int rounds = likelihood.groups() > 1 ? 2 : 1;
   for (int round = 0; round < rounds; ++round) {
+    NoiseOptions of_round = options;
+    of_round.uncertainty = options.uncertainty && round + 1 == rounds;
     for (std::size_t g = 0; g < likelihood.groups(); ++g) {
       InstrumentNoise& instrument = estimate.instruments[g];
       if (!instrument.estimated) continue;
-      NoiseSearch search(likelihood, g, options, shares.rest(g), solution, white[g], taken[g]);
-      search.run(instrument);
+      const InstrumentNoise before = round > 0 || previous == nullptr ? instrument : previous->instruments[g];
+      NoiseSearch search(likelihood, g, of_round, shares.rest(g), solution, white[g], taken[g]);
+      search.run(instrument, before);
       estimate.evaluations += search.evaluations();
       shares.set(g, instrument.parameters);
       solution = RestrictedLikelihood::solve(shares.total().gram).at;

@@ -8,6 +8,7 @@
 /// one, the least supported first, while 2 (l - l without) stays below a threshold; white noise stays white.
 /// Several instruments are taken in turn, the others held, twice.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct NoiseOptions {
   /// that is free without it (Davies 1987, Biometrika 74, 33) and needs more.
   double threshold = 4.0;
   double wander_threshold = 7.0;
+  bool uncertainty = true;  ///< find log_uncertainty; costs as much as a search that starts near its end
   int threads = 1;
 };
 
@@ -37,6 +39,15 @@ struct TermEvidence {
   double threshold = 0.0;
 };
 
+/// Where a search ended, in its own variables (noise_search.h): the search of nearly the same problem begins
+/// there.
+struct NoiseStart {
+  Eigen::VectorXd at;
+  Eigen::VectorXd slope;
+  std::array<bool, 3> active{};
+  double scale = 0.0;
+};
+
 struct InstrumentNoise {
   NoiseParameters parameters;
   /// Standard uncertainties of the logarithms from the second derivatives of l, 3 where it says nothing; NaN:
@@ -48,6 +59,7 @@ struct InstrumentNoise {
   std::size_t observations = 0;
   double redundancy = 0.0;  ///< observations minus what the linear model takes, white noise
   bool estimated = true;    ///< false: too few redundant observations, stated sigma kept
+  NoiseStart start;
 };
 
 struct NoiseEstimate {
@@ -60,7 +72,11 @@ struct NoiseEstimate {
   std::vector<NoiseParameters> parameters() const;
 };
 
-NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options = {});
+/// `previous`: estimate for nearly the same problem (the same observations, a few columns more or less). The
+/// search then begins at its end, and over again when a term comes or goes; evidence that was overwhelming is
+/// kept as it was.
+NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options = {},
+                             const NoiseEstimate* previous = nullptr);
 
 /// One line of a table of the result, SI.
 struct NoiseRow {

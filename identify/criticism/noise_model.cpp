@@ -87,6 +87,8 @@ Whitener::Track Whitener::make_track(const NoiseData& data, const NoiseSequence&
     if (track.timed && i > 0) step.gap = sequence.time[order[i]] - sequence.time[order[i - 1]];
     if (!data.length.empty()) step.length = data.length[observation];
     track.steps.push_back(step);
+    track.first = std::min(track.first, observation);
+    track.last = std::max(track.last, observation);
   }
   if (!sequence.line.empty()) assign_slots(sequence, order, track);
   const std::size_t steps = track.steps.size();
@@ -217,26 +219,22 @@ void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Ei
   }
 }
 
-void Whitener::whiten_block(const Track& track, Eigen::Index first, Eigen::Index width,
-                            const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened) const {
+void Whitener::whiten_block(const Track& track, Eigen::Index width, const Place& place) {
   std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
   std::vector<double> tile(static_cast<std::size_t>(width) * kTile);
+  const auto wide = static_cast<std::size_t>(width);
   for (std::size_t begin = 0; begin < track.steps.size(); begin += kTile) {
     const std::size_t end = std::min(begin + kTile, track.steps.size());
-    for (Eigen::Index c = 0; c < width; ++c) {
-      const double* const in = columns.col(first + c).data();
-      for (std::size_t i = begin; i < end; ++i) {
-        tile[(i - begin) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c)] =
-            in[track.steps[i].observation];
-      }
+    for (std::size_t c = 0; c < wide; ++c) {
+      const double* const in = place.in + static_cast<Eigen::Index>(c) * place.in_stride;
+      for (std::size_t i = begin; i < end; ++i)
+        tile[(i - begin) * wide + c] = in[track.steps[i].observation - place.origin];
     }
     filter(track, begin, end, width, tile.data(), state.data());
-    for (Eigen::Index c = 0; c < width; ++c) {
-      double* const out = whitened.col(first + c).data();
-      for (std::size_t i = begin; i < end; ++i) {
-        out[track.steps[i].observation] =
-            tile[(i - begin) * static_cast<std::size_t>(width) + static_cast<std::size_t>(c)];
-      }
+    for (std::size_t c = 0; c < wide; ++c) {
+      double* const out = place.out + static_cast<Eigen::Index>(c) * place.out_stride;
+      for (std::size_t i = begin; i < end; ++i)
+        out[place.packed ? i : track.steps[i].observation - place.origin] = tile[(i - begin) * wide + c];
     }
   }
 }
@@ -247,10 +245,35 @@ void Whitener::whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened,
   const auto blocks = static_cast<std::size_t>((columns.cols() + kBlock - 1) / kBlock);
   run_parallel(blocks * tracks_.size(), threads, [&](std::size_t item) {
     const auto first = static_cast<Eigen::Index>(item / tracks_.size()) * kBlock;
-    whiten_block(tracks_[item % tracks_.size()], first, std::min(kBlock, columns.cols() - first), columns,
-                 whitened);
+    whiten_block(
+        tracks_[item % tracks_.size()], std::min(kBlock, columns.cols() - first),
+        {columns.col(first).data(), columns.rows(), whitened.col(first).data(), whitened.rows(), 0, false});
   });
   for (const std::size_t i : missing_) whitened.row(static_cast<Eigen::Index>(i)).setZero();
+}
+
+Eigen::MatrixXd Whitener::whiten_part(std::size_t first,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  const std::size_t end = first + static_cast<std::size_t>(columns.rows());
+  std::vector<const Track*> inside;
+  std::size_t rows = 0;
+  for (const Track& track : tracks_) {
+    if (track.last < first || track.first >= end) continue;
+    require(track.first >= first && track.last < end, "a part holds whole sequences");
+    inside.push_back(&track);
+    rows += track.steps.size();
+  }
+  Eigen::MatrixXd whitened(static_cast<Eigen::Index>(rows), columns.cols());
+  double* out = whitened.data();
+  for (const Track* const track : inside) {
+    for (Eigen::Index column = 0; column < columns.cols(); column += kBlock) {
+      whiten_block(*track, std::min(kBlock, columns.cols() - column),
+                   {columns.data() + column * columns.outerStride(), columns.outerStride(),
+                    out + column * whitened.rows(), whitened.rows(), first, true});
+    }
+    out += track->steps.size();
+  }
+  return whitened;
 }
 
 Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {

@@ -21,6 +21,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -63,6 +64,9 @@ class Whitener {
   /// O(N) per column, the same for any number of threads. Both may be the same matrix.
   void whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const;
   Eigen::VectorXd whiten(const Eigen::VectorXd& column) const;
+  /// Rows [first, first + columns.rows()) alone, which hold whole sequences: their observations that are not
+  /// missing, sequence by sequence, in the order of the filters. On the caller's thread.
+  Eigen::MatrixXd whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
 
   /// rows Sigma^-1 rows^T, full symmetric, for `rows` (columns x observations, the transpose of what whiten()
   /// takes), without storing the whitened matrix.
@@ -88,6 +92,8 @@ class Whitener {
     std::size_t group = 0;
     int states = 1;
     bool timed = false;
+    std::size_t first = std::numeric_limits<std::size_t>::max();  ///< lowest and highest observation
+    std::size_t last = 0;
     std::vector<double> decay;  ///< of the wander since the step before
     std::vector<double> scale;  ///< 1 / sqrt(F)
     std::vector<double> gain;   ///< states x steps
@@ -101,8 +107,16 @@ class Whitener {
   /// In place on a tile of steps [begin, end): `width` values per step.
   static void filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width, double* tile,
                      double* state);
-  void whiten_block(const Track& track, Eigen::Index first, Eigen::Index width,
-                    const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened) const;
+  /// Columns where a track finds its observations and leaves them.
+  struct Place {
+    const double* in;
+    Eigen::Index in_stride;
+    double* out;
+    Eigen::Index out_stride;
+    std::size_t origin;  ///< observation of the first row of `in`
+    bool packed;         ///< steps leave one after another; else at their observations
+  };
+  static void whiten_block(const Track& track, Eigen::Index width, const Place& place);
   void add_gram(const Track& track, const Eigen::MatrixXd& rows, Eigen::MatrixXd& sum) const;
 
   std::vector<Track> tracks_;

@@ -29,7 +29,10 @@ constexpr double kLeastReach = 0.02;
 constexpr double kCurvedInformation = 0.5;  // error of its linear model that asks for a new slope
 constexpr double kSettled = 0.01;           // of -2 l
 constexpr int kRefinements = 6;
-constexpr double kHopeless = 30.0;  // above the better model: not refined
+constexpr double kHopeless = 30.0;     // above the better model: not refined
+constexpr double kAddedShare = 0.2;    // of the residuals' standard deviation: a term that may come
+constexpr double kDoubtful = 0.5;      // of the threshold: a term may have to come
+constexpr double kOverwhelming = 5.0;  // of the threshold: evidence that one effect more does not undo
 constexpr double kSurrogateTolerance = 1e-3;
 constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
 
@@ -320,14 +323,27 @@ NoiseSearch::Point NoiseSearch::without(const Point& point, int term) {
   return reduced;
 }
 
-void NoiseSearch::run(InstrumentNoise& result) {
+/// A term added; what the rest gives up to it is left to the surrogate.
+NoiseSearch::Point NoiseSearch::with(const Point& point, int term) {
+  Point larger;
+  larger.active = point.active;
+  larger.active[static_cast<std::size_t>(term)] = true;
+  larger.slope = point.slope;
+  Eigen::VectorXd from = point.at;
+  from(parameter_of(term)) = coordinate(kAddedShare * total_);
+  if (term == 0) from(kTau) = 0.5 * (lower_(kTau) + upper_(kTau));
+  larger.at = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(point, at, larger.active); },
+                              from, box(larger.active), kSurrogateTolerance)
+                  .at;
+  evaluate(larger);
+  return larger;
+}
+
+NoiseSearch::Point NoiseSearch::search(InstrumentNoise& result) {
   const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
-  for (std::size_t term = 0; term < kTerms; ++term) {
-    *evidence[term] = {possible_[term], false, 0.0,
-                       term == 0 ? options_.wander_threshold : options_.threshold};
-  }
   Point best = best_start(white_, possible_);
   settle(best);
+  bool settled = true;
   for (bool dropped = true; dropped;) {
     dropped = false;
     Point next;
@@ -347,12 +363,58 @@ void NoiseSearch::run(InstrumentNoise& result) {
     if (dropped) {
       evidence[weakest]->likelihood_ratio = std::max(evidence[weakest]->likelihood_ratio, 0.0);
       best = std::move(next);
+      settled = false;
     }
   }
-  settle(best);
-  for (std::size_t term = 0; term < kTerms; ++term) evidence[term]->on = best.active[term];
-  result.parameters = parameters(best.at, best.active);
-  find_uncertainty(best, result.log_uncertainty);
+  if (!settled) settle(best);
+  return best;
+}
+
+/// From the end of an earlier search; nothing when a term should come or go.
+std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
+                                                      const InstrumentNoise& previous) {
+  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
+  const std::array<const TermEvidence*, kTerms> before{&previous.wander, &previous.line, &previous.per_metre};
+  total_ = previous.start.scale;  // its variables
+  Point best;
+  best.active = previous.start.active;
+  best.at = previous.start.at;
+  best.slope = previous.start.slope;
+  evaluate(best);
+  refine(best);
+  for (std::size_t term = 0; term < kTerms; ++term) {
+    if (!possible_[term]) continue;
+    evidence[term]->likelihood_ratio = before[term]->likelihood_ratio;
+    const double threshold = evidence[term]->threshold;
+    if (!best.active[term]) {
+      const double gain = best.value - with(best, static_cast<int>(term)).value;
+      if (gain > kDoubtful * threshold) return std::nullopt;
+      evidence[term]->likelihood_ratio = std::max(gain, 0.0);
+    } else if (before[term]->likelihood_ratio < kOverwhelming * threshold) {
+      evidence[term]->likelihood_ratio = without(best, static_cast<int>(term)).value - best.value;
+      if (evidence[term]->likelihood_ratio < threshold) return std::nullopt;
+    }
+  }
+  return best;
+}
+
+void NoiseSearch::run(InstrumentNoise& result, const InstrumentNoise& previous) {
+  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
+  for (std::size_t term = 0; term < kTerms; ++term) {
+    *evidence[term] = {possible_[term], false, 0.0,
+                       term == 0 ? options_.wander_threshold : options_.threshold};
+  }
+  const double scale = total_;
+  std::optional<Point> found;
+  if (previous.start.at.size() > 0) found = resume(result, previous);
+  if (!found) {
+    total_ = scale;
+    found = search(result);
+  }
+  for (std::size_t term = 0; term < kTerms; ++term) evidence[term]->on = found->active[term];
+  result.parameters = parameters(found->at, found->active);
+  result.start = {found->at, found->slope, found->active, total_};
+  if (options_.uncertainty) find_uncertainty(*found, result.log_uncertainty);
 }
 
 /// The logarithm of a parameter moved by `shift`.

@@ -2,6 +2,7 @@
 /// Search for the noise of one instrument, the others held (noise_estimate.h says how).
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "volcal/identify/criticism/bounded_minimum.h"
@@ -16,8 +17,9 @@ class NoiseSearch {
   NoiseSearch(RestrictedLikelihood& likelihood, std::size_t group, const NoiseOptions& options,
               Eigen::MatrixXd rest, const Eigen::VectorXd& solution, double white, double taken);
 
-  /// Parameters, evidence and uncertainties; counts its exact evaluations.
-  void run(InstrumentNoise& result);
+  /// Parameters, evidence and uncertainties; counts its exact evaluations. `previous`: of nearly the same
+  /// problem, or without a start.
+  void run(InstrumentNoise& result, const InstrumentNoise& previous);
   int evaluations() const { return evaluations_; }
 
  private:
@@ -48,6 +50,9 @@ class NoiseSearch {
   void refine(Point& point);
   void settle(Point& point);
   Point without(const Point& point, int term);
+  Point with(const Point& point, int term);
+  Point search(InstrumentNoise& result);
+  std::optional<Point> resume(InstrumentNoise& result, const InstrumentNoise& previous);
   Eigen::VectorXd moved(const Eigen::VectorXd& at, Eigen::Index parameter, double shift) const;
   void find_uncertainty(const Point& point, NoiseParameters& log_uncertainty);
 

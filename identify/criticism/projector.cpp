@@ -1,42 +1,58 @@
 #include "volcal/identify/criticism/projector.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/solve/dense.h"
 
 namespace volcal {
 
-Eigen::MatrixXd ProjectedColumns::gram(Eigen::Index first, Eigen::Index columns) const {
-  return gram_of_columns(whitened.middleCols(first, columns)) -
-         gram_of_columns(explained.middleCols(first, columns));
+Eigen::MatrixXd ProjectedColumns::gram(Eigen::Index begin, Eigen::Index columns) const {
+  const auto after = std::ranges::upper_bound(first, begin);
+  const auto group = static_cast<std::size_t>(after - first.begin()) - 1;
+  const Eigen::Index at = begin - first[group];
+  return grams[group].block(at, at, columns, columns);
 }
 
 Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
-                     std::span<const NoiseParameters> noise, int threads)
+                     std::span<const NoiseParameters> noise, int threads, std::vector<Eigen::Index> parts)
     : whitener_(data, noise),
       threads_(threads),
       base_parameters_(problem.jacobian.cols()),
+      parts_(parts.empty() ? std::vector<Eigen::Index>{0, problem.jacobian.rows()} : std::move(parts)),
+      whitened_(part_count()),
       precision_(problem.prior_precision.size() > 0
                      ? problem.prior_precision
                      : Eigen::MatrixXd(Eigen::MatrixXd::Zero(base_parameters_, base_parameters_))) {
+  use_single_threaded_blas();
   const Eigen::VectorXd mean = problem.prior_mean.size() > 0
                                    ? problem.prior_mean
                                    : Eigen::VectorXd(Eigen::VectorXd::Zero(base_parameters_));
   pull_ = precision_ * mean;
   prior_squares_ = mean.dot(pull_);
-  whitened_.resize(problem.jacobian.rows(), base_parameters_ + 1);
-  whitened_ << problem.jacobian, problem.residual;
-  whitener_.whiten(whitened_, whitened_, threads_);
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    Eigen::MatrixXd rows(part_rows(part), base_parameters_ + 1);
+    rows << problem.jacobian.middleRows(parts_[part], part_rows(part)),
+        problem.residual.segment(parts_[part], part_rows(part));
+    whitened_[part] = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
+  });
   factorise();
 }
 
 /// Columns are scaled to unit diagonal of A first: they carry different units.
 void Projector::factorise() {
   const Eigen::Index count = parameters();
-  const Eigen::MatrixXd products = gram_of_columns(whitened_);
-  residual_squares_ = products(count, count);
-  Eigen::MatrixXd normal = products.topLeftCorner(count, count);
+  std::vector<Eigen::MatrixXd> products(part_count());
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    products[part] = Eigen::MatrixXd::Zero(count + 1, count + 1);
+    add_gram_upper(whitened_[part], 1.0, products[part]);
+  });
+  for (std::size_t part = 1; part < part_count(); ++part) products[0] += products[part];
+  symmetrise_from_upper(products[0]);
+  residual_squares_ = products[0](count, count);
+  Eigen::MatrixXd normal = products[0].topLeftCorner(count, count);
   normal.topLeftCorner(base_parameters_, base_parameters_) += precision_;
   scale_ = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   normal = scale_.asDiagonal() * normal * scale_.asDiagonal();
@@ -47,32 +63,61 @@ void Projector::factorise() {
     if (!lower) throw std::runtime_error("the model's columns are not independent");
   }
   lower_ = std::move(*lower);
-  Eigen::MatrixXd right = products.col(count).head(count);
+  Eigen::MatrixXd right = products[0].col(count).head(count);
   right.col(0).head(base_parameters_) += pull_;
   right = scale_.asDiagonal() * right;
   solve_lower(lower_, right);
   rotated_ = right;
 }
 
-ProjectedColumns Projector::project(Eigen::MatrixXd columns, int threads) const {
+ProjectedColumns Projector::project(const CandidateColumns& candidates) const {
   ProjectedColumns out;
-  out.whitened = std::move(columns);
-  whitener_.whiten(out.whitened, out.whitened, threads);
-  const Eigen::MatrixXd products = transposed_product(whitened_, out.whitened);
-  out.explained = scale_.asDiagonal() * products.topRows(parameters());
-  solve_lower(lower_, out.explained);
-  out.score = products.bottomRows(1).transpose() - out.explained.transpose() * rotated_;
-  out.norm = out.whitened.colwise().norm();
+  Eigen::Index at = 0;
+  for (const Eigen::Index width : candidates.groups) {
+    out.first.push_back(at);
+    out.grams.emplace_back(Eigen::MatrixXd::Zero(width, width));
+    at += width;
+  }
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(parameters() + 1, candidates.count);
+  Eigen::MatrixXd rows;
+  for (std::size_t part = 0; part < part_count(); ++part) {
+    rows.resize(part_rows(part), candidates.count);
+    candidates.fill(part, rows);
+    const Eigen::MatrixXd whitened = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
+    add_transposed_product(whitened_[part], whitened, products);
+    for (std::size_t group = 0; group < out.grams.size(); ++group) {
+      add_gram_upper(whitened.middleCols(out.first[group], candidates.groups[group]), 1.0, out.grams[group]);
+    }
+  }
+  Eigen::MatrixXd explained = scale_.asDiagonal() * products.topRows(parameters());
+  solve_lower(lower_, explained);
+  out.score = products.bottomRows(1).transpose() - explained.transpose() * rotated_;
+  out.norm.resize(candidates.count);
+  for (std::size_t group = 0; group < out.grams.size(); ++group) {
+    const Eigen::Index first = out.first[group], width = candidates.groups[group];
+    out.norm.segment(first, width) = out.grams[group].diagonal().cwiseSqrt();
+    add_gram_upper(explained.middleCols(first, width), -1.0, out.grams[group]);
+    symmetrise_from_upper(out.grams[group]);
+  }
   return out;
 }
 
+ProjectedColumns Projector::project(const Eigen::MatrixXd& columns) const {
+  return project({columns.cols(), {columns.cols()}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
+                    rows = columns.middleRows(parts_[part], part_rows(part));
+                  }});
+}
+
 void Projector::accept(const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd added;
-  whitener_.whiten(columns, added, threads_);
   const Eigen::Index before = parameters();
-  whitened_.conservativeResize(Eigen::NoChange, whitened_.cols() + added.cols());
-  whitened_.rightCols(1) = whitened_.col(before).eval();
-  whitened_.middleCols(before, added.cols()) = added;
+  for (std::size_t part = 0; part < part_count(); ++part) {
+    const Eigen::MatrixXd added = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]),
+                                                        columns.middleRows(parts_[part], part_rows(part)));
+    Eigen::MatrixXd& all = whitened_[part];
+    all.conservativeResize(Eigen::NoChange, all.cols() + added.cols());
+    all.rightCols(1) = all.col(before).eval();
+    all.middleCols(before, added.cols()) = added;
+  }
   factorise();
 }
 

@@ -10,6 +10,7 @@
 /// N x N and no orthogonal basis is formed.
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -18,26 +19,37 @@
 
 namespace volcal {
 
+/// Columns of candidates, made part by part of the observations.
+struct CandidateColumns {
+  Eigen::Index count = 0;
+  std::vector<Eigen::Index> groups;  ///< widths: neighbours that are tested together
+  /// Rows of a part.
+  std::function<void(std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows)> fill;
+};
+
 /// Columns of candidates after projection; k columns.
 struct ProjectedColumns {
-  Eigen::MatrixXd whitened;   ///< N x k, not projected
-  Eigen::MatrixXd explained;  ///< p x k: C^-1 b with A = C C^T, so that g~^T h~ = g_w^T h_w - e_g^T e_h
-  Eigen::VectorXd score;      ///< g~^T r~
-  Eigen::VectorXd norm;       ///< |g_w|: what would be seen if everything else were known
+  Eigen::VectorXd score;               ///< g~^T r~
+  Eigen::VectorXd norm;                ///< |g_w|: what would be seen if everything else were known
+  std::vector<Eigen::Index> first;     ///< column of each group
+  std::vector<Eigen::MatrixXd> grams;  ///< g~^T g~ of each group
 
   Eigen::Index count() const { return score.size(); }
-  /// g~^T g~ of a stretch of columns.
-  Eigen::MatrixXd gram(Eigen::Index first, Eigen::Index columns) const;
+  /// g~^T g~ of a stretch of columns of one group.
+  Eigen::MatrixXd gram(Eigen::Index begin, Eigen::Index columns) const;
 };
 
 class Projector {
  public:
-  /// `data` may leave out observations of the problem (infinite sigma).
+  /// `data` may leave out observations of the problem (infinite sigma). `parts`: boundaries 0 ... N of
+  /// stretches of observations that hold whole sequences; empty = one part.
   Projector(const NoiseProblem& problem, const NoiseData& data, std::span<const NoiseParameters> noise,
-            int threads);
+            int threads, std::vector<Eigen::Index> parts = {});
 
-  /// On `threads` of its own; may be called from several threads at once.
-  ProjectedColumns project(Eigen::MatrixXd columns, int threads = 1) const;
+  /// On the caller's thread; may be called from several at once. Memory: the columns of the largest part.
+  ProjectedColumns project(const CandidateColumns& candidates) const;
+  /// One group.
+  ProjectedColumns project(const Eigen::MatrixXd& columns) const;
   /// Takes columns into the model, without prior.
   void accept(const Eigen::MatrixXd& columns);
 
@@ -50,18 +62,21 @@ class Projector {
   /// |r~|^2: what the model leaves, in units of the noise.
   double residual_squares() const;
   std::size_t observations() const { return whitener_.observations(); }
-  Eigen::Index parameters() const { return whitened_.cols() - 1; }
+  Eigen::Index parameters() const { return whitened_.front().cols() - 1; }
   Eigen::Index accepted() const { return parameters() - base_parameters_; }
 
  private:
   void factorise();
+  std::size_t part_count() const { return parts_.size() - 1; }
+  Eigen::Index part_rows(std::size_t part) const { return parts_[part + 1] - parts_[part]; }
 
   Whitener whitener_;
   int threads_;
   Eigen::Index base_parameters_;
-  Eigen::MatrixXd whitened_;   ///< N x (p + 1): columns of the model, residual last
-  Eigen::MatrixXd precision_;  ///< of the base parameters, not scaled
-  Eigen::VectorXd pull_;       ///< P m, base parameters
+  std::vector<Eigen::Index> parts_;
+  std::vector<Eigen::MatrixXd> whitened_;  ///< per part, (observations in use) x (p + 1), residual last
+  Eigen::MatrixXd precision_;              ///< of the base parameters, not scaled
+  Eigen::VectorXd pull_;                   ///< P m, base parameters
   double prior_squares_ = 0.0;
   double residual_squares_ = 0.0;
   Eigen::VectorXd scale_;

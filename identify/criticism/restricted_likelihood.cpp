@@ -108,9 +108,11 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   const Eigen::VectorXd mean = problem.prior_mean.size() > 0 ? problem.prior_mean : Eigen::VectorXd::Zero(p);
   Eigen::VectorXd right = transform_.transpose() * (precision * mean);
   for (Group& group : groups_) {
-    Eigen::MatrixXd rows(kept + 1, group.rows.cols());
-    rows.topRows(kept) = transposed_product(transform_, group.rows.topRows(p));
-    rows.row(kept) = group.rows.row(p);
+    Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(p + 1, kept + 1);
+    carry.topLeftCorner(p, kept) = transform_;
+    carry(p, kept) = 1.0;
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kept + 1, group.rows.cols());
+    add_transposed_product(carry, group.rows, rows);
     group.rows = std::move(rows);
     const Eigen::Map<const Eigen::ArrayXd> sigma(group.data.sigma.data(), group.rows.cols());
     right += group.rows.topRows(kept) * (group.rows.row(kept).transpose().array() / sigma.square()).matrix();

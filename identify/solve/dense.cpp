@@ -84,32 +84,24 @@ void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
   dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 
-Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& b) {
-  use_single_threaded_blas();
-  const double one = 1.0, zero = 0.0;
+void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                            const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c) {
+  const double one = 1.0;
   const int m = static_cast<int>(a.cols()), n = static_cast<int>(b.cols()), k = static_cast<int>(a.rows());
   const int lda = static_cast<int>(a.outerStride()), ldb = static_cast<int>(b.outerStride());
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(m, n);
-  if (m == 0 || n == 0 || k == 0) return product;
-  dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &zero, product.data(), &m);
-  return product;
+  if (m == 0 || n == 0 || k == 0) return;
+  dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &one, c.data(), &m);
 }
 
-Eigen::MatrixXd gram_of_columns(const Eigen::Ref<const Eigen::MatrixXd>& a) {
-  use_single_threaded_blas();
-  const double one = 1.0, zero = 0.0;
+void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, Eigen::MatrixXd& c) {
+  const double one = 1.0;
   const int n = static_cast<int>(a.cols()), k = static_cast<int>(a.rows());
   const int lda = static_cast<int>(a.outerStride());
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(n, n);
-  if (n == 0 || k == 0) return gram;
-  dsyrk_("U", "T", &n, &k, &one, a.data(), &lda, &zero, gram.data(), &n);
-  symmetrise_from_upper(gram);
-  return gram;
+  if (n == 0 || k == 0) return;
+  dsyrk_("U", "T", &n, &k, &factor, a.data(), &lda, &one, c.data(), &n);
 }
 
 void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b) {
-  use_single_threaded_blas();
   const double one = 1.0;
   const int m = static_cast<int>(b.rows()), n = static_cast<int>(b.cols());
   if (m == 0 || n == 0) return;

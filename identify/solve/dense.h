@@ -27,11 +27,11 @@ SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric);
 
 /// upper(C) = A A^T, A is n x k with leading dimension n.
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
-/// A^T B.
-Eigen::MatrixXd transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
-                                   const Eigen::Ref<const Eigen::MatrixXd>& b);
-/// A^T A, full.
-Eigen::MatrixXd gram_of_columns(const Eigen::Ref<const Eigen::MatrixXd>& a);
+/// C += A^T B.
+void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                            const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c);
+/// upper(C) += factor A^T A.
+void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, Eigen::MatrixXd& c);
 /// B = L^-1 B, L lower triangular.
 void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b);
 /// Copies the upper triangle to the lower.

@@ -71,6 +71,24 @@ TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
   EXPECT_GT(found.diagnosis.ladder[1].heldout_loglik_gain, 10.0);
 }
 
+/// To the bit.
+TEST(Diagnosis, TheNumberOfThreadsChangesNothing) {
+  const sim::SimulatedCampaign simulated = sim::simulate(hiding({reversal("EZZ", 0.4e-6)}));
+  const FitResult result = fit(simulated.campaign, ModelSpec{});
+  DiagnoseOptions options;
+  const Diagnosis one = diagnose(simulated.campaign, result, options);
+  options.threads = 3;
+  const Diagnosis three = diagnose(simulated.campaign, result, options);
+  ASSERT_EQ(one.ranking.size(), three.ranking.size());
+  for (std::size_t i = 0; i < one.ranking.size(); ++i) {
+    EXPECT_EQ(one.ranking[i].name, three.ranking[i].name);
+    EXPECT_EQ(one.ranking[i].lm, three.ranking[i].lm);
+  }
+  ASSERT_EQ(one.ladder.size(), three.ladder.size());
+  EXPECT_EQ(one.ladder.back().rms_heldout, three.ladder.back().rms_heldout);
+  EXPECT_EQ(one.noise.front().value, three.noise.front().value);
+}
+
 /// The extended model, fitted, explains what was hidden.
 TEST(Diagnosis, ItsEffectCanBeFitted) {
   const Diagnosed found = diagnosed(hiding({reversal("EXX", 0.6e-6)}));

@@ -135,6 +135,43 @@ TEST(NoiseEstimate, TwoInstruments) {
               1e-6);
 }
 
+void expect_same_noise(const NoiseEstimate& a, const NoiseEstimate& b) {
+  EXPECT_NEAR(a.log_likelihood, b.log_likelihood, 0.02);
+  for (std::size_t g = 0; g < a.instruments.size(); ++g) {
+    EXPECT_EQ(a.instruments[g].wander.on, b.instruments[g].wander.on);
+    EXPECT_EQ(a.instruments[g].line.on, b.instruments[g].line.on);
+    EXPECT_EQ(a.instruments[g].per_metre.on, b.instruments[g].per_metre.on);
+    EXPECT_NEAR(std::log(a.instruments[g].parameters.white / b.instruments[g].parameters.white), 0.0, 0.01);
+  }
+}
+
+/// One more column, and the search from the end of the one without it finds what a search from nothing finds.
+TEST(NoiseEstimate, BeginsAtThePreviousEnd) {
+  std::mt19937_64 generator(7);
+  NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 60.0, 0.4e-6, 0.0}, {8, 5, 4}, 3);
+  const NoiseEstimate before = estimate_noise(problem);
+  const Eigen::Index p = problem.jacobian.cols();
+  problem.jacobian.conservativeResize(Eigen::NoChange, p + 1);
+  problem.jacobian.col(p).setRandom();
+  if (problem.prior_precision.size() > 0) {
+    problem.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(p + 1, p + 1));
+  }
+  const NoiseEstimate cold = estimate_noise(problem);
+  const NoiseEstimate warm = estimate_noise(problem, {}, &before);
+  expect_same_noise(cold, warm);
+  EXPECT_LT(warm.evaluations, 0.7 * cold.evaluations);
+}
+
+/// A start that lacks a term, or has one that is not there, is given up.
+TEST(NoiseEstimate, ATermThatComesOrGoesIsFound) {
+  std::mt19937_64 generator(8);
+  const NoiseProblem white = grid(generator, {1.0, 0.0, 60.0, 0.0, 0.0}, {8, 5, 4}, 3);
+  const NoiseProblem lines = grid(generator, {1.0, 0.0, 60.0, 1e-6, 0.0}, {8, 5, 4}, 3);
+  const NoiseEstimate of_white = estimate_noise(white), of_lines = estimate_noise(lines);
+  ASSERT_TRUE(of_lines.instruments[0].line.on && !of_white.instruments[0].line.on);
+  expect_same_noise(estimate_noise(lines, {}, &of_white), of_lines);
+}
+
 /// Returns to the same points only start the search elsewhere.
 TEST(NoiseEstimate, RepeatedPointsLeadToTheSameMaximum) {
   std::mt19937_64 generator(6);

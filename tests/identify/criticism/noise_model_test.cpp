@@ -125,6 +125,23 @@ TEST(Whitener, AnyOrderAndUntimedLines) {
   }
 }
 
+/// A part has the same rows, those that are there, sequence by sequence in the order of the filter.
+TEST(Whitener, PartsHoldTheRowsThatAreThere) {
+  std::mt19937_64 generator(4);
+  const Sample sample = random_sample(generator, Lines::Following, true, true);
+  const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(n, 70);
+  const Whitener whitener(sample.data, sample.noise);
+  Eigen::MatrixXd all;
+  whitener.whiten(columns, all, 1);
+  const Eigen::MatrixXd part = whitener.whiten_part(0, columns);
+  ASSERT_EQ(part.rows(), static_cast<Eigen::Index>(whitener.observations()));
+  const Eigen::VectorXd sums = part.rowwise().squaredNorm(), expected = all.rowwise().squaredNorm();
+  EXPECT_NEAR(sums.sum(), expected.sum(), 1e-12 * sums.sum());
+  EXPECT_LT((part.transpose() * part - all.transpose() * all).norm(), 1e-12 * sums.sum());
+  EXPECT_THROW(whitener.whiten_part(0, columns.topRows(n / 2)), std::invalid_argument);
+}
+
 TEST(Whitener, BlocksThreadsAndPlaceChangeNothing) {
   std::mt19937_64 generator(3);
   const Sample sample = random_sample(generator, Lines::Following, true, true);

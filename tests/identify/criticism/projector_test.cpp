@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "volcal/identify/criticism/score_test.h"
@@ -102,6 +103,34 @@ TEST(Projector, EqualsAnOrthogonalBasis) {
     EXPECT_NEAR(test.lm, (remaining * amplitude).squaredNorm(), 1e-9);
     EXPECT_EQ(test.dof, 3);
   }
+}
+
+/// Parts and groups are a matter of memory.
+TEST(Projector, PartsAndGroupsChangeNothing) {
+  std::mt19937_64 random(4);
+  NoiseProblem problem = random_problem(random);
+  const Eigen::Index half = kObservations / 2;
+  NoiseSequence& front = problem.data.sequences.front();
+  NoiseSequence back = front;
+  front.observation.resize(half), front.time.resize(half), front.line.resize(half);
+  back.observation.erase(back.observation.begin(), back.observation.begin() + half);
+  back.time.erase(back.time.begin(), back.time.begin() + half);
+  back.line.erase(back.line.begin(), back.line.begin() + half);
+  problem.data.sequences.push_back(back);
+  problem.data.sigma[7] = std::numeric_limits<double>::infinity();
+
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 5);
+  const Projector whole(problem, problem.data, {&kNoise, 1}, 1);
+  const Projector parted(problem, problem.data, {&kNoise, 1}, 2, {0, half, kObservations});
+  const ProjectedColumns expected = whole.project(columns);
+  const ProjectedColumns found =
+      parted.project({5, {2, 3}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
+                        rows = columns.middleRows(static_cast<Eigen::Index>(part) * half, half);
+                      }});
+  EXPECT_LT((found.score - expected.score).norm(), 1e-11);
+  EXPECT_LT((found.norm - expected.norm).norm(), 1e-11);
+  EXPECT_LT((found.gram(0, 2) - expected.gram(0, 2)).norm(), 1e-11);
+  EXPECT_LT((found.gram(3, 2) - expected.gram(3, 2)).norm(), 1e-11);
 }
 
 /// Taken into the model, columns get the amplitudes that the test had estimated, and nothing of them is left.

@@ -21,7 +21,9 @@ namespace {
 
 constexpr double kTrialRms = 1e-6;  // m
 constexpr double kVisibleFraction = 0.02;
-constexpr double kLargestRms = 40e-6;  // m: a larger effect is another kind of trouble
+constexpr double kLargestRms = 40e-6;     // m: a larger effect is another kind of trouble
+constexpr double kLargestAngle = 300e-6;  // rad, and per whatever the amplitude is taken for
+constexpr double kLargestLength = 200e-6;
 constexpr int kMostAttempts = 60;
 constexpr double kRemainderOfTheSame = 0.02;  // share of a signal; below, no reading tells two effects apart
 constexpr std::size_t kKeptOfRanking = 5;
@@ -131,6 +133,14 @@ class Yardstick {
   Projector projector_;
 };
 
+/// An effect that shows at second order alone needs an amplitude that no machine has.
+bool plausible(const sim::HiddenEffect& effect, double amplitude, double rms) {
+  const std::string unit = sim::amplitude_unit(effect);
+  if (unit.starts_with("urad") && std::abs(amplitude) > kLargestAngle) return false;
+  if (unit == "um" && std::abs(amplitude) > kLargestLength) return false;
+  return rms <= kLargestRms;
+}
+
 /// Hidden effects with the amplitudes that give the wanted signals, and what they do to the readings.
 struct Hidden {
   std::vector<sim::HiddenEffect> effects;
@@ -195,7 +205,7 @@ class CampaignRun {
     const Yardstick::Visible visible = yardstick_->visible(change);
     if (scaled && visible.fraction < kVisibleFraction) return false;
     const double factor = scaled ? planned.signal / visible.signal : 1.0;
-    if (*effect.rms * factor > kLargestRms) return false;
+    if (!plausible(effect, amplitude * factor, *effect.rms * factor)) return false;
     HiddenRecord record;
     record.signal = visible.signal * factor;
     record.visible_fraction = visible.fraction;

@@ -13,15 +13,16 @@ namespace volcal::cli {
 
 /// What became of a campaign, against what was hidden.
 enum class Outcome {
-  Right,         ///< NAMED with all that is hidden and nothing else; with nothing hidden: silence
-  RightInSet,    ///< ONE_OF of at most three, the right one among them
-  MoreRemains,   ///< NAMED_MORE_REMAINS, all names right
-  LargeSet,      ///< ONE_OF of more than three, the right one among them
-  WrongSet,      ///< ONE_OF without the right one
-  Part,          ///< NAMED, all names right, something hidden is missing
-  Unknown,       ///< UNKNOWN with the right variables and direction
-  UnknownOther,  ///< UNKNOWN, with others
-  Silent,        ///< NOTHING_ABOVE
+  Right,           ///< NAMED with all that is hidden and nothing else; with nothing hidden: silence
+  RightInSet,      ///< ONE_OF of at most three, the right one among them
+  RightInClasses,  ///< the same, effects that are one and the same in these readings counted once
+  MoreRemains,     ///< NAMED_MORE_REMAINS, all names right
+  LargeSet,        ///< ONE_OF of more than three, the right one among them
+  WrongSet,        ///< ONE_OF without the right one
+  Part,            ///< NAMED, all names right, something hidden is missing
+  Unknown,         ///< UNKNOWN with the right variables and direction
+  UnknownOther,    ///< UNKNOWN, with others
+  Silent,          ///< NOTHING_ABOVE
   NotVisible,
   Wrong,  ///< a wrong effect stands among the named ones
   NoDiagnosis

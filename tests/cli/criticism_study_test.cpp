@@ -1,0 +1,151 @@
+/// The study of model criticism, small enough for every test run; docs/studies.md has the full one.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using nlohmann::json;
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+const json& figure(const json& study, const std::string& name) {
+  const auto& figures = study.at("figures");
+  const auto found =
+      std::ranges::find_if(figures, [&](const json& each) { return each.at("figure") == name; });
+  if (found == figures.end()) throw std::out_of_range("no figure " + name);
+  return *found;
+}
+
+TEST(CriticismStudy, SaysNothingOfNothingAndNamesNoWrongEffect) {
+  const auto run = run_program("study criticism --rows null,listed -n 3 --seed 1 --readings 700 --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const json study = json::parse(run.output);
+  ASSERT_EQ(study.at("campaigns").size(), 18U);
+  for (const auto& campaign : study.at("campaigns")) {
+    if (campaign.at("row") == "null") {
+      EXPECT_THAT(campaign.at("verdict"), ::testing::AnyOf("NOTHING_ABOVE", "NOT_VISIBLE")) << campaign;
+    }
+    EXPECT_EQ(campaign.at("failure"), "");
+    EXPECT_NE(campaign.at("outcome"), "wrong name") << campaign;
+    EXPECT_NEAR(campaign.at("readings").get<double>(), 700.0, 300.0);
+    for (const auto& hidden : campaign.at("hidden")) {
+      EXPECT_GE(hidden.at("signal").get<double>(), 4.99);
+      EXPECT_NE(hidden.at("right"), "");
+    }
+  }
+  EXPECT_EQ(figure(study, "false alarm, nothing hidden").at("count"), 0);
+  EXPECT_EQ(figure(study, "wrong confident name, any s").at("of"), 3);
+}
+
+TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
+  const testing::ScratchFolder folder;
+  const std::string output = (folder.path() / "kept").string();
+  const auto run =
+      run_program("study criticism --rows listed -n 6 --seed 40 --readings 1000 --json -o " + output);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const json study = json::parse(run.output);
+  int strong = 0;
+  for (const auto& campaign : study.at("campaigns")) {
+    if (campaign.at("hidden")[0].at("signal").get<double>() < 11.9) continue;
+    ++strong;
+    EXPECT_THAT(campaign.at("outcome"), ::testing::StartsWith("right")) << campaign.dump(1);
+    const double possible = campaign.at("ms_given").get<double>() - campaign.at("ms_oracle").get<double>();
+    const double reached = campaign.at("ms_given").get<double>() - campaign.at("ms_named").get<double>();
+    EXPECT_GT(reached, 0.8 * possible) << campaign.dump(1);
+  }
+  EXPECT_GE(strong, 2);
+}
+
+TEST(CriticismStudy, DoesNotDependOnTheNumberOfThreads) {
+  const std::string command =
+      "study criticism --rows listed,unlisted,partial -n 2 --readings 500 --json --threads ";
+  const auto one = run_program(command + "1");
+  const auto two = run_program(command + "2");
+  ASSERT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_EQ(one.output, two.output);
+}
+
+class CriticismStudyFolder : public ::testing::Test {
+ protected:
+  testing::ProgramRun study(const std::string& arguments) {
+    return run_program("study criticism --rows null --readings 500 " + arguments);
+  }
+  std::vector<json> kept() const {
+    std::vector<json> records;
+    std::istringstream lines(content(file_));
+    for (std::string line; std::getline(lines, line);) records.push_back(json::parse(line));
+    return records;
+  }
+  void keep(const std::vector<json>& records) const {
+    std::ofstream file(file_, std::ios::trunc);
+    for (const json& record : records) file << record.dump() << '\n';
+  }
+
+  testing::ScratchFolder scratch_;
+  std::string output_ = (scratch_.path() / "kept").string();
+  std::filesystem::path file_ = std::filesystem::path(output_) / "campaigns.jsonl";
+};
+
+TEST_F(CriticismStudyFolder, GoesOnWhereItWasInterrupted) {
+  const auto whole = study("-n 1 --json -o " + output_);
+  ASSERT_EQ(whole.exit_code, 0) << whole.errors;
+  const std::string all = content(file_);
+  std::vector<json> records = kept();
+  ASSERT_EQ(records.size(), 5U);
+  // Two are lost; of one of them half a line was written.
+  keep({records[0], records[2], records[4]});
+  std::ofstream(file_, std::ios::app) << records[1].dump().substr(0, 200);
+  const auto resumed = study("-n 1 --json --resume -o " + output_);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+  EXPECT_EQ(resumed.output, whole.output);
+  EXPECT_EQ(kept().size(), 5U);
+}
+
+TEST_F(CriticismStudyFolder, RefusesCampaignsOfAnotherRun) {
+  ASSERT_EQ(study("-n 1 -o " + output_).exit_code, 0);
+  const auto again = study("-n 1 -o " + output_);
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.errors, HasSubstr("--resume"));
+  const auto seed = study("-n 1 --resume --seed 2 -o " + output_);
+  EXPECT_EQ(seed.exit_code, 2);
+  EXPECT_THAT(seed.errors, HasSubstr("--seed 1"));
+  const auto row = run_program("study criticism --rows gremlins");
+  EXPECT_EQ(row.exit_code, 2);
+  EXPECT_THAT(row.errors, HasSubstr("gremlins"));
+}
+
+TEST_F(CriticismStudyFolder, CountsFalseAlarmsWithWilsonIntervals) {
+  ASSERT_EQ(study("-n 1 -o " + output_).exit_code, 0);
+  std::vector<json> records = kept();
+  const json alarm = json::parse(R"({"name": "reversal:EXX:dir_x:step", "hidden": -1, "by_name": false,
+      "resolution": false, "scanned": false, "explains": 0.0, "log10_p": -4.0, "gain": 9.0, "amplitudes": []})");
+  records[3]["verdict"] = "NAMED";
+  records[3]["named"] = json::array({alarm});
+  keep(records);
+  const auto counted = study("-n 1 --json --resume -o " + output_);
+  ASSERT_EQ(counted.exit_code, 0) << counted.errors;
+  const json total = figure(json::parse(counted.output), "false alarm, nothing hidden");
+  EXPECT_EQ(total.at("count"), 1);
+  EXPECT_EQ(total.at("of"), 5);
+  // (p + z2/2n -+ z sqrt(p (1 - p) / n + z2/4n2)) / (1 + z2/n) with p = 0.2, n = 5, z = 1.96
+  EXPECT_NEAR(total.at("low95").get<double>(), 0.0362, 1e-4);
+  EXPECT_NEAR(total.at("high95").get<double>(), 0.6245, 1e-4);
+  EXPECT_THAT(study("-n 1 --resume -o " + output_).output, HasSubstr("wrong name: reversal"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "volcal/identify/criticism/ladder.h"
+#include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/description/units.h"
 
@@ -34,166 +34,55 @@ std::string to_string(Verdict verdict) {
 
 namespace {
 
-const double kLog10FamilyRisk = std::log10(0.005);
-const double kLog10GenericRisk = std::log10(0.002);  // kernels and polynomials each
-constexpr double kToldApart = 6.0;                   // of the extended BIC
 constexpr double kVisible = 0.02;
 constexpr double kPower = 0.8;
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostAlternatives = 6;
+constexpr std::size_t kMostUnknown = 10;
+
+int thread_count(int asked) {
+  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+SearchOptions search_options(const DiagnoseOptions& options) {
+  return {.threads = thread_count(options.threads),
+          .most = options.most_effects,
+          .climb = options.climb,
+          .leave_out = options.leave_out,
+          .progress = options.progress};
+}
 
 class Diagnostician {
  public:
   Diagnostician(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options)
-      : options_(options),
-        threads_(options.threads > 0 ? options.threads
-                                     : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
-        model_(campaign, result),
-        heldout_(heldout_lines(model_, options.heldout_share)) {
+      : model_(campaign, result),
+        heldout_(heldout_lines(model_, options.heldout_share)),
+        search_(model_, heldout_, search_options(options)),
+        families_(search_.families()),
+        progress_(options.progress) {
     diagnosis_.removed_readings = static_cast<std::size_t>(
         std::ranges::count_if(result.residuals, [](const ResidualRecord& record) { return record.removed; }));
   }
 
   Diagnosis run() {
-    progress("noise model", 0.05);
-    find_noise();
-    families_ = families(model_);
-    std::erase_if(families_, [this](const Family& family) {
-      return std::ranges::find(options_.leave_out, family.name().kind) != options_.leave_out.end();
-    });
-    variables_ = scan_variables(model_);
+    search_.run();
     diagnosis_.families = families_.size();
-    add_step("");
-    for (int step = 0; step <= options_.most_effects; ++step) {
-      progress(fmt::format("tests, step {}", step + 1), 0.2 + 0.7 * step / (options_.most_effects + 1.0));
-      test();
-      if (step == 0) list_invisible();
-      if (step == options_.most_effects || !accept_leading()) break;
-      if (!options_.climb && !diagnosis_.effects.empty()) {
-        test();
-        break;
-      }
-    }
-    list_noise();
+    diagnosis_.generic_tests = search_.generic().size();
+    diagnosis_.ladder = search_.ladder();
+    list_added();
+    list_invisible();
     rank();
-    drop_unneeded();
+    collect_unknown();
+    list_noise();
     conclude();
-    progress("done", 1.0);
+    if (progress_) progress_("done", 1.0);
     return std::move(diagnosis_);
   }
 
  private:
-  void progress(const std::string& stage, double done) const {
-    if (options_.progress) options_.progress(stage, done);
-  }
-
-  /// Noise of all readings; the projector that chooses sees those that are not held out.
-  void find_noise() {
-    NoiseOptions noise;
-    noise.threads = threads_;
-    noise.uncertainty = false;
-    noise_estimate_ = estimate_noise(with_accepted(), noise, accepted_.empty() ? nullptr : &noise_estimate_);
-    noise_ = noise_estimate_.parameters();
-    projector_ = std::make_unique<Projector>(model_.problem(), without(model_.problem().data, heldout_),
-                                             noise_, threads_, model_.parts());
-    for (const Eigen::MatrixXd& columns : accepted_columns_) projector_->accept(columns);
-  }
-
   void list_noise() {
-    NoiseOptions noise;
-    noise.threads = threads_;
-    noise_estimate_ = estimate_noise(with_accepted(), noise, &noise_estimate_);
-    diagnosis_.noise = noise_table(noise_estimate_);
+    diagnosis_.noise = noise_table(search_.noise_with_uncertainty());
     diagnosis_.noise_instruments = model_.instruments();
-  }
-
-  /// The linear model with the accepted effects as further columns.
-  NoiseProblem with_accepted() const {
-    NoiseProblem problem = model_.problem();
-    for (const Eigen::MatrixXd& columns : accepted_columns_) {
-      const Eigen::Index before = problem.jacobian.cols();
-      problem.jacobian.conservativeResize(Eigen::NoChange, before + columns.cols());
-      problem.jacobian.rightCols(columns.cols()) = columns;
-      problem.prior_precision.conservativeResizeLike(
-          Eigen::MatrixXd::Zero(before + columns.cols(), before + columns.cols()));
-      problem.prior_mean.conservativeResizeLike(Eigen::VectorXd::Zero(before + columns.cols()));
-    }
-    return problem;
-  }
-
-  void test() {
-    tests_ = test_families(model_, families_, *projector_, threads_);
-    generic_ = generic_scan(model_, variables_, *projector_, threads_);
-    diagnosis_.generic_tests = generic_.size();
-    log10_families_ = std::log10(static_cast<double>(std::max<std::size_t>(families_.size(), 1)));
-    log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
-  }
-
-  double family_wise(const FamilyTest& test) const { return std::min(0.0, test.log10_p + log10_families_); }
-  double family_wise(const GenericTest& test) const { return std::min(0.0, test.log10_p + log10_generic_); }
-
-  const FamilyTest* leading() const {
-    const FamilyTest* best = nullptr;
-    for (const FamilyTest& test : tests_) {
-      if (accepted_.contains(test.family) || test.score.dof == 0) continue;
-      if (best == nullptr || test.gain > best->gain) best = &test;
-    }
-    return best;
-  }
-
-  const GenericTest* leading_generic() const {
-    const GenericTest* best = nullptr;
-    for (const GenericTest& test : generic_) {
-      if (best == nullptr || test.log10_p < best->log10_p) best = &test;
-    }
-    return best;
-  }
-
-  /// The largest gain of the generic polynomials: what an unlisted effect of few terms would reach.
-  double generic_gain() const {
-    double gain = 0.0;
-    for (const GenericTest& test : generic_) {
-      if (!test.kernel) gain = std::max(gain, test.gain);
-    }
-    return gain;
-  }
-
-  /// Families that the readings do not tell from the leading one.
-  std::vector<const FamilyTest*> rivals(const FamilyTest& best) const {
-    std::vector<const FamilyTest*> near;
-    for (const FamilyTest& test : tests_) {
-      if (&test == &best || accepted_.contains(test.family) || test.score.dof == 0) continue;
-      if (best.gain - test.gain < kToldApart) near.push_back(&test);
-    }
-    std::ranges::sort(near, std::greater{}, &FamilyTest::gain);
-    return near;
-  }
-
-  /// Adds the leading family when it is above the noise and alone; false when the climb ends here.
-  bool accept_leading() {
-    const FamilyTest* best = leading();
-    if (best == nullptr || family_wise(*best) > kLog10FamilyRisk) return false;
-    if (generic_gain() > best->gain + kToldApart) return false;
-    const auto near = rivals(*best);
-    if (!near.empty()) {
-      diagnosis_.one_of.push_back(finding(*best));
-      for (const FamilyTest* test : near) {
-        if (diagnosis_.one_of.size() < kMostAlternatives) diagnosis_.one_of.push_back(finding(*test));
-      }
-      return false;
-    }
-    accept(*best);
-    return true;
-  }
-
-  void accept(const FamilyTest& test) {
-    accepted_.insert(test.family);
-    accepted_columns_.push_back(family_columns(model_, families_[test.family], test.shape));
-    (families_[test.family].resolution ? diagnosis_.model_changes : diagnosis_.effects)
-        .push_back(finding(test));
-    accepted_order_.push_back(test.family);
-    find_noise();
-    add_step(families_[test.family].label());
   }
 
   EffectFinding finding(const FamilyTest& test) const {
@@ -202,43 +91,92 @@ class Diagnostician {
     out.name = family.name();
     out.label = family.label();
     out.spec = family.spec;
-    out.log10_p = family_wise(test);
+    out.log10_p = search_.family_wise_log10_p(test);
     out.lm = test.score.lm;
     out.dof = test.score.dof;
     out.gain = test.gain;
     out.visible_fraction = test.score.visible_fraction;
     out.resolution = family.resolution.has_value();
     if (!family.effect) return out;
-    const double detectable = std::sqrt(
-        detectable_noncentrality(kLog10FamilyRisk - log10_families_, std::max(1, test.score.dof), kPower));
-    const auto& amplitudes = family.effect->amplitudes();
-    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
+    const double detectable =
+        std::sqrt(detectable_noncentrality(search_.log10_level(), std::max(1, test.score.dof), kPower));
+    for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
+      const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
       const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-      out.amplitudes.push_back({amplitudes[k].label, test.score.amplitude[at], u, u * detectable,
-                                amplitudes[k].unit(), amplitudes[k].si_per_unit()});
-      out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), test.score.amplitude[at]);
+      out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u, u * detectable,
+                                amplitude.unit(), amplitude.si_per_unit()});
     }
-    const auto& shapes = family.effect->shapes();
-    for (std::size_t k = 0; k < shapes.size(); ++k) {
-      const double value = test.shape[static_cast<Eigen::Index>(k)];
-      const std::string stem(stem_of_key(shapes[k].key));
-      out.spec.options.set(stem, value);
-      out.shape_text += fmt::format("{}{} {:.4g} {}", k > 0 ? ", " : "", stem,
-                                    value / shapes[k].si_per_unit(), shapes[k].unit());
-    }
+    state_values(family, test.shape, Eigen::VectorXd::Zero(test.shape.size()), out);
     return out;
   }
 
-  void add_step(const std::string& added) {
-    LadderStep step = ladder_step(model_, heldout_, noise_, *projector_, accepted_columns_, heldout_loglik_);
-    step.model = std::to_string(diagnosis_.ladder.size());
-    step.added = added;
-    diagnosis_.ladder.push_back(step);
+  /// Amplitudes and shape of a finding into its specification, the shape in words.
+  static void state_values(const Family& family, const Eigen::VectorXd& shape, const Eigen::VectorXd& u,
+                           EffectFinding& out) {
+    const auto& amplitudes = family.effect->amplitudes();
+    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+      out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), out.amplitudes[k].value);
+    }
+    const auto& shapes = family.effect->shapes();
+    out.shape_text.clear();
+    for (std::size_t k = 0; k < shapes.size(); ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      const std::string stem(stem_of_key(shapes[k].key));
+      const double si = shapes[k].si_per_unit();
+      out.spec.options.set(stem, shape[at]);
+      out.shape_text += fmt::format("{}{} {:.4g}", k > 0 ? ", " : "", stem, shape[at] / si);
+      if (u[at] > 0.0) out.shape_text += fmt::format(" +- {:.2g}", 1.96 * u[at] / si);
+      out.shape_text += " " + shapes[k].unit();
+    }
+  }
+
+  /// Everything added, estimated together from all readings that are not held out.
+  void list_added() {
+    const Eigen::VectorXd solution = search_.projector().solution();
+    const Eigen::MatrixXd covariance = search_.projector().accepted_covariance();
+    Eigen::Index at = 0;
+    for (const AddedEffect& added : search_.added()) {
+      const Eigen::Index count = added.columns.cols();
+      const Eigen::VectorXd values = solution.segment(solution.size() - covariance.rows() + at, count);
+      const Eigen::VectorXd u = covariance.diagonal().segment(at, count).cwiseMax(0.0).cwiseSqrt();
+      at += count;
+      list(added, estimated(added, values, u));
+    }
+  }
+
+  EffectFinding estimated(const AddedEffect& added, const Eigen::VectorXd& values,
+                          const Eigen::VectorXd& u) const {
+    const Family& family = families_[added.test.family];
+    EffectFinding out = finding(added.test);
+    if (!family.effect) return out;
+    for (std::size_t k = 0; k < out.amplitudes.size(); ++k) {
+      out.amplitudes[k].value = values[static_cast<Eigen::Index>(k)];
+      out.amplitudes[k].u = u[static_cast<Eigen::Index>(k)];
+    }
+    Eigen::VectorXd shape = added.test.shape, shape_u = Eigen::VectorXd::Zero(shape.size());
+    if (values.size() > family.amplitudes()) {
+      shape += values.tail(shape.size());
+      shape_u = u.tail(shape.size());
+    }
+    state_values(family, shape, shape_u, out);
+    return out;
+  }
+
+  /// A change of the model, a name, or one of several names.
+  void list(const AddedEffect& added, const EffectFinding& finding) {
+    if (added.rivals.empty()) {
+      (finding.resolution ? diagnosis_.model_changes : diagnosis_.effects).push_back(finding);
+      return;
+    }
+    if (!diagnosis_.one_of.empty()) return;
+    diagnosis_.one_of.push_back(finding);
+    for (const FamilyTest& rival : added.rivals) {
+      if (diagnosis_.one_of.size() < kMostAlternatives) diagnosis_.one_of.push_back(this->finding(rival));
+    }
   }
 
   void list_invisible() {
-    for (const FamilyTest& test : tests_) {
+    for (const FamilyTest& test : search_.first_tests()) {
       if (families_[test.family].resolution) continue;
       if (test.score.dof == 0 || test.score.visible_fraction < kVisible) {
         diagnosis_.not_visible.push_back(finding(test));
@@ -248,64 +186,28 @@ class Diagnostician {
 
   void rank() {
     std::vector<const FamilyTest*> order;
-    for (const FamilyTest& test : tests_) {
-      if (test.score.dof > 0 && !accepted_.contains(test.family)) order.push_back(&test);
+    for (const FamilyTest& test : search_.tests()) {
+      if (test.score.dof > 0 && !search_.is_added(test.family)) order.push_back(&test);
     }
     std::ranges::sort(order, std::greater{}, &FamilyTest::gain);
     for (std::size_t i = 0; i < std::min(kListed, order.size()); ++i) {
       diagnosis_.ranking.push_back(finding(*order[i]));
     }
-    collect_unknown();
   }
 
   /// Significant generic tests, leading first, one per set of variables.
   void collect_unknown() {
     std::vector<const GenericTest*> order;
-    for (const GenericTest& test : generic_) {
-      if (family_wise(test) < kLog10GenericRisk) order.push_back(&test);
+    for (const GenericTest& test : search_.generic()) {
+      if (search_.family_wise_log10_p(test) < kLog10GenericRisk) order.push_back(&test);
     }
     std::ranges::sort(order, {}, &GenericTest::log10_p);
     std::set<std::vector<std::string>> seen;
     for (const GenericTest* test : order) {
-      if (!seen.insert(test->variables).second || diagnosis_.unknown.size() == 10) continue;
-      diagnosis_.unknown.push_back({test->variables, test->direction, test->rms, family_wise(*test)});
+      if (!seen.insert(test->variables).second || diagnosis_.unknown.size() == kMostUnknown) continue;
+      diagnosis_.unknown.push_back(
+          {test->variables, test->direction, test->rms, search_.family_wise_log10_p(*test)});
     }
-  }
-
-  /// Estimates of everything accepted together, from all readings that are not held out; what is no longer
-  /// significant beside the others leaves.
-  void drop_unneeded() {
-    if (accepted_order_.empty()) return;
-    const Eigen::VectorXd solution = projector_->solution();
-    const Eigen::MatrixXd covariance = projector_->accepted_covariance();
-    Eigen::Index at = 0;
-    std::vector<EffectFinding> kept;
-    const Eigen::Index first = solution.size() - covariance.rows();
-    for (std::size_t i = 0; i < accepted_order_.size(); ++i) {
-      const Eigen::Index count = accepted_columns_[i].cols();
-      const Family& family = families_[accepted_order_[i]];
-      if (!family.resolution)
-        update(family, solution.segment(first + at, count), covariance.block(at, at, count, count), kept);
-      at += count;
-    }
-    diagnosis_.effects = std::move(kept);
-  }
-
-  void update(const Family& family, const Eigen::VectorXd& amplitude, const Eigen::MatrixXd& covariance,
-              std::vector<EffectFinding>& kept) const {
-    const auto found = std::ranges::find_if(
-        diagnosis_.effects, [&](const EffectFinding& each) { return each.name == family.name(); });
-    EffectFinding finding = *found;
-    const double lm = amplitude.dot(covariance.ldlt().solve(amplitude));
-    const double log10_p = log10_chi_squared_exceedance(lm, static_cast<double>(amplitude.size()));
-    if (log10_p + log10_families_ > kLog10FamilyRisk) return;
-    for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
-      const auto at = static_cast<Eigen::Index>(k);
-      finding.amplitudes[k].value = amplitude[at];
-      finding.amplitudes[k].u = std::sqrt(covariance(at, at));
-      finding.spec.options.set(std::string(stem_of_key(family.effect->amplitudes()[k].key)), amplitude[at]);
-    }
-    kept.push_back(std::move(finding));
   }
 
   bool mostly_invisible() const {
@@ -324,13 +226,16 @@ class Diagnostician {
         words.push_back("The missing effect is: " + sentence(effect));
       if (!diagnosis_.one_of.empty()) words.push_back("More remains, one of: " + names(diagnosis_.one_of));
       if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
-    } else if (!diagnosis_.one_of.empty()) {
+    } else if (!diagnosis_.one_of.empty() && !more) {
       diagnosis_.verdict = Verdict::OneOf;
       words.push_back("One of these is missing, and these readings do not tell them apart: " +
                       names(diagnosis_.one_of));
     } else if (more) {
       diagnosis_.verdict = Verdict::Unknown;
       words.push_back("An effect that is in no catalogue: " + sentence(diagnosis_.unknown.front()));
+      if (!diagnosis_.one_of.empty()) {
+        words.push_back("Nearest in the catalogue, but not all of it: " + names(diagnosis_.one_of));
+      }
     } else if (mostly_invisible()) {
       diagnosis_.verdict = Verdict::NotVisible;
       words.push_back(fmt::format(
@@ -370,24 +275,12 @@ class Diagnostician {
                        unknown.direction, unknown.rms * 1e6);
   }
 
-  const DiagnoseOptions& options_;
-  int threads_;
   LinearModel model_;
   std::vector<bool> heldout_;
+  EffectSearch search_;
+  const std::vector<Family>& families_;
+  std::function<void(const std::string&, double)> progress_;
   Diagnosis diagnosis_;
-  std::vector<Family> families_;
-  std::vector<ScanVariable> variables_;
-  NoiseEstimate noise_estimate_;
-  std::vector<NoiseParameters> noise_;
-  std::unique_ptr<Projector> projector_;
-  std::vector<FamilyTest> tests_;
-  std::vector<GenericTest> generic_;
-  std::set<std::size_t> accepted_;
-  std::vector<std::size_t> accepted_order_;
-  std::vector<Eigen::MatrixXd> accepted_columns_;
-  std::optional<double> heldout_loglik_;
-  double log10_families_ = 0.0;
-  double log10_generic_ = 0.0;
 };
 
 }  // namespace

@@ -72,7 +72,7 @@ struct DiagnoseOptions {
   int threads = 1;     ///< 0 = as many as the machine has; results do not depend on it
   bool climb = false;  ///< add effects until nothing is left
   int most_effects = 8;
-  double heldout_share = 0.2;
+  double heldout_share = 0.1;
   std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
   std::function<void(const std::string& stage, double done)> progress;
 };

@@ -86,7 +86,6 @@ class FamilyTester {
   FamilyTester(const LinearModel& model, const std::vector<Family>& families, const Projector& projector)
       : model_(model), families_(families), projector_(projector) {
     tests_.resize(families.size());
-    log_count_ = std::log(static_cast<double>(projector.observations()));
   }
 
   std::vector<FamilyTest> run(int threads) {
@@ -151,9 +150,7 @@ class FamilyTester {
       best.shape = scan[i];
     }
     best.multiplicity = scan_multiplicity(projected, first, static_cast<Eigen::Index>(scan.size()), columns);
-    best.log10_p = std::min(0.0, best.score.log10_p + std::log10(best.multiplicity));
-    const double shapes = scan.size() > 1 ? static_cast<double>(best.shape.size()) : 0.0;
-    best.gain = best.score.lm - (best.score.dof + shapes) * log_count_;
+    update_test(best, families_[family], best.shape, best.score, projector_);
     return best;
   }
 
@@ -161,7 +158,6 @@ class FamilyTester {
   const std::vector<Family>& families_;
   const Projector& projector_;
   std::vector<FamilyTest> tests_;
-  double log_count_ = 0.0;
 };
 
 }  // namespace
@@ -176,6 +172,18 @@ std::string Family::label() const {
 Eigen::Index Family::amplitudes() const {
   return resolution ? kHighestExtraDegree - kLowestExtraDegree + 1
                     : static_cast<Eigen::Index>(effect->amplitudes().size());
+}
+
+bool Family::independent_components() const {
+  if (resolution || amplitudes() < 2) return false;
+  std::set<int> components;
+  const auto& all = effect->amplitudes();
+  for (const EffectAmplitude& amplitude : all) {
+    if (amplitude.target.kind == TargetKind::Motion || amplitude.target.kind == TargetKind::Reading)
+      return false;
+    components.insert(amplitude.target.component);
+  }
+  return components.size() == all.size();
 }
 
 EffectName Family::name() const {
@@ -199,6 +207,35 @@ std::vector<Family> families(const LinearModel& model) {
     all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});
   }
   return all;
+}
+
+namespace {
+
+/// LM less its price in dof, of the components that are worth it.
+double best_of_components(const ScoreTest& score, double price) {
+  const auto count = static_cast<int>(score.score.size());
+  double best = score.lm - score.dof * price;
+  for (int subset = 1; subset + 1 < 1 << count; ++subset) {
+    std::vector<Eigen::Index> which;
+    for (int k = 0; k < count; ++k) {
+      if ((subset >> k & 1) != 0) which.push_back(k);
+    }
+    best = std::max(best, score.lm_of(which) - static_cast<double>(which.size()) * price);
+  }
+  return best;
+}
+
+}  // namespace
+
+void update_test(FamilyTest& test, const Family& family, const Eigen::VectorXd& shape, const ScoreTest& score,
+                 const Projector& projector) {
+  const double price = std::log(static_cast<double>(projector.observations()));
+  const double shapes = family.scan.size() > 1 ? static_cast<double>(shape.size()) : 0.0;
+  test.shape = shape;
+  test.score = score;
+  test.log10_p = std::min(0.0, score.log10_p + std::log10(test.multiplicity));
+  const bool components = family.independent_components() && score.dof > 1;
+  test.gain = (components ? best_of_components(score, price) : score.lm - score.dof * price) - shapes * price;
 }
 
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {

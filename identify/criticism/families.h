@@ -22,6 +22,9 @@ struct Family {
   std::string label() const;
   EffectName name() const;
   Eigen::Index amplitudes() const;
+  /// The amplitudes act on different things (components of a displacement), so that each may be absent; the
+  /// sine and cosine of a period are one thing.
+  bool independent_components() const;
 };
 
 /// The model's own effects are left out.
@@ -37,8 +40,13 @@ struct FamilyTest {
   ScoreTest score;
   double multiplicity = 1.0;  ///< effective number of independent shapes that were tried
   double log10_p = 0.0;       ///< with the multiplicity, for this family alone
-  double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof
+  double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof,
+                              ///< and of independent components only those that raise it
 };
+
+/// Takes a test to a shape with its score; the multiplicity stays.
+void update_test(FamilyTest& test, const Family& family, const Eigen::VectorXd& shape, const ScoreTest& score,
+                 const Projector& projector);
 
 /// Tests of all families, in their order, the same for any number of threads. Blocks of columns bound the
 /// memory: 2 kB per observation and thread, and those of the widest scan.

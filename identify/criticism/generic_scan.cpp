@@ -1,5 +1,6 @@
 #include "volcal/identify/criticism/generic_scan.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,6 +9,7 @@
 #include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/score_test.h"
 #include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/stats/quadratic_form.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -17,6 +19,7 @@ constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
 constexpr std::size_t kDirections = 4;
 constexpr Eigen::Index kBlockColumns = 256;
+constexpr double kWorthExactTail = -2.0;  // log10 p: above, two moments do
 
 /// What the columns of a variable are made of.
 struct Features {
@@ -207,6 +210,11 @@ class GenericScanner {
       test.dof = trace * trace / squares;
       test.lm = projected.score.segment(first, columns).squaredNorm() * trace / squares;
       test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
+      if (test.log10_p < kWorthExactTail) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
+        test.log10_p = log10_quadratic_form_exceedance(projected.score.segment(first, columns).squaredNorm(),
+                                                       eigen.eigenvalues().cwiseMax(0.0));
+      }
       test.rms = explained_rms(test.lm - test.dof);
     }
     return test;

@@ -3,7 +3,7 @@
 ///   polynomials  along X, Y, Z or the beam, in every recorded variable and pair of variables
 ///   kernel       the same with a sum of cosines whose weights fall with frequency, as a variance component:
 ///                sees bumps, waves and kinks (score test of a variance component, Lin 1997, Biometrika 84;
-///                Satterthwaite's approximation of the mixture of chi-squared)
+///                its tail is that of a weighted sum of chi-squared variables)
 
 #include <string>
 #include <vector>

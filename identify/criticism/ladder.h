@@ -9,7 +9,7 @@
 
 namespace volcal {
 
-/// Every fifth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
+/// Every tenth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
 /// of ten readings instead. Spread evenly, the same for every run.
 std::vector<bool> heldout_lines(const LinearModel& model, double share);
 

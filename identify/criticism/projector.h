@@ -61,6 +61,8 @@ class Projector {
   Eigen::MatrixXd accepted_covariance() const;
   /// |r~|^2: what the model leaves, in units of the noise.
   double residual_squares() const;
+  /// log|Sigma| of the observations in use.
+  double log_determinant() const { return whitener_.log_determinant(); }
   std::size_t observations() const { return whitener_.observations(); }
   Eigen::Index parameters() const { return whitened_.front().cols() - 1; }
   Eigen::Index accepted() const { return parameters() - base_parameters_; }

@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/score_test.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -16,8 +17,10 @@ ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eige
   if (norm.maxCoeff() == 0.0) return test;
   const Eigen::VectorXd scale =
       norm.unaryExpr([](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-  const Eigen::MatrixXd gram = scale.asDiagonal() * projected.gram(first, columns) * scale.asDiagonal();
-  const Eigen::VectorXd score = scale.cwiseProduct(projected.score.segment(first, columns));
+  test.gram = projected.gram(first, columns);
+  test.score = projected.score.segment(first, columns);
+  const Eigen::MatrixXd gram = scale.asDiagonal() * test.gram * scale.asDiagonal();
+  const Eigen::VectorXd score = scale.cwiseProduct(test.score);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
   test.visible_fraction = std::sqrt(std::max(0.0, gram.trace() / static_cast<double>(columns)));
   for (Eigen::Index k = 0; k < columns; ++k) {
@@ -33,6 +36,18 @@ ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eige
   }
   if (test.dof > 0) test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
   return test;
+}
+
+double ScoreTest::lm_of(const std::vector<Eigen::Index>& which) const {
+  const Eigen::VectorXd own = score(which);
+  Eigen::MatrixXd own_gram = gram(which, which);
+  const Eigen::VectorXd scale = own_gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  own_gram = scale.asDiagonal() * own_gram * scale.asDiagonal();
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(kInvisibleShare);
+  solver.compute(own_gram);
+  const Eigen::VectorXd scaled = scale.cwiseProduct(own);
+  return scaled.dot(solver.solve(scaled));
 }
 
 }  // namespace volcal

@@ -4,6 +4,7 @@
 /// model.
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "volcal/identify/criticism/projector.h"
 
@@ -19,6 +20,12 @@ struct ScoreTest {
   double visible_fraction = 0.0;  ///< |g~| / |g_w|, over the columns in root mean square
   Eigen::VectorXd amplitude;      ///< SI, least norm where a direction is invisible
   Eigen::MatrixXd covariance;     ///< of `amplitude`
+
+  /// LM of some of the amplitudes alone, the others being zero. As many as `which` has elements.
+  double lm_of(const std::vector<Eigen::Index>& which) const;
+
+  Eigen::MatrixXd gram;   ///< g~^T g~
+  Eigen::VectorXd score;  ///< g~^T r~
 };
 
 ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns);

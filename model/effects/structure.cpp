@@ -25,13 +25,19 @@ std::unique_ptr<FormulaEffect> make_product_coupling(const EffectTable& table) {
       });
 }
 
+/// A displacement by the product of two positions is the same whichever axis it is said to belong to: it is
+/// offered once, under the first of the two.
+bool said_elsewhere(ErrorSymbol symbol, AxisName first) {
+  return !is_rotation(symbol.component) && symbol.axis != first;
+}
+
 std::vector<EffectSpec> product_couplings(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   const auto axes = linear_axes(campaign.machine);
   for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
     for (const AxisName first : axes) {
       for (const AxisName second : axes) {
-        if (first >= second) continue;
+        if (first >= second || said_elsewhere(symbol, first)) continue;
         specs.push_back(
             effect_spec("product-coupling", {{"symbol", symbol.name()},
                                              {"axis", std::string(1, letter_of(first))},

@@ -77,8 +77,13 @@ class Answerer {
     if (is({"squareness-drift"})) set("squareness-drift", symbol, "");
     if (is({"cross-axis"})) set("axis-coupling", symbol, lower(text("by")), kPowers[power - 1]);
     if (is({"cross-product"})) {
-      const std::string first = lower(text("by")), second = lower(text("and"));
-      set("product-coupling", symbol, std::min(first, second) + " " + std::max(first, second));
+      const std::string by = lower(text("by")), with = lower(text("and"));
+      const std::string first = std::min(by, with), second = std::max(by, with);
+      // The catalogue holds a displacement once, under the first axis.
+      const bool displacement = symbol[1] >= 'X';
+      const std::string target =
+          displacement ? symbol.substr(0, 2) + static_cast<char>(std::toupper(first[0])) : symbol;
+      set("product-coupling", target, first + " " + second);
     }
     if (is({"tool-load"}) && !has("by")) set("tool-load", symbol, "tool " + text("tool"));
     if (is({"length-scale"}) && !has("setup")) {

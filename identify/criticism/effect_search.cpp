@@ -1,0 +1,284 @@
+#include "volcal/identify/criticism/effect_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volcal/identify/criticism/shape_refinement.h"
+#include "volcal/identify/stats/chi_squared.h"
+
+namespace volcal {
+
+const double kLog10FamilyRisk = std::log10(0.005);
+const double kLog10GenericRisk = std::log10(0.002);
+
+namespace {
+
+constexpr double kToldApart = 6.0;       // of the extended BIC
+constexpr double kWorthRefining = 40.0;  // the same, below the leading one
+constexpr double kVisibleDerivative = 1e-3;
+constexpr double kSameLikelihood = 4.0;    // of LM: what fits as well is a rival, however many its parameters
+constexpr double kWorthSecondLook = -3.0;  // log10 p of a family for itself
+constexpr std::size_t kMostSecondLooks = 3;
+constexpr int kMostChanges = 4;
+
+void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
+  const Eigen::Index before = all.cols();
+  all.conservativeResize(more.rows(), before + more.cols());
+  all.rightCols(more.cols()) = more;
+}
+
+bool near(const FamilyTest& own, const FamilyTest& other) {
+  return own.gain - other.gain < kToldApart || own.score.lm - other.score.lm < kSameLikelihood;
+}
+
+}  // namespace
+
+EffectSearch::EffectSearch(const LinearModel& model, const std::vector<bool>& heldout, SearchOptions options)
+    : model_(model), heldout_(heldout), options_(std::move(options)), families_(volcal::families(model)) {
+  std::erase_if(families_, [this](const Family& family) {
+    return std::ranges::find(options_.leave_out, family.name().kind) != options_.leave_out.end();
+  });
+  log10_families_ = std::log10(static_cast<double>(std::max<std::size_t>(families_.size(), 1)));
+  variables_ = scan_variables(model_);
+}
+
+void EffectSearch::run() {
+  start();
+  climb();
+  for (int change = 0; change < kMostChanges && reconsider(); ++change) climb();
+}
+
+void EffectSearch::start() {
+  if (options_.progress) options_.progress("noise model", 0.05);
+  added_.clear();
+  ladder_.clear();
+  heldout_loglik_.reset();
+  find_noise();
+  add_step("");
+}
+
+/// Noise of all readings; the projector that chooses sees those that are not held out.
+void EffectSearch::find_noise() {
+  NoiseOptions noise;
+  noise.threads = options_.threads;
+  noise.uncertainty = false;
+  noise_estimate_ =
+      estimate_noise(problem_with(nullptr), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
+  noise_ = noise_estimate_->parameters();
+  projector_ = projector_under(noise_, std::nullopt);
+}
+
+NoiseEstimate EffectSearch::noise_with_uncertainty() const {
+  NoiseOptions noise;
+  noise.threads = options_.threads;
+  return estimate_noise(problem_with(nullptr), noise, &*noise_estimate_);
+}
+
+std::unique_ptr<Projector> EffectSearch::projector_under(const std::vector<NoiseParameters>& noise,
+                                                         std::optional<std::size_t> left_out) const {
+  auto projector = std::make_unique<Projector>(model_.problem(), without(model_.problem().data, heldout_),
+                                               noise, options_.threads, model_.parts());
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    if (i != left_out) append(columns, added_[i].columns);
+  }
+  if (columns.cols() > 0) projector->accept(columns);
+  return projector;
+}
+
+/// The linear model with the added effects, and perhaps a candidate, as further columns.
+NoiseProblem EffectSearch::problem_with(const Eigen::MatrixXd* candidate) const {
+  NoiseProblem problem = model_.problem();
+  for (const AddedEffect& effect : added_) append(problem.jacobian, effect.columns);
+  if (candidate != nullptr) append(problem.jacobian, *candidate);
+  const Eigen::Index before = problem.prior_mean.size(), count = problem.jacobian.cols();
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
+  precision.topLeftCorner(before, before) = problem.prior_precision;
+  problem.prior_precision = std::move(precision);
+  problem.prior_mean.conservativeResize(count);
+  problem.prior_mean.tail(count - before).setZero();
+  return problem;
+}
+
+void EffectSearch::test() {
+  tests_ = refined_tests(*projector_);
+  generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
+  log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
+}
+
+std::vector<FamilyTest> EffectSearch::refined_tests(const Projector& projector) const {
+  std::vector<FamilyTest> tests = test_families(model_, families_, projector, options_.threads);
+  double best = 0.0;
+  for (const FamilyTest& test : tests) best = std::max(best, test.gain);
+  for (FamilyTest& test : tests) {
+    if (test.gain > best - kWorthRefining) refine_shape(model_, families_[test.family], projector, test);
+  }
+  return tests;
+}
+
+void EffectSearch::climb() {
+  for (;;) {
+    if (options_.progress) {
+      options_.progress(fmt::format("tests, step {}", added_.size() + 1),
+                        0.2 + 0.7 * static_cast<double>(added_.size()) / (options_.most + 1.0));
+    }
+    test();
+    if (first_tests_.empty()) first_tests_ = tests_;
+    const bool enough =
+        static_cast<int>(added_.size()) >= options_.most || (!options_.climb && !added_.empty());
+    if (enough || !add_leading()) return;
+  }
+}
+
+/// False when nothing stands out, or something that is in no catalogue stands out more.
+bool EffectSearch::add_leading() {
+  const FamilyTest* best = leading(tests_, std::nullopt);
+  if (best == nullptr) return false;
+  if (family_wise_log10_p(*best) > kLog10FamilyRisk) {
+    const auto hidden = hidden_in_noise();
+    if (hidden) add(*hidden);
+    return hidden.has_value();
+  }
+  if (best_generic_gain() > best->gain + kToldApart) return false;
+  add(FamilyTest(*best));
+  return true;
+}
+
+/// The noise is estimated without the candidates, and a slow effect, or one of few readings, passes for noise
+/// in part: those that come near are judged with the noise estimated both ways.
+std::optional<FamilyTest> EffectSearch::hidden_in_noise() const {
+  std::vector<const FamilyTest*> near;
+  for (const FamilyTest& test : tests_) {
+    if (!is_added(test.family) && test.log10_p < kWorthSecondLook) near.push_back(&test);
+  }
+  std::ranges::sort(near, std::greater{}, &FamilyTest::gain);
+  if (near.size() > kMostSecondLooks) near.resize(kMostSecondLooks);
+  std::optional<FamilyTest> best;
+  for (const FamilyTest* test : near) {
+    const auto found = likelihood_ratio(*test);
+    if (!found || family_wise_log10_p(*found) > kLog10FamilyRisk) continue;
+    if (!best || found->gain > best->gain) best = found;
+  }
+  return best;
+}
+
+/// Twice the difference of log-likelihoods in place of LM; none where it is not larger.
+std::optional<FamilyTest> EffectSearch::likelihood_ratio(const FamilyTest& test) const {
+  const Family& family = families_[test.family];
+  const Eigen::MatrixXd columns = family_columns(model_, family, test.shape);
+  NoiseOptions options;
+  options.threads = options_.threads;
+  options.uncertainty = false;
+  const auto noise = estimate_noise(problem_with(&columns), options, &*noise_estimate_).parameters();
+  const auto projector = projector_under(noise, std::nullopt);
+  ScoreTest score = score_test(projector->project(columns), 0, columns.cols());
+  const double without = projector_->log_determinant() + projector_->residual_squares();
+  const double with = projector->log_determinant() + projector->residual_squares() - score.lm;
+  if (score.dof == 0 || !(without - with > test.score.lm)) return std::nullopt;
+  FamilyTest out = test;
+  update_test(out, family, test.shape, score, *projector);
+  out.gain += without - with - score.lm;
+  out.score.lm = without - with;
+  out.score.log10_p = log10_chi_squared_exceedance(out.score.lm, out.score.dof);
+  out.log10_p = std::min(0.0, out.score.log10_p + std::log10(out.multiplicity));
+  return out;
+}
+
+void EffectSearch::add(const FamilyTest& test) {
+  const Family& family = families_[test.family];
+  AddedEffect effect{test, family_columns(model_, family, test.shape), {}};
+  if (const auto derivative = shape_derivative(model_, family, test.shape, test.score.amplitude)) {
+    projector_->accept(effect.columns);
+    const ProjectedColumns projected = projector_->project(*derivative);
+    if (projected.gram(0, 1)(0, 0) > std::pow(kVisibleDerivative * projected.norm[0], 2)) {
+      append(effect.columns, *derivative);
+    }
+  }
+  added_.push_back(std::move(effect));
+  find_noise();
+  add_step(family.label());
+}
+
+void EffectSearch::add_step(const std::string& added) {
+  std::vector<Eigen::MatrixXd> columns;
+  for (const AddedEffect& effect : added_) columns.push_back(effect.columns);
+  LadderStep step = ladder_step(model_, heldout_, noise_, *projector_, columns, heldout_loglik_);
+  step.model = std::to_string(ladder_.size());
+  step.added = added;
+  ladder_.push_back(std::move(step));
+}
+
+/// Each added effect against all others, now that the rest is in the model: true when one was exchanged or
+/// left, and the climb goes on from there.
+bool EffectSearch::reconsider() {
+  std::vector<FamilyTest> kept;
+  for (const AddedEffect& effect : added_) kept.push_back(effect.test);
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
+    std::vector<FamilyTest> tests = refined_tests(*projector_under(noise_, i));
+    const FamilyTest& own = tests[kept[i].family];
+    if (family_wise_log10_p(own) > kLog10FamilyRisk) {
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
+      add_again(kept);
+      return true;
+    }
+    const FamilyTest* best = leading(tests, kept[i].family);
+    if (best != nullptr && best->gain > own.gain + kToldApart) {
+      kept[i] = *best;
+      add_again(kept);
+      return true;
+    }
+    added_[i].test = own;
+    added_[i].rivals.clear();
+    for (const FamilyTest& test : tests) {
+      if (test.score.dof > 0 && !is_added(test.family) && near(own, test)) added_[i].rivals.push_back(test);
+    }
+    std::ranges::sort(added_[i].rivals, std::greater{}, &FamilyTest::gain);
+  }
+  return false;
+}
+
+/// The ladder from its beginning.
+void EffectSearch::add_again(const std::vector<FamilyTest>& tests) {
+  start();
+  for (const FamilyTest& test : tests) add(test);
+}
+
+bool EffectSearch::is_added(std::size_t family) const {
+  return std::ranges::any_of(added_, [&](const AddedEffect& each) { return each.test.family == family; });
+}
+
+/// Best of those that are not in the model, `but` one that is.
+const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
+                                        std::optional<std::size_t> but) const {
+  const FamilyTest* best = nullptr;
+  for (const FamilyTest& test : tests) {
+    if (test.score.dof == 0 || (is_added(test.family) && test.family != but)) continue;
+    if (best == nullptr || test.gain > best->gain) best = &test;
+  }
+  return best;
+}
+
+/// What an unlisted effect of few terms would reach.
+double EffectSearch::best_generic_gain() const {
+  double gain = 0.0;
+  for (const GenericTest& test : generic_) {
+    if (!test.kernel) gain = std::max(gain, test.gain);
+  }
+  return gain;
+}
+
+double EffectSearch::family_wise_log10_p(const FamilyTest& test) const {
+  return std::min(0.0, test.log10_p + log10_families_);
+}
+
+double EffectSearch::family_wise_log10_p(const GenericTest& test) const {
+  return std::min(0.0, test.log10_p + log10_generic_);
+}
+
+double EffectSearch::log10_level() const { return kLog10FamilyRisk - log10_families_; }
+
+}  // namespace volcal

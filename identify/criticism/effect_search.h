@@ -1,0 +1,99 @@
+#pragma once
+/// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
+/// and no generic test does better; then every added one must stand against all others again.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/families.h"
+#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/ladder.h"
+#include "volcal/identify/criticism/noise_estimate.h"
+
+namespace volcal {
+
+struct SearchOptions {
+  int threads = 1;    ///< at least 1
+  int most = 8;       ///< effects added
+  bool climb = true;  ///< false: one effect
+  std::vector<std::string> leave_out;
+  std::function<void(const std::string& stage, double done)> progress;
+};
+
+/// An effect that is in the model.
+struct AddedEffect {
+  FamilyTest test;                 ///< against a model with the other effects
+  Eigen::MatrixXd columns;         ///< of its amplitudes, then of its shape where that is smooth
+  std::vector<FamilyTest> rivals;  ///< that the readings do not tell from it, best first
+};
+
+class EffectSearch {
+ public:
+  /// `heldout`: observations that judge and never choose.
+  EffectSearch(const LinearModel& model, const std::vector<bool>& heldout, SearchOptions options);
+
+  void run();
+
+  const std::vector<Family>& families() const { return families_; }
+  const std::vector<AddedEffect>& added() const { return added_; }
+  /// At the model reached.
+  const std::vector<FamilyTest>& tests() const { return tests_; }
+  const std::vector<GenericTest>& generic() const { return generic_; }
+  /// At the given model.
+  const std::vector<FamilyTest>& first_tests() const { return first_tests_; }
+  const std::vector<LadderStep>& ladder() const { return ladder_; }
+  const Projector& projector() const { return *projector_; }
+  /// With intervals, from all readings.
+  NoiseEstimate noise_with_uncertainty() const;
+
+  bool is_added(std::size_t family) const;
+  double family_wise_log10_p(const FamilyTest& test) const;
+  double family_wise_log10_p(const GenericTest& test) const;
+  /// A test at its own level that is family-wise at the risk.
+  double log10_level() const;
+
+ private:
+  void start();
+  void find_noise();
+  std::unique_ptr<Projector> projector_under(const std::vector<NoiseParameters>& noise,
+                                             std::optional<std::size_t> left_out) const;
+  NoiseProblem problem_with(const Eigen::MatrixXd* candidate) const;
+  void test();
+  std::vector<FamilyTest> refined_tests(const Projector& projector) const;
+  void climb();
+  bool add_leading();
+  std::optional<FamilyTest> hidden_in_noise() const;
+  std::optional<FamilyTest> likelihood_ratio(const FamilyTest& test) const;
+  void add(const FamilyTest& test);
+  void add_step(const std::string& added);
+  bool reconsider();
+  void add_again(const std::vector<FamilyTest>& tests);
+  const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
+  double best_generic_gain() const;
+
+  const LinearModel& model_;
+  const std::vector<bool>& heldout_;
+  SearchOptions options_;
+  std::vector<Family> families_;
+  std::vector<ScanVariable> variables_;
+  std::optional<NoiseEstimate> noise_estimate_;
+  std::vector<NoiseParameters> noise_;
+  std::unique_ptr<Projector> projector_;
+  std::vector<FamilyTest> tests_;
+  std::vector<FamilyTest> first_tests_;
+  std::vector<GenericTest> generic_;
+  std::vector<AddedEffect> added_;
+  std::vector<LadderStep> ladder_;
+  std::optional<double> heldout_loglik_;
+  double log10_families_ = 0.0;
+  double log10_generic_ = 0.0;
+};
+
+/// Family-wise risks of naming an effect, and of the generic scans (polynomials and kernels each).
+extern const double kLog10FamilyRisk;
+extern const double kLog10GenericRisk;
+
+}  // namespace volcal

@@ -115,10 +115,14 @@ VolumetricError volumetric_error(const FitResult& result, const AxisPosition& po
   error.position = position;
   error.tool = tool.name;
   const KinematicChain chain(result.machine);
-  const auto rows = pose_error_rows(chain, result.layout, position, tool.offset);
+  auto rows = pose_error_rows(chain, result.layout, position, tool.offset);
+  const ParameterBlock* fitted_offset = result.layout.find_block("tool " + tool.name);
+  if (fitted_offset != nullptr) {
+    rows.block<3, 3>(0, fitted_offset->offset) = chain.nominal_rotation_wt(position);
+  }
   error.value = rows * result.parameters;
   Eigen::Matrix<double, 6, 6> covariance = rows * result.covariance * rows.transpose();
-  if (tool.offset_sigma > 0.0) {
+  if (fitted_offset == nullptr && tool.offset_sigma > 0.0) {
     covariance.topLeftCorner<3, 3>().diagonal().array() += tool.offset_sigma * tool.offset_sigma;
   }
   error.u = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

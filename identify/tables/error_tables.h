@@ -40,6 +40,8 @@ struct VolumetricError {
   bool extrapolated = false;
 };
 
+/// Of the tool as it is: a tool whose offset was estimated moves by its fitted error, with the joint
+/// covariance; of another, the stated variance of its offset is added.
 VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool);
 /// Grid over the travel, `per_axis` positions each, for every tool.
 std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis);

@@ -195,5 +195,33 @@ TEST(SharedUncertainty, VolumetricErrorOfAnyToolFollowsFromTheJointCovariance) {
   }
 }
 
+/// Unknown (a, t_1, t_2): readings of the first tool are 3 um everywhere, those of the second 0. What the
+/// tool point does is a x + t, and its uncertainty follows from both together: smaller than that of t as
+/// stated.
+TEST(SharedUncertainty, VolumetricErrorOfAMeasuredToolHoldsItsFittedOffset) {
+  VectorsOfTwoTools vectors(kTool);
+  for (double& value : vectors.campaign.setups[0].readings.value[0]) value = 3e-6;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (int tool = 0; tool < 2; ++tool) {
+    for (const double x : kLine) {
+      const Eigen::Vector3d row(x, tool == 0 ? 1.0 : 0.0, tool == 1 ? 1.0 : 0.0);
+      normal += row * row.transpose() / (kNoise * kNoise);
+      right += row * (tool == 0 ? 3e-6 : 0.0) / (kNoise * kNoise);
+    }
+    normal(1 + tool, 1 + tool) += 1.0 / (kTool * kTool);
+  }
+  const Eigen::Matrix3d covariance = normal.inverse();
+  const Eigen::Vector3d solution = covariance * right;
+  const FitResult result = fitted(vectors.campaign, {"EXX"});
+  AxisPosition position{};
+  position[0] = 0.7;
+  const VolumetricError error = volumetric_error(result, position, vectors.campaign.machine.tools[0]);
+  const Eigen::Vector3d row(0.7, 1.0, 0.0);
+  EXPECT_NEAR(error.value[0], row.dot(solution), 1e-11);
+  EXPECT_NEAR(error.u[0] / std::sqrt(row.dot(covariance * row)), 1.0, 1e-6);
+  EXPECT_LT(error.u[0], kTool);
+}
+
 }  // namespace
 }  // namespace volcal

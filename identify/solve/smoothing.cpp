@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -21,9 +23,10 @@ constexpr int kStartPlace = 6;
 constexpr int kSettlingSteps = 30;
 constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
-constexpr double kSettled = 0.02;       // of log evidence in one step
-constexpr double kWorthALength = 0.02;  // of log evidence, to change a length
-constexpr double kWorthAKind = 0.5;     // of log evidence, to change the kind
+constexpr double kSettled = 0.02;  // of log evidence in one step
+// Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
+// 1995, JASA 90, 773).
+constexpr double kWorthADeparture = 5.0;
 
 /// What the evidence decides.
 struct Hyperparameters {
@@ -139,49 +142,72 @@ class AxisEvidence {
     return {shape, std::move(lambda), now.log_evidence};
   }
 
-  /// Climbs from a shape: neighbouring lengths first, then the other kinds.
-  Choice best_from(std::size_t shape, const std::vector<double>& lambda) const {
-    Choice best = with_shape(shape, lambda);
-    do {
-      while (improve(best, neighbouring_lengths(best.shape), kWorthALength)) {
-      }
-    } while (improve(best, other_kinds(best.shape), kWorthAKind));
-    return best;
-  }
-
  private:
-  static std::vector<std::size_t> neighbouring_lengths(std::size_t shape) {
-    std::vector<std::size_t> shapes;
-    if (shape % kPriorLengths > 0) shapes.push_back(shape - 1);
-    if (shape % kPriorLengths + 1 < kPriorLengths) shapes.push_back(shape + 1);
-    return shapes;
-  }
-
-  static std::vector<std::size_t> other_kinds(std::size_t shape) {
-    std::vector<std::size_t> shapes;
-    for (std::size_t kind = 0; kind < kRoughnessKinds; ++kind) {
-      if (kind != shape / kPriorLengths) shapes.push_back(kind * kPriorLengths + shape % kPriorLengths);
-    }
-    return shapes;
-  }
-
-  bool improve(Choice& best, const std::vector<std::size_t>& shapes, double worth) const {
-    const double to_beat = best.log_evidence + worth;
-    const std::vector<double> lambda = best.lambda;
-    bool improved = false;
-    for (const std::size_t shape : shapes) {
-      Choice choice = with_shape(shape, lambda);
-      if (choice.log_evidence < std::max(to_beat, best.log_evidence)) continue;
-      best = std::move(choice);
-      improved = true;
-    }
-    return improved;
-  }
-
   std::vector<Stretch> stretches_;
   Eigen::VectorXd z0_;
   Quadratic cost_;
 };
+
+/// Shapes tried for one axis: around the best length of every kind, and those asked for.
+class AxisShapes {
+ public:
+  AxisShapes(AxisEvidence evidence, std::size_t shape, const std::vector<double>& lambda)
+      : evidence_(std::move(evidence)), best_(evidence_.with_shape(shape, lambda)) {
+    tried_.emplace(shape, best_);
+    for (int kind = 0; kind < kRoughnessKinds; ++kind) climb(kind, static_cast<int>(shape % kPriorLengths));
+  }
+
+  const AxisEvidence::Choice& best() const { return best_; }
+  const std::map<std::size_t, AxisEvidence::Choice>& tried() const { return tried_; }
+
+  /// Amplitudes start from those of the best shape so far.
+  const AxisEvidence::Choice& with(std::size_t shape) {
+    const auto found = tried_.find(shape);
+    if (found != tried_.end()) return found->second;
+    const auto& choice = tried_.emplace(shape, evidence_.with_shape(shape, best_.lambda)).first->second;
+    if (choice.log_evidence > best_.log_evidence) best_ = choice;
+    return choice;
+  }
+
+ private:
+  double log_evidence(int kind, int place) {
+    return with(static_cast<std::size_t>(kind * kPriorLengths + place)).log_evidence;
+  }
+
+  /// From a place to the nearest length that is better than its neighbours.
+  void climb(int kind, int place) {
+    for (const int step : {-1, 1}) {
+      while (place + step >= 0 && place + step < kPriorLengths &&
+             log_evidence(kind, place + step) > log_evidence(kind, place))
+        place += step;
+    }
+  }
+
+  AxisEvidence evidence_;
+  AxisEvidence::Choice best_;
+  std::map<std::size_t, AxisEvidence::Choice> tried_;
+};
+
+/// The shape that most becomes all axes when each may depart from it at the price of kWorthADeparture.
+std::size_t common_shape(std::vector<AxisShapes>& axes) {
+  std::set<std::size_t> candidates;
+  for (const AxisShapes& axis : axes) {
+    for (const auto& [shape, choice] : axis.tried()) candidates.insert(shape);
+  }
+  std::size_t common = 0;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const std::size_t shape : candidates) {
+    double sum = 0.0;
+    for (AxisShapes& axis : axes) {
+      const double shared = axis.with(shape).log_evidence;
+      sum += std::max(shared, axis.best().log_evidence - kWorthADeparture);
+    }
+    if (sum <= highest) continue;
+    highest = sum;
+    common = shape;
+  }
+  return common;
+}
 
 class EvidenceSearch {
  public:
@@ -199,9 +225,7 @@ class EvidenceSearch {
   double run(Hyperparameters& at) const {
     double log_evidence = settle(at);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
-      bool changed = false;
-      for (const auto& [axis, terms] : axes_) changed |= choose_shape(terms, at);
-      if (!changed) break;
+      if (!choose_shapes(at)) break;
       log_evidence = settle(at);
     }
     return log_evidence;
@@ -251,15 +275,42 @@ class EvidenceSearch {
     return now.log_evidence;
   }
 
-  /// True when another shape is better.
-  bool choose_shape(const std::vector<std::size_t>& terms, Hyperparameters& at) const {
+  /// True when other shapes are better. Linear axes share one unless they depart; rotary axes do not.
+  bool choose_shapes(Hyperparameters& at) const {
+    std::map<AxisName, std::vector<AxisName>> groups;  // linear axes under X
+    for (const auto& [axis, terms] : axes_) groups[is_rotary(axis) ? axis : AxisName::X].push_back(axis);
+    const Hyperparameters before = at;
+    for (const auto& [first, group] : groups) choose_shapes(group, before, at);
+    return at.shape != before.shape;
+  }
+
+  void choose_shapes(const std::vector<AxisName>& group, const Hyperparameters& before,
+                     Hyperparameters& at) const {
+    std::vector<AxisShapes> axes;
+    for (const AxisName name : group) {
+      const std::vector<std::size_t>& terms = axes_.at(name);
+      std::vector<double> lambda;
+      for (const std::size_t t : terms) lambda.push_back(before.lambda[t]);
+      axes.emplace_back(axis_evidence(terms, before), before.shape[terms.front()], lambda);
+    }
+    const std::size_t common = common_shape(axes);
+    for (std::size_t a = 0; a < group.size(); ++a) {
+      const AxisEvidence::Choice& shared = axes[a].with(common);
+      const bool departs = axes[a].best().log_evidence > shared.log_evidence + kWorthADeparture;
+      const AxisEvidence::Choice& choice = departs ? axes[a].best() : shared;
+      const std::vector<std::size_t>& terms = axes_.at(group[a]);
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        at.shape[terms[i]] = choice.shape;
+        at.lambda[terms[i]] = choice.lambda[i];
+      }
+    }
+  }
+
+  /// These functions with the other axes' smoothing held.
+  AxisEvidence axis_evidence(const std::vector<std::size_t>& terms, const Hyperparameters& at) const {
     Quadratic all = readings_and_priors(at.scale);
     std::vector<Stretch> mine;
-    std::vector<double> lambda;
-    for (const std::size_t t : terms) {
-      mine.push_back(stretches_[t]);
-      lambda.push_back(at.lambda[t]);
-    }
+    for (const std::size_t t : terms) mine.push_back(stretches_[t]);
     for (std::size_t t = 0; t < stretches_.size(); ++t) {
       if (std::ranges::find(terms, t) != terms.end()) continue;
       const auto& [term, offset] = stretches_[t];
@@ -268,13 +319,7 @@ class EvidenceSearch {
       all.precision.block(offset, offset, n, n) += smoothing;
       all.gradient.segment(offset, n) += smoothing * z0_.segment(offset, n);
     }
-    const std::size_t before = at.shape[terms.front()];
-    const AxisEvidence::Choice best = AxisEvidence(all, z0_, mine).best_from(before, lambda);
-    for (std::size_t i = 0; i < terms.size(); ++i) {
-      at.shape[terms[i]] = best.shape;
-      at.lambda[terms[i]] = best.lambda[i];
-    }
-    return best.shape != before;
+    return {all, z0_, mine};
   }
 
   const std::vector<InstrumentEquations>& equations_;

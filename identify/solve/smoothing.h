@@ -2,15 +2,20 @@
 /// Resolution of functions with `knots = "auto"`, and variance components, both by evidence.
 ///
 /// The knots are as fine as the readings can tell apart (resolution.h); a Gaussian-process prior per function
-/// (function_prior.h) says how rough it may be. Its kind and length, shared by the functions of an axis,
-/// which ride on one guideway; its amplitude, one per function; and the variance components s_g^2 (sigma of
-/// instrument g is s_g times stated) maximise the marginal likelihood of all readings together (restricted
-/// likelihood: nuisance parameters and straight parts integrated out). Amplitudes follow MacKay's fixed
-/// point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural Computation 4, 415);
-/// variance components Foerstner's (1979), s_g^2 <- v_g^T W_g v_g / (n_g - tr(C M_g) / s_g^2); kinds and
-/// lengths a climb in which every step is accepted by the likelihood itself. The posterior covariance C then
-/// contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such intervals cover the truth at the
-/// stated rate on average over the positions).
+/// (function_prior.h) says how rough it may be. Its kind and length; its amplitude, one per function; and the
+/// variance components s_g^2 (sigma of instrument g is s_g times stated) maximise the marginal likelihood of
+/// all readings together (restricted likelihood: nuisance parameters and straight parts integrated out).
+/// Amplitudes follow MacKay's fixed point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural
+/// Computation 4, 415); variance components Foerstner's (1979), s_g^2 <- v_g^T W_g v_g / (n_g - tr(C M_g) /
+/// s_g^2).
+///
+/// Kind and length (a share of the travel) are those of an axis, whose functions ride on one guideway, and of
+/// all linear axes together but for those that very strong evidence sets apart. Six functions tell a length
+/// from the next one by a few units of log likelihood or less, so that axes left to themselves stray, and a
+/// prior that is too smooth costs more than one that is too rough.
+///
+/// The posterior covariance C then contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such
+/// intervals cover the truth at the stated rate on average over the positions).
 
 #include <Eigen/Core>
 #include <memory>

@@ -30,7 +30,8 @@ TEST_P(ExamplesStudy, AutomaticResolutionIsAsGoodAsTheBestKnots) {
   const ValidationFigures figures = validate(read_campaign(folder + "/truth/campaign.toml"), result).figures;
   EXPECT_GT(figures.rms_before, 14e-6);
   EXPECT_LT(figures.rms_after, GetParam().limit);
-  EXPECT_GT(figures.coverage95, 0.92);
+  // One campaign: of 200 simulated ones, one in twenty has 87 % or less (docs/studies.md).
+  EXPECT_GT(figures.coverage95, 0.87);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ExamplesStudy,

@@ -129,7 +129,7 @@ TEST(PriorShapes, NoneForABasisOfStraightLines) {
   EXPECT_TRUE(prior_shapes(*basis, axis, Eigen::MatrixXd::Identity(2, 2)).empty());
 }
 
-/// Functions of one axis, each read directly at 61 positions.
+/// Functions, each read directly at 61 positions.
 struct DirectReadings {
   std::vector<SmoothingTerm> terms;
   std::vector<InstrumentEquations> equations;
@@ -138,21 +138,31 @@ struct DirectReadings {
   std::vector<Eigen::VectorXd> values;
   double sigma = 0.2e-6;
 
-  DirectReadings(std::size_t shape, const std::vector<double>& amplitudes) {
+  struct Function {
+    AxisName axis;
+    std::size_t shape;
+    double amplitude;
+  };
+
+  /// Of one axis.
+  DirectReadings(std::size_t shape, const std::vector<double>& amplitudes)
+      : DirectReadings(functions_of_x(shape, amplitudes)) {}
+
+  explicit DirectReadings(const std::vector<Function>& functions) {
     const Axis axis = axis_of_one_metre();
     const auto basis = fine_splines(axis);
     const int n = basis->size();
     const auto shapes = std::make_shared<const std::vector<PriorShape>>(
         prior_shapes(*basis, axis, Eigen::MatrixXd::Identity(n, n)));
     const Eigen::MatrixXd rows = rows_at(*basis, q);
-    const auto count = static_cast<Eigen::Index>(amplitudes.size());
+    const auto count = static_cast<Eigen::Index>(functions.size());
     equations.push_back({Eigen::MatrixXd::Zero(n * count, n * count), Eigen::VectorXd::Zero(n * count), 0.0,
                          static_cast<double>(q.size() * count)});
     prior = GaussianPrior::none(n * static_cast<int>(count));
     std::mt19937_64 engine(7);
     std::normal_distribution<double> normal;
     for (Eigen::Index f = 0; f < count; ++f) {
-      const double amplitude = amplitudes[static_cast<std::size_t>(f)];
+      const auto& [function_axis, shape, amplitude] = functions[static_cast<std::size_t>(f)];
       Eigen::MatrixXd covariance =
           kernel_matrix((*shapes)[shape], q, q) * (amplitude * amplitude / mean_variance((*shapes)[shape]));
       covariance.diagonal().array() += sigma * sigma;
@@ -162,9 +172,25 @@ struct DirectReadings {
       equations[0].matrix.block(f * n, f * n, n, n) = rows.transpose() * rows / (sigma * sigma);
       equations[0].gradient.segment(f * n, n) = -rows.transpose() * values.back() / (sigma * sigma);
       equations[0].squares += values.back().squaredNorm() / (sigma * sigma);
-      terms.push_back({ErrorSymbol{kAllComponents[static_cast<std::size_t>(f)], AxisName::X},
+      terms.push_back({ErrorSymbol{kAllComponents[static_cast<std::size_t>(f)], function_axis},
                        static_cast<int>(f) * n, shapes, 6, 1.0 / (5e-6 * 5e-6), true});
     }
+  }
+
+  static std::vector<Function> functions_of_x(std::size_t shape, const std::vector<double>& amplitudes) {
+    std::vector<Function> functions;
+    for (const double amplitude : amplitudes) functions.push_back({AxisName::X, shape, amplitude});
+    return functions;
+  }
+
+  /// Shapes by evidence, per function.
+  std::vector<std::size_t> chosen_shapes() {
+    EvidenceOptions options;
+    options.variance_components = false;
+    maximise_evidence(equations, Eigen::VectorXd::Zero(prior.mean.size()), prior, options, {1.0}, terms);
+    std::vector<std::size_t> chosen;
+    for (const SmoothingTerm& term : terms) chosen.push_back(term.shape);
+    return chosen;
   }
 
   /// log density of the values under a shape and amplitudes, vague lines, by dense covariances.
@@ -203,6 +229,30 @@ TEST(MaximiseEvidence, FindsTheHighestPointOfTheDenseLikelihood) {
       shapes[2 * kPriorLengths + 6],
       {1.0 / 16e-12, 1.0 / 64e-12, 1.0 / 4e-12, 1.0 / 36e-12, 1.0 / 25e-12, 1.0 / 9e-12});
   EXPECT_GT(best, at_truth - 1.0) << to_string(shapes[shape].roughness) << " " << shapes[shape].length;
+}
+
+// The second axis alone would choose another shape than the first.
+TEST(MaximiseEvidence, GivesAxesThatAreHardToTellApartOneShape) {
+  const std::vector<DirectReadings::Function> x = {{AxisName::X, 6, 4e-6}, {AxisName::X, 6, 4e-6}};
+  const std::vector<DirectReadings::Function> y = {{AxisName::Y, 7, 4e-6}, {AxisName::Y, 7, 4e-6}};
+  EXPECT_NE(DirectReadings(x).chosen_shapes()[0], DirectReadings(y).chosen_shapes()[0]);
+  const auto together = DirectReadings({x[0], x[1], y[0], y[1]}).chosen_shapes();
+  EXPECT_EQ(together, std::vector<std::size_t>(4, together[0]));
+}
+
+TEST(MaximiseEvidence, SetsAnAxisApartThatIsPlainlyRougher) {
+  const auto chosen = DirectReadings({{AxisName::X, 8, 4e-6},
+                                      {AxisName::X, 8, 6e-6},
+                                      {AxisName::Y, 8, 5e-6},
+                                      {AxisName::Y, 8, 3e-6},
+                                      {AxisName::Z, 0, 4e-6},
+                                      {AxisName::Z, 0, 6e-6}})
+                          .chosen_shapes();
+  EXPECT_EQ(chosen[0], chosen[1]);
+  EXPECT_EQ(chosen[0], chosen[2]);
+  EXPECT_EQ(chosen[0], chosen[3]);
+  EXPECT_EQ(chosen[4], chosen[5]);
+  EXPECT_LT(chosen[4] % kPriorLengths + 2, chosen[0] % kPriorLengths);
 }
 
 TEST(MaximiseEvidence, FindsTheStandardDeviation) {

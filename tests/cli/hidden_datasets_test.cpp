@@ -1,0 +1,121 @@
+/// The user's way through datasets/hidden, campaign by campaign: fit, compare, diagnose, extend, fit again,
+/// and only then the sealed answer. What is asked of an answer stands in sealed/answers.json.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/dataset_files.h"
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::content;
+using testing::run_program;
+
+const fs::path kHidden = fs::path(VOLCAL_SOURCE_DIR) / "datasets" / "hidden";
+
+const json& answers() {
+  static const json all = json::parse(content(kHidden / "sealed" / "answers.json"));
+  return all;
+}
+
+std::vector<std::string> campaigns() {
+  std::vector<std::string> names;
+  for (const auto& [name, answer] : answers().items()) names.push_back(name);
+  return names;
+}
+
+std::set<std::string> names_of(const json& findings) {
+  std::set<std::string> names;
+  for (const auto& each : findings) {
+    names.insert(each.at("kind").get<std::string>() + ":" + each.at("target").get<std::string>() + ":" +
+                 each.at("driver").get<std::string>());
+  }
+  return names;
+}
+
+class HiddenCampaign : public ::testing::TestWithParam<std::string> {
+ protected:
+  const json& answer() const { return answers().at(GetParam()); }
+  std::string campaign() const { return (kHidden / GetParam() / "campaign.toml").string(); }
+  std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
+
+  /// Exit code 1 = a result with a warning: rank deficient, lack of fit.
+  std::string done(const std::string& arguments) const {
+    const auto run = run_program(arguments);
+    EXPECT_LE(run.exit_code, 1) << arguments << "\n" << run.errors;
+    return run.output;
+  }
+
+  /// Root mean square over noise-free readings at positions that were not measured, um.
+  double unseen_error(const std::string& result) const {
+    const json compared = json::parse(
+        done("compare " + in_scratch("truth/truth/unseen/campaign.toml") + " " + result + " --json"));
+    return compared.at("models").at(0).at("total").at("lengths_um").at("rms").get<double>();
+  }
+
+  testing::ScratchFolder scratch_;
+};
+
+TEST_P(HiddenCampaign, IsWhatItsSealedStudyMakes) {
+  done("simulate " + (kHidden / "sealed" / (GetParam() + ".toml")).string() + " -o " + in_scratch("made"));
+  for (const std::string& name : testing::files_below(kHidden / GetParam())) {
+    testing::expect_same_numbers(name, content(kHidden / GetParam() / name),
+                                 content(scratch_.path() / "made" / name));
+  }
+}
+
+TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
+  done("fit " + campaign() + " -o " + in_scratch("given"));
+  EXPECT_THAT(done("compare " + campaign() + " " + in_scratch("given")), ::testing::HasSubstr("chi2/dof"));
+  const json diagnosis =
+      json::parse(done("diagnose " + campaign() + " --auto --json -o " + in_scratch("diagnosis")));
+  const auto verdict = diagnosis.at("verdict").get<std::string>();
+  EXPECT_THAT(answer().at("verdicts").get<std::vector<std::string>>(), ::testing::Contains(verdict));
+
+  const std::set<std::string> named = names_of(diagnosis.at("effects"));
+  const auto right = answer().at("effects").get<std::set<std::string>>();
+  for (const std::string& name : named) EXPECT_THAT(right, ::testing::Contains(name)) << "a wrong name";
+  if (verdict == "NAMED") {
+    EXPECT_EQ(named.size(), answer().at("count").get<std::size_t>());
+  }
+  if (verdict == "ONE_OF") {
+    const std::set<std::string> set = names_of(diagnosis.at("one_of"));
+    EXPECT_TRUE(std::ranges::any_of(set, [&](const auto& name) { return right.contains(name); }))
+        << ::testing::PrintToString(set);
+  }
+  if (verdict == "UNKNOWN") {
+    const json& unknown = diagnosis.at("unknown").at(0);
+    const auto variables = answer().at("variables").get<std::set<std::string>>();
+    EXPECT_TRUE(std::ranges::any_of(unknown.at("variables").get<std::vector<std::string>>(),
+                                    [&](const auto& name) { return variables.contains(name); }))
+        << unknown;
+  }
+  if (named.empty()) return;
+
+  done("fit " + campaign() + " --model " + in_scratch("diagnosis/extended.toml") + " -o " +
+       in_scratch("extended"));
+  done("simulate " + (kHidden / "sealed" / (GetParam() + ".toml")).string() + " -o " + in_scratch("truth"));
+  const double before = unseen_error(in_scratch("given")), after = unseen_error(in_scratch("extended"));
+  EXPECT_LT(after, answer().value("share", 0.8) * before);
+  EXPECT_GT(diagnosis.at("ladder").back().at("heldout_loglik_gain").get<double>(), 0.0);
+  RecordProperty("unseen", fmt::format("{:.3f} -> {:.3f} um", before, after));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HiddenCampaign, ::testing::ValuesIn(campaigns()),
+                         [](const auto& each) { return "N" + each.param; });
+
+}  // namespace
+}  // namespace volcal

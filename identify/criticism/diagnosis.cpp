@@ -48,6 +48,7 @@ class Diagnostician {
       : options_(options),
         threads_(options.threads > 0 ? options.threads
                                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        result_(result),
         model_(campaign, result),
         heldout_(heldout_lines(model_, options.heldout_share)) {
     diagnosis_.removed_readings = static_cast<std::size_t>(
@@ -78,6 +79,7 @@ class Diagnostician {
     rank();
     drop_unneeded();
     conclude();
+    compare_hypotheses();
     progress("done", 1.0);
     return std::move(diagnosis_);
   }
@@ -308,6 +310,18 @@ class Diagnostician {
     kept.push_back(std::move(finding));
   }
 
+  /// What the readings can tell apart, and what would have to be measured for the rest.
+  void compare_hypotheses() {
+    if (!options_.compare) return;
+    progress("confounding", 0.95);
+    const NoiseData data = without(model_.problem().data, heldout_);
+    const CriticismState state{model_, result_,   data,   *projector_,
+                               noise_, families_, tests_, kLog10FamilyRisk - log10_families_,
+                               kPower, threads_};
+    add_confounding(state, diagnosis_);
+    add_next_measurements(state, options_.planning, diagnosis_);
+  }
+
   bool mostly_invisible() const {
     const auto effects = static_cast<std::size_t>(
         std::ranges::count_if(families_, [](const Family& family) { return !family.resolution; }));
@@ -372,6 +386,7 @@ class Diagnostician {
 
   const DiagnoseOptions& options_;
   int threads_;
+  const FitResult& result_;
   LinearModel model_;
   std::vector<bool> heldout_;
   Diagnosis diagnosis_;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -27,6 +28,8 @@ struct Arguments {
   bool climb = false;
   bool list = false;
   bool json = false;
+  std::vector<std::string> separate;
+  std::size_t readings = PlanningOptions{}.readings;
 };
 
 /// Every registered kind, and what its effects can act on and depend on.
@@ -63,6 +66,10 @@ int run(const Arguments& arguments) {
   DiagnoseOptions options;
   options.threads = arguments.threads;
   options.climb = arguments.climb;
+  options.planning.readings = arguments.readings;
+  for (const std::string& effect : arguments.separate) {
+    options.planning.separate.push_back(named_effect("--separate", effect, campaign));
+  }
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
   const Diagnosis diagnosis = diagnose(campaign, result, options);
   bar.finish();
@@ -92,6 +99,12 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--auto", arguments->climb, "add effects one after another until nothing is left");
+  app.add_option("--separate", arguments->separate,
+                 "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
+      ->delimiter(',');
+  app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
+      ->check(CLI::Range(8, 10000))
+      ->capture_default_str();
   app.add_flag("--list", arguments->list, "print every kind of effect and stop");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
   return [arguments] { return run(*arguments); };
@@ -100,12 +113,13 @@ std::function<int()> define(CLI::App& app) {
 }  // namespace
 
 const Command& diagnose_command() {
-  static const Command command = {"diagnose",
-                                  "show where the model fails, and name the effect that is missing",
-                                  "  volcal diagnose campaign.toml -o diagnosis\n"
-                                  "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
-                                  "  volcal diagnose --list\n",
-                                  define};
+  static const Command command = {
+      "diagnose", "show where the model fails, and name the effect that is missing",
+      "  volcal diagnose campaign.toml -o diagnosis\n"
+      "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
+      "  volcal diagnose campaign.toml --separate station-drift:\"station P1\",dead-path:\"readings of S1\"\n"
+      "  volcal diagnose --list\n",
+      define};
   return command;
 }
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -21,54 +21,6 @@ struct Arguments {
   std::string campaign;
   std::string output;
 };
-
-std::vector<std::string> parts_of(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ':') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
-std::string full_name(const EffectName& name) {
-  return fmt::format("{}:{}:{}:{}", name.kind, name.target, name.driver, name.shape);
-}
-
-/// KIND:TARGET, or more of KIND:TARGET:DRIVER:SHAPE where that is not one effect.
-EffectSpec named_effect(const std::string& text, const Campaign& campaign) {
-  const std::vector<std::string> wanted = parts_of(text);
-  const EffectKind* kind = find_effect(wanted[0]);
-  const std::string usage =
-      "write KIND:TARGET, KIND:TARGET:DRIVER or KIND:TARGET:DRIVER:SHAPE; volcal diagnose --list "
-      "prints all kinds";
-  if (kind == nullptr)
-    throw InputError({}, "--effect " + text + ": \"" + wanted[0] + "\" is no kind of effect", usage);
-  std::vector<EffectSpec> matching;
-  std::string names, all;
-  for (const EffectSpec& spec : kind->candidates(campaign)) {
-    const EffectName name = kind->make(spec, {})->name();
-    const std::string fields[] = {name.kind, name.target, name.driver, name.shape};
-    all += (all.empty() ? "" : ", ") + full_name(name);
-    bool fits = wanted.size() <= 4;
-    for (std::size_t k = 1; fits && k < wanted.size(); ++k)
-      fits = wanted[k].empty() || wanted[k] == fields[k];
-    if (!fits) continue;
-    matching.push_back(spec);
-    names += (names.empty() ? "" : ", ") + full_name(name);
-  }
-  if (matching.size() == 1) return matching.front();
-  if (matching.empty()) {
-    throw InputError(
-        {}, "--effect " + text + " names nothing that could act here",
-        all.empty() ? "give --campaign: this kind depends on what was recorded" : "choose one of " + all);
-  }
-  throw InputError({}, "--effect " + text + " fits " + std::to_string(matching.size()) + " effects",
-                   "choose one of " + names);
-}
 
 /// Path of a file as a file elsewhere names it.
 std::string path_from(const std::string& from, const std::string& file) {
@@ -84,7 +36,8 @@ int run(const Arguments& arguments) {
   } else {
     campaign = read_campaign(arguments.campaign);
   }
-  for (const std::string& effect : arguments.effects) model.effects.push_back(named_effect(effect, campaign));
+  for (const std::string& effect : arguments.effects)
+    model.effects.push_back(named_effect("--effect", effect, campaign));
   write_text_file(arguments.output, model_toml(model, path_from(arguments.output, machine.file)));
   fmt::print("written: {} ({} effects)\n", arguments.output, model.effects.size());
   return kDone;

@@ -55,11 +55,12 @@ SearchOptions search_options(const DiagnoseOptions& options) {
 class Diagnostician {
  public:
   Diagnostician(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options)
-      : model_(campaign, result),
+      : options_(options),
+        result_(result),
+        model_(campaign, result),
         heldout_(heldout_lines(model_, options.heldout_share)),
         search_(model_, heldout_, search_options(options)),
-        families_(search_.families()),
-        progress_(options.progress) {
+        families_(search_.families()) {
     diagnosis_.removed_readings = static_cast<std::size_t>(
         std::ranges::count_if(result.residuals, [](const ResidualRecord& record) { return record.removed; }));
   }
@@ -75,11 +76,16 @@ class Diagnostician {
     collect_unknown();
     list_noise();
     conclude();
-    if (progress_) progress_("done", 1.0);
+    compare_hypotheses();
+    progress("done", 1.0);
     return std::move(diagnosis_);
   }
 
  private:
+  void progress(const std::string& stage, double done) const {
+    if (options_.progress) options_.progress(stage, done);
+  }
+
   void list_noise() {
     diagnosis_.noise = noise_table(search_.noise_with_uncertainty());
     diagnosis_.noise_instruments = model_.instruments();
@@ -210,6 +216,25 @@ class Diagnostician {
     }
   }
 
+  /// What the readings can tell apart, and what would have to be measured for the rest.
+  void compare_hypotheses() {
+    if (!options_.compare) return;
+    progress("confounding", 0.95);
+    const NoiseData data = without(model_.problem().data, heldout_);
+    const CriticismState state{model_,
+                               result_,
+                               data,
+                               search_.projector(),
+                               search_.noise(),
+                               families_,
+                               search_.tests(),
+                               search_.log10_level(),
+                               kPower,
+                               thread_count(options_.threads)};
+    add_confounding(state, diagnosis_);
+    add_next_measurements(state, options_.planning, diagnosis_);
+  }
+
   bool mostly_invisible() const {
     const auto effects = static_cast<std::size_t>(
         std::ranges::count_if(families_, [](const Family& family) { return !family.resolution; }));
@@ -275,11 +300,12 @@ class Diagnostician {
                        unknown.direction, unknown.rms * 1e6);
   }
 
+  const DiagnoseOptions& options_;
+  const FitResult& result_;
   LinearModel model_;
   std::vector<bool> heldout_;
   EffectSearch search_;
   const std::vector<Family>& families_;
-  std::function<void(const std::string&, double)> progress_;
   Diagnosis diagnosis_;
 };
 

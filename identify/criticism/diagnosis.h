@@ -9,11 +9,14 @@
 /// A share of the lines is held out: they never choose, and judge every step.
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/confounding.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/next_measurement.h"
 #include "volcal/identify/criticism/noise_estimate.h"
 
 namespace volcal {
@@ -30,6 +33,10 @@ struct AmplitudeFigure {
   double mdb = 0.0;  ///< smallest amplitude found with 80 % power at the family-wise level
   std::string unit;  ///< edge
   double si_per_unit = 1.0;
+  /// Smallest amplitude that is also told apart from every rival (confounding.h); infinite: never; NaN: not
+  /// computed.
+  double mib = std::numeric_limits<double>::quiet_NaN();
+  std::string mib_rival = {};  ///< the worst rival; empty: none is near
 };
 
 struct EffectFinding {
@@ -74,6 +81,8 @@ struct DiagnoseOptions {
   int most_effects = 8;
   double heldout_share = 0.1;
   std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
+  bool compare = true;                 ///< MIB, confounding matrix, next measurement
+  PlanningOptions planning;
   std::function<void(const std::string& stage, double done)> progress;
 };
 
@@ -89,7 +98,9 @@ struct Diagnosis {
   std::vector<LadderStep> ladder;
   std::vector<NoiseRow> noise;
   std::vector<std::string> noise_instruments;
-  std::vector<std::string> next_measurement;
+  Confounding confounding;
+  std::vector<std::string> next_measurement;  ///< in words
+  std::vector<MeasurementProposal> proposals;
   std::size_t removed_readings = 0;
   std::size_t families = 0;
   std::size_t generic_tests = 0;

@@ -46,6 +46,7 @@ class EffectSearch {
   const std::vector<FamilyTest>& first_tests() const { return first_tests_; }
   const std::vector<LadderStep>& ladder() const { return ladder_; }
   const Projector& projector() const { return *projector_; }
+  const std::vector<NoiseParameters>& noise() const { return noise_; }
   /// With intervals, from all readings.
   NoiseEstimate noise_with_uncertainty() const;
 

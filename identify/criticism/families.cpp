@@ -72,15 +72,6 @@ struct FamilyBlock {
   Eigen::Index columns = 0;
 };
 
-void fill_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
-                  std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out) {
-  if (family.resolution) {
-    resolution_columns(model, *family.resolution, setup, out);
-  } else {
-    model.columns(*family.effect, shape, setup, out);
-  }
-}
-
 class FamilyTester {
  public:
   FamilyTester(const LinearModel& model, const std::vector<Family>& families, const Projector& projector)
@@ -131,7 +122,7 @@ class FamilyTester {
     for (const std::size_t family : block.family) {
       const Eigen::Index amplitudes = families_[family].amplitudes();
       for (const Eigen::VectorXd& shape : families_[family].scan) {
-        fill_columns(model_, families_[family], shape, setup, rows.middleCols(at, amplitudes));
+        family_columns(model_, families_[family], shape, setup, rows.middleCols(at, amplitudes));
         at += amplitudes;
       }
     }
@@ -238,12 +229,21 @@ void update_test(FamilyTest& test, const Family& family, const Eigen::VectorXd& 
   test.gain = (components ? best_of_components(score, price) : score.lm - score.dof * price) - shapes * price;
 }
 
+void family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                    std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out) {
+  if (family.resolution) {
+    resolution_columns(model, *family.resolution, setup, out);
+  } else {
+    model.columns(*family.effect, shape, setup, out);
+  }
+}
+
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()), family.amplitudes());
   const auto& parts = model.parts();
   for (std::size_t setup = 0; setup + 1 < parts.size(); ++setup) {
-    fill_columns(model, family, shape, setup,
-                 columns.middleRows(parts[setup], parts[setup + 1] - parts[setup]));
+    family_columns(model, family, shape, setup,
+                   columns.middleRows(parts[setup], parts[setup + 1] - parts[setup]));
   }
   return columns;
 }

@@ -33,6 +33,10 @@ std::vector<Family> families(const LinearModel& model);
 /// Columns at one of the shapes.
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape);
 
+/// Those of one setup's rows.
+void family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                    std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out);
+
 /// The test of a family at its best shape.
 struct FamilyTest {
   std::size_t family = 0;

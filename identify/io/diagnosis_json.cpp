@@ -15,6 +15,12 @@ constexpr double kMicro = 1e-6;
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json micro(double value) { return number(value / kMicro); }
 
+/// null: never told apart from the rival, or not computed.
+void add_mib(const AmplitudeFigure& figure, Json& json) {
+  json["mib"] = number(figure.mib / figure.si_per_unit);
+  json["mib_rival"] = figure.mib_rival;
+}
+
 /// An effect of one amplitude has it as a number; of several, the largest in its standard uncertainty leads
 /// and all are listed.
 Json effect_json(const EffectFinding& effect) {
@@ -34,6 +40,7 @@ Json effect_json(const EffectFinding& effect) {
     json["unit"] = leading->unit;
     json["u"] = number(leading->u / leading->si_per_unit);
     json["mdb"] = number(leading->mdb / leading->si_per_unit);
+    add_mib(*leading, json);
     if (effect.amplitudes.size() > 1) {
       json["amplitudes"] = Json::array();
       for (const AmplitudeFigure& each : effect.amplitudes) {
@@ -42,6 +49,7 @@ Json effect_json(const EffectFinding& effect) {
                                       {"unit", each.unit},
                                       {"u", number(each.u / each.si_per_unit)},
                                       {"mdb", number(each.mdb / each.si_per_unit)}});
+        add_mib(each, json["amplitudes"].back());
       }
     }
   }
@@ -64,6 +72,41 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"direction", unknown.direction},
           {"rms_um", micro(unknown.rms)},
           {"log10_p", number(unknown.log10_p)}};
+}
+
+/// As `volcal extend --effect` and `volcal diagnose --separate` take it.
+std::string full_name(const EffectName& name) {
+  return name.kind + ":" + name.target + ":" + name.driver + ":" + name.shape;
+}
+
+Json names_json(const std::vector<EffectName>& names) {
+  Json json = Json::array();
+  for (const EffectName& name : names) json.push_back(full_name(name));
+  return json;
+}
+
+/// Gains: null where the readings as they are cannot tell the two apart at all.
+Json proposal_json(const MeasurementProposal& proposal) {
+  return {{"action", proposal.action},
+          {"setup", proposal.setup},
+          {"separates", names_json(proposal.separates)},
+          {"makes_visible", names_json(proposal.makes_visible)},
+          {"readings", proposal.readings},
+          {"separation", number(proposal.separation)},
+          {"gain", number(proposal.gain)},
+          {"plain_gain", number(proposal.plain_gain)},
+          {"words", proposal.words}};
+}
+
+Json confounding_json(const Confounding& confounding) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < confounding.cosine.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < confounding.cosine.cols(); ++j)
+      row.push_back(number(confounding.cosine(i, j)));
+    rows.push_back(std::move(row));
+  }
+  return {{"effects", names_json(confounding.names)}, {"labels", confounding.labels}, {"cosine", rows}};
 }
 
 Json step_json(const LadderStep& step) {
@@ -105,7 +148,11 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["not_visible"] = list_json(diagnosis.not_visible);
-  json["next_measurement"] = diagnosis.next_measurement;
+  json["next_measurement"] = Json::array();
+  for (const MeasurementProposal& proposal : diagnosis.proposals) {
+    json["next_measurement"].push_back(proposal_json(proposal));
+  }
+  json["confounding"] = confounding_json(diagnosis.confounding);
   json["ladder"] = Json::array();
   for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
   json["model_changes"] = list_json(diagnosis.model_changes);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "volcal/identify/report/text_tables.h"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr double kMicro = 1e-6;
 constexpr std::size_t kRanked = 12;
+constexpr double kNear = 0.9;  // cosine
 
 std::string edge(double si, double si_per_unit, int digits = 3) {
   return short_number(si / si_per_unit, digits);
@@ -36,6 +39,36 @@ std::string ladder_table(const Diagnosis& diagnosis) {
   return table.text();
 }
 
+std::string mib_text(const AmplitudeFigure& figure) {
+  if (std::isnan(figure.mib)) return "-";
+  return std::isinf(figure.mib) ? "never" : edge(figure.mib, figure.si_per_unit, 2);
+}
+
+/// The nearest pairs of the confounding matrix.
+std::string confounding_table(const Confounding& confounding) {
+  struct Pair {
+    double cosine;
+    Eigen::Index first;
+    Eigen::Index second;
+  };
+  std::vector<Pair> pairs;
+  for (Eigen::Index i = 0; i < confounding.cosine.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (confounding.cosine(i, j) > kNear) pairs.push_back({confounding.cosine(i, j), j, i});
+    }
+  }
+  if (pairs.empty()) return {};
+  std::ranges::stable_sort(pairs, std::greater{}, &Pair::cosine);
+  TextTable table({{"cosine"}, {"effect", Align::Left}, {"and", Align::Left}},
+                  "Hardly told apart (after projection off the model)");
+  for (std::size_t i = 0; i < std::min(kRanked, pairs.size()); ++i) {
+    table.add_row({fixed_number(pairs[i].cosine, 3),
+                   confounding.labels[static_cast<std::size_t>(pairs[i].first)],
+                   confounding.labels[static_cast<std::size_t>(pairs[i].second)]});
+  }
+  return "\n" + table.text();
+}
+
 std::string evidence_table(const std::vector<EffectFinding>& findings, const std::string& title,
                            std::size_t most) {
   TextTable table({{"effect", Align::Left},
@@ -44,6 +77,8 @@ std::string evidence_table(const std::vector<EffectFinding>& findings, const std
                    {"+- U95"},
                    {"unit", Align::Left},
                    {"MDB"},
+                   {"MIB"},
+                   {"rival", Align::Left},
                    {"visible [%]"},
                    {"log10 p"}},
                   title);
@@ -52,12 +87,12 @@ std::string evidence_table(const std::vector<EffectFinding>& findings, const std
     const std::string visible = fixed_number(100.0 * finding.visible_fraction, 1);
     const std::string p = fixed_number(finding.log10_p, 1);
     if (finding.amplitudes.empty())
-      table.add_row({finding.label, finding.name.kind, "-", "-", "", "-", visible, p});
+      table.add_row({finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
     for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
       const AmplitudeFigure& each = finding.amplitudes[k];
       table.add_row({each.label, k == 0 ? finding.name.kind : "", edge(each.value, each.si_per_unit),
                      edge(1.96 * each.u, each.si_per_unit, 2), each.unit, edge(each.mdb, each.si_per_unit, 2),
-                     k == 0 ? visible : "", k == 0 ? p : ""});
+                     mib_text(each), each.mib_rival, k == 0 ? visible : "", k == 0 ? p : ""});
     }
   }
   return table.text();
@@ -106,6 +141,11 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += "\n" + evidence_table(diagnosis.one_of, "Not told apart", diagnosis.one_of.size());
   if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
   text += "\n" + evidence_table(diagnosis.ranking, "Ranked evidence at the model reached", kRanked);
+  text += confounding_table(diagnosis.confounding);
+  if (!diagnosis.next_measurement.empty()) {
+    text += "\nWhich measurement next\n";
+    for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
+  }
   text += "\n" + noise_text(diagnosis);
   text += fmt::format(
       "\n{} families and {} generic tests; {} families of which less than 2 % is visible; {} readings "

@@ -166,6 +166,7 @@ class CampaignRun {
     describe(simulated.campaign);
     const FitResult given = fitted(simulated.campaign, {});
     DiagnoseOptions options;
+    options.compare = false;
     options.threads = 1;
     options.climb = true;
     options.leave_out = plan_.leave_out;

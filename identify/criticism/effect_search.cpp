@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "volcal/identify/criticism/shape_refinement.h"
@@ -20,6 +22,7 @@ constexpr double kToldApart = 6.0;       // of the extended BIC
 constexpr double kWorthRefining = 40.0;  // the same, below the leading one
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;    // of LM: what fits as well is a rival, however many its parameters
+constexpr double kLessProbable = 1.0;      // log10 p, family-wise
 constexpr double kWorthSecondLook = -3.0;  // log10 p of a family for itself
 constexpr std::size_t kMostSecondLooks = 3;
 constexpr int kMostChanges = 4;
@@ -49,6 +52,7 @@ void EffectSearch::run() {
   start();
   climb();
   for (int change = 0; change < kMostChanges && reconsider(); ++change) climb();
+  give_up();
 }
 
 void EffectSearch::start() {
@@ -142,7 +146,7 @@ bool EffectSearch::add_leading() {
     if (hidden) add(*hidden);
     return hidden.has_value();
   }
-  if (best_generic_gain() > best->gain + kToldApart) return false;
+  if (generic_does_better(*best)) return false;
   add(FamilyTest(*best));
   return true;
 }
@@ -241,6 +245,37 @@ bool EffectSearch::reconsider() {
   return false;
 }
 
+/// Powers of one driver that are needed together stand for a function of it that the catalogue does not hold,
+/// and a name that is less certain than what it leaves unexplained is none.
+void EffectSearch::find_no_names() {
+  double remains = 0.0;
+  for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::size_t>> by_driver;
+  for (const AddedEffect& effect : added_) {
+    const EffectName name = families_[effect.test.family].name();
+    by_driver[{name.kind, name.target, name.driver}].push_back(effect.test.family);
+    if (remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test)) {
+      given_up_.insert(effect.test.family);
+    }
+  }
+  for (const auto& [key, members] : by_driver) {
+    if (members.size() > 1) given_up_.insert(members.begin(), members.end());
+  }
+}
+
+void EffectSearch::give_up() {
+  find_no_names();
+  if (given_up_.empty()) return;
+  std::vector<FamilyTest> kept;
+  for (const AddedEffect& effect : added_) {
+    if (!given_up_.contains(effect.test.family)) kept.push_back(effect.test);
+  }
+  add_again(kept);
+  for (int change = 0; change < kMostChanges && reconsider(); ++change) {
+  }
+  test();
+}
+
 /// The ladder from its beginning.
 void EffectSearch::add_again(const std::vector<FamilyTest>& tests) {
   start();
@@ -256,19 +291,20 @@ const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
                                         std::optional<std::size_t> but) const {
   const FamilyTest* best = nullptr;
   for (const FamilyTest& test : tests) {
-    if (test.score.dof == 0 || (is_added(test.family) && test.family != but)) continue;
+    if (test.score.dof == 0 || given_up_.contains(test.family)) continue;
+    if (is_added(test.family) && test.family != but) continue;
     if (best == nullptr || test.gain > best->gain) best = &test;
   }
   return best;
 }
 
-/// What an unlisted effect of few terms would reach.
-double EffectSearch::best_generic_gain() const {
-  double gain = 0.0;
-  for (const GenericTest& test : generic_) {
-    if (!test.kernel) gain = std::max(gain, test.gain);
-  }
-  return gain;
+/// An unlisted effect of few terms has a larger gain among the polynomials; bumps and waves make a kernel
+/// less probable than any name.
+bool EffectSearch::generic_does_better(const FamilyTest& best) const {
+  return std::ranges::any_of(generic_, [&](const GenericTest& test) {
+    if (!test.kernel && test.gain > best.gain + kToldApart) return true;
+    return family_wise_log10_p(test) < family_wise_log10_p(best) - kLessProbable;
+  });
 }
 
 double EffectSearch::family_wise_log10_p(const FamilyTest& test) const {

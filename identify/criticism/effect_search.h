@@ -1,10 +1,13 @@
 #pragma once
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
-/// and no generic test does better; then every added one must stand against all others again.
+/// and no generic test does better; then every added one must stand against all others again. Several powers
+/// of one driver on one target are no name, nor is what explains less than it leaves: such are left out
+/// again.
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -71,9 +74,11 @@ class EffectSearch {
   void add(const FamilyTest& test);
   void add_step(const std::string& added);
   bool reconsider();
+  void find_no_names();
+  void give_up();
   void add_again(const std::vector<FamilyTest>& tests);
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
-  double best_generic_gain() const;
+  bool generic_does_better(const FamilyTest& best) const;
 
   const LinearModel& model_;
   const std::vector<bool>& heldout_;
@@ -87,6 +92,7 @@ class EffectSearch {
   std::vector<FamilyTest> first_tests_;
   std::vector<GenericTest> generic_;
   std::vector<AddedEffect> added_;
+  std::set<std::size_t> given_up_;
   std::vector<LadderStep> ladder_;
   std::optional<double> heldout_loglik_;
   double log10_families_ = 0.0;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <set>
 
 #include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -47,23 +49,22 @@ void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_
   }
 }
 
-/// Effective number of independent directions among unit vectors with this Gram matrix: (sum l)^2 / sum l^2
-/// of its eigenvalues.
-double effective_number(const Eigen::MatrixXd& gram) {
-  const double squares = gram.squaredNorm();
-  const double trace = gram.trace();
-  return squares > 0.0 ? std::max(1.0, trace * trace / squares) : 1.0;
-}
-
-/// Multiplicity of a scan from the projected columns of its shapes, amplitude by amplitude.
-double scan_multiplicity(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index shapes,
-                         Eigen::Index amplitudes) {
-  if (shapes < 2) return 1.0;
-  Eigen::MatrixXd gram = projected.gram(first, shapes * amplitudes);
-  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
-      [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
-  gram = scale.asDiagonal() * gram * scale.asDiagonal();
-  return effective_number(gram);
+/// Probability that the largest LM of a scan exceeds `lm` by chance, against that of one shape: the bound by
+/// the total variation of sqrt(LM) over the scan (Davies 1987, Biometrika 74, 33, eq. 3.4), and no more than
+/// the number of shapes.
+double scan_multiplicity(const std::vector<double>& lm_of_shapes, double lm, int dof) {
+  if (lm_of_shapes.size() < 2 || dof == 0 || !(lm > 0.0)) return 1.0;
+  double variation = 0.0;
+  for (std::size_t i = 1; i < lm_of_shapes.size(); ++i) {
+    variation += std::abs(std::sqrt(lm_of_shapes[i]) - std::sqrt(lm_of_shapes[i - 1]));
+  }
+  const double half = 0.5 * dof;
+  const double log10_crossings =
+      (0.5 * (dof - 1) * std::log(lm) - 0.5 * lm - half * std::numbers::ln2 - std::lgamma(half)) /
+          std::numbers::ln10 +
+      std::log10(std::max(variation, 1e-300));
+  const double multiplicity = 1.0 + std::pow(10.0, log10_crossings - log10_chi_squared_exceedance(lm, dof));
+  return std::min(multiplicity, static_cast<double>(lm_of_shapes.size()));
 }
 
 /// Families that are tested together, and the columns of all their shapes.
@@ -108,12 +109,14 @@ class FamilyTester {
                                   fill(block, setup, rows);
                                 }};
     for (const std::size_t family : block.family) {
-      candidates.groups.push_back(shapes(family) * families_[family].amplitudes());
+      candidates.groups.insert(candidates.groups.end(), families_[family].scan.size(),
+                               families_[family].amplitudes());
     }
     const ProjectedColumns projected = projector_.project(candidates);
-    for (std::size_t i = 0; i < block.family.size(); ++i) {
-      const std::size_t family = block.family[i];
-      tests_[family] = best_shape(projected, family, projected.first[i], families_[family].amplitudes());
+    Eigen::Index first = 0;
+    for (const std::size_t family : block.family) {
+      tests_[family] = best_shape(projected, family, first, families_[family].amplitudes());
+      first += shapes(family) * families_[family].amplitudes();
     }
   }
 
@@ -134,13 +137,15 @@ class FamilyTester {
     FamilyTest best;
     best.family = family;
     best.shape = scan.front();
+    std::vector<double> lm;
     for (std::size_t i = 0; i < scan.size(); ++i) {
       const ScoreTest test = score_test(projected, first + static_cast<Eigen::Index>(i) * columns, columns);
+      lm.push_back(test.lm);
       if (i > 0 && test.lm <= best.score.lm) continue;
       best.score = test;
       best.shape = scan[i];
     }
-    best.multiplicity = scan_multiplicity(projected, first, static_cast<Eigen::Index>(scan.size()), columns);
+    best.multiplicity = scan_multiplicity(lm, best.score.lm, best.score.dof);
     update_test(best, families_[family], best.shape, best.score, projector_);
     return best;
   }

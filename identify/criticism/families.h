@@ -42,7 +42,7 @@ struct FamilyTest {
   std::size_t family = 0;
   Eigen::VectorXd shape;
   ScoreTest score;
-  double multiplicity = 1.0;  ///< effective number of independent shapes that were tried
+  double multiplicity = 1.0;  ///< of the shapes that were tried: by how much p grows
   double log10_p = 0.0;       ///< with the multiplicity, for this family alone
   double gain = 0.0;          ///< LM - dof ln n: what the extended BIC compares; scanned shapes count as dof,
                               ///< and of independent components only those that raise it

@@ -20,6 +20,7 @@ namespace {
 constexpr double kVisible = 0.02;
 constexpr double kHelps = 1.05;      // a gain below is no proposal
 constexpr double kMuchBetter = 1.5;  // for one pair than the measurement that serves all
+constexpr double kEffort = 2.0;      // how much better it must be with what is not at hand
 constexpr double kNothing = 1e-6;    // s^2 that counts as none
 constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostProposals = 6;
@@ -154,7 +155,8 @@ class Proposer {
     std::size_t least = 0;
     double least_fraction = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const double fraction = score_test(projected, projected.first[i], amplitudes).visible_fraction;
+      const double known = projected.norm.segment(projected.first[i], amplitudes).squaredNorm();
+      const double fraction = known > 0.0 ? projected.grams[i].trace() / known : 0.0;
       if (fraction >= least_fraction) continue;
       least_fraction = fraction;
       least = i;
@@ -186,11 +188,22 @@ class Proposer {
     return least;
   }
 
-  static std::size_t best_for(const MeasurementPlanner& planner, const std::vector<Pair>& pairs) {
+  /// An instrument or a tool that the campaign did not use has to be worth it.
+  double worth(const ExtraMeasurement& measurement) const {
+    const auto& used = state_.model.instruments();
+    const bool at_hand = std::ranges::all_of(measurement.setups, [&](const Setup& setup) {
+      return std::ranges::find(used, setup.instrument) != used.end();
+    });
+    return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kEffort;
+  }
+
+  std::size_t best_for(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+                       const std::vector<Pair>& pairs) const {
     std::size_t best = 0;
     double most = -1.0;
     for (std::size_t i = 0; i < planner.measurements(); ++i) {
-      const double apart = nearest(planner, planner.with(i), pairs).second;
+      const double apart =
+          nearest(planner, planner.with(i), pairs).second * worth(imagined.measurements()[i]);
       if (apart <= most) continue;
       most = apart;
       best = i;
@@ -202,10 +215,10 @@ class Proposer {
   void separate(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
                 const std::vector<PlannedHypothesis>& hypotheses, const std::vector<Pair>& pairs) {
     if (pairs.empty() || planner.measurements() == 0) return;
-    const std::size_t common = best_for(planner, pairs);
+    const std::size_t common = best_for(planner, imagined, pairs);
     propose(planner, imagined, hypotheses, nearest(planner, planner.now(), pairs).first, common);
     for (const Pair& pair : pairs) {
-      const std::size_t own = best_for(planner, {pair});
+      const std::size_t own = best_for(planner, imagined, {pair});
       const auto reached = [&](std::size_t i) {
         return planner.separation(planner.with(i), pair.first, pair.second);
       };
@@ -283,10 +296,19 @@ class Proposer {
     for (std::size_t action = 0; action < kMostActions && !hidden.empty(); ++action) {
       std::vector<std::size_t> most;
       std::size_t best = 0;
+      double most_information = 0.0;
       for (std::size_t i = 0; i < planner.measurements(); ++i) {
         std::vector<std::size_t> shown = shown_by(planner, i, hidden);
-        if (shown.size() <= most.size()) continue;
+        double information =
+            0.0;  // a tie goes to the measurement that says most, in logarithms: units differ
+        for (const std::size_t k : shown) {
+          information +=
+              std::log(planner.information(planner.with(i), k) * worth(imagined.measurements()[i]));
+        }
+        if (shown.size() < most.size()) continue;
+        if (shown.empty() || (shown.size() == most.size() && information <= most_information)) continue;
         most = std::move(shown);
+        most_information = information;
         best = i;
       }
       if (most.empty()) break;
@@ -327,9 +349,16 @@ class Proposer {
       if (k < kNamed) names += (k > 0 ? ", " : "") + described(hypotheses[shown[k]]);
     }
     if (shown.size() > kNamed) names += ", ...";
-    out.words += hidden == 1 ? "makes visible " + names + "."
-                             : fmt::format("makes visible {} of {} effects that are not: {}.", shown.size(),
-                                           hidden, names);
+    if (hidden == 1) {
+      const auto& amplitude = family(hypotheses[shown.front()]).effect->amplitudes().front();
+      out.words +=
+          fmt::format("makes visible {}, from {:.2g} {} on.", names,
+                      planner.detectable(planner.with(measurement), shown.front()) / amplitude.si_per_unit(),
+                      amplitude.unit());
+    } else {
+      out.words +=
+          fmt::format("makes visible {} of {} effects that are not: {}.", shown.size(), hidden, names);
+    }
     add(std::move(out));
   }
 

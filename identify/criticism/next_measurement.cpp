@@ -228,9 +228,12 @@ class Proposer {
     }
   }
 
+  /// s^2 without rounding.
+  static double something(double separation) { return separation > kNothing ? separation : 0.0; }
+
   static double ratio(double after, double before) {
-    if (before > kNothing) return after / before;
-    return after > kNothing ? std::numeric_limits<double>::infinity() : 1.0;
+    if (before > 0.0) return after / before;
+    return after > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
   }
 
   void propose(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
@@ -243,9 +246,9 @@ class Proposer {
     const PlannedHypothesis& second = hypotheses[pair.second];
     MeasurementProposal out;
     out.separates = {family(first).name(), family(second).name()};
-    out.separation = apart(planner.now());
-    out.gain = ratio(apart(planner.with(measurement)), out.separation);
-    out.plain_gain = ratio(apart(planner.plain(measurement)), out.separation);
+    out.separation = something(apart(planner.now()));
+    out.gain = ratio(something(apart(planner.with(measurement))), out.separation);
+    out.plain_gain = ratio(something(apart(planner.plain(measurement))), out.separation);
     const std::string both = described(first) + " from " + described(second);
     if (out.gain < kHelps) {
       out.gain = out.plain_gain = 1.0;
@@ -331,18 +334,11 @@ class Proposer {
                        const std::vector<std::size_t>& shown, std::size_t hidden, std::size_t measurement) {
     MeasurementProposal out;
     set_measurement(imagined.measurements()[measurement], out);
-    const auto fraction = [&](const ProjectedHypotheses& where) {
-      return std::pow(planner.visible_fraction(where, shown.front()), 2);
-    };
-    const double before = fraction(planner.now());
-    const double unseen = kInvisibleShare * kInvisibleShare;
-    const auto times = [&](double after) {
-      return before > unseen  ? after / before
-             : after > unseen ? std::numeric_limits<double>::infinity()
-                              : 1.0;
-    };
-    out.gain = times(fraction(planner.with(measurement)));
-    out.plain_gain = times(fraction(planner.plain(measurement)));
+    const std::size_t first = shown.front();
+    const bool seen = planner.visible_fraction(planner.now(), first) > kInvisibleShare;
+    const double before = seen ? planner.information(planner.now(), first) : 0.0;
+    out.gain = ratio(planner.information(planner.with(measurement), first), before);
+    out.plain_gain = seen ? ratio(planner.information(planner.plain(measurement), first), before) : 1.0;
     std::string names;
     for (std::size_t k = 0; k < shown.size(); ++k) {
       out.makes_visible.push_back(family(hypotheses[shown[k]]).name());

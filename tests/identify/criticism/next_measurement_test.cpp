@@ -68,21 +68,6 @@ TEST(NextMeasurement, AnInvisibleLengthScaleAsksForACalibratedLength) {
   EXPECT_THAT(diagnosis.next_measurement.front(), HasSubstr("ball-bar of calibrated length"));
 }
 
-TEST(NextMeasurement, ACalibratedLengthShowsTheLengthScale) {
-  sim::Study study = one_tool_per_station();
-  study.hidden = {hidden("length-scale", 20e-6)};
-  EXPECT_EQ(diagnosed(study).verdict, Verdict::NothingAbove);
-  sim::BallBarCircles circles;
-  circles.planes = {"XY"};
-  circles.length_sigma = 0.0;
-  study.measurements.emplace_back().settings = circles;
-  const Diagnosis diagnosis = diagnosed(study);
-  ASSERT_FALSE(diagnosis.effects.empty()) << diagnosis.words.front();
-  EXPECT_EQ(diagnosis.effects.front().name, kLengthScale);
-  const AmplitudeFigure& scale = diagnosis.effects.front().amplitudes.front();
-  EXPECT_NEAR(scale.value, 20e-6, 4.0 * scale.u);
-}
-
 /// A drift of 17 um/h: ONE_OF before, NAMED once the station was visited again.
 TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
   sim::HiddenEffect drift = hidden("station-drift", 17e-6);

@@ -55,6 +55,13 @@ int run(const Arguments& arguments) {
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model =
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  DiagnoseOptions options;
+  options.threads = arguments.threads;
+  options.climb = arguments.climb;
+  options.planning.readings = arguments.readings;
+  for (const std::string& effect : arguments.separate) {
+    options.planning.separate.push_back(named_effect("--separate", effect, campaign));
+  }
   ProgressBar bar("diagnose");
   FitOptions fit_options;
   fit_options.threads = arguments.threads;
@@ -63,13 +70,6 @@ int run(const Arguments& arguments) {
     bar.update("fit: " + stage, 0.3 * done);
   };
   const FitResult result = fit(campaign, model, fit_options);
-  DiagnoseOptions options;
-  options.threads = arguments.threads;
-  options.climb = arguments.climb;
-  options.planning.readings = arguments.readings;
-  for (const std::string& effect : arguments.separate) {
-    options.planning.separate.push_back(named_effect("--separate", effect, campaign));
-  }
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
   const Diagnosis diagnosis = diagnose(campaign, result, options);
   bar.finish();

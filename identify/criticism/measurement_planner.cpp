@@ -10,6 +10,12 @@
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
+namespace {
+
+constexpr double kRounding = 1e-9;  // of the largest column of a hypothesis
+constexpr double kFaint = 1e-2;  // share of an amplitude's effect, squared, that must remain: 0.01 % in all
+
+}  // namespace
 
 MeasurementPlanner::MeasurementPlanner(const CriticismState& state, std::vector<PlannedHypothesis> hypotheses,
                                        std::size_t given, const ImaginedCampaign& imagined)
@@ -60,6 +66,20 @@ void MeasurementPlanner::add_campaign() {
   observations_ = static_cast<double>(whitener.observations());
 }
 
+/// A column far below the others of its hypothesis is rounding: the sine of a period that divides every
+/// position.
+void MeasurementPlanner::clear_small_columns(ProjectedHypotheses& where) const {
+  for (const auto& [first, count] : range_) {
+    const double largest = where.known_norm.segment(first, count).maxCoeff();
+    for (Eigen::Index k = first; k < first + count; ++k) {
+      if (where.known_norm[k] > kRounding * largest) continue;
+      where.known_norm[k] = 0.0;
+      where.gram.row(k).setZero();
+      where.gram.col(k).setZero();
+    }
+  }
+}
+
 /// `gram`: of parameters, then hypotheses. The campaign's priors are added here.
 ProjectedHypotheses MeasurementPlanner::project(const Eigen::MatrixXd& gram, Eigen::Index parameters) const {
   Eigen::MatrixXd information = gram.topLeftCorner(parameters, parameters);
@@ -79,6 +99,7 @@ ProjectedHypotheses MeasurementPlanner::project(const Eigen::MatrixXd& gram, Eig
   out.known_norm = out.gram.diagonal().cwiseSqrt();
   add_gram_upper(explained, -1.0, out.gram);
   symmetrise_from_upper(out.gram);
+  clear_small_columns(out);
   clear_invisible(out.known_norm, out.gram);
   for (std::size_t i = 0; i < given_; ++i) out.gram = projected_off(out.gram, range_[i]);
   return out;
@@ -130,12 +151,22 @@ double MeasurementPlanner::separation(const ProjectedHypotheses& where, std::siz
 
 double MeasurementPlanner::visible_fraction(const ProjectedHypotheses& where, std::size_t hypothesis) const {
   const auto [first, count] = range_[given_ + hypothesis];
-  double share = 0.0;
-  for (Eigen::Index k = first; k < first + count; ++k) {
-    const double norm = where.known_norm[k];
-    if (norm > 0.0) share += where.gram(k, k) / (norm * norm);
-  }
-  return std::sqrt(std::max(0.0, share / static_cast<double>(count)));
+  const double known = where.known_norm.segment(first, count).squaredNorm();
+  return known > 0.0 ? std::sqrt(std::max(0.0, information(where, hypothesis) / known)) : 0.0;
+}
+
+double MeasurementPlanner::information(const ProjectedHypotheses& where, std::size_t hypothesis) const {
+  const auto [first, count] = range_[given_ + hypothesis];
+  return where.gram.diagonal().segment(first, count).sum();
+}
+
+double MeasurementPlanner::detectable(const ProjectedHypotheses& where, std::size_t hypothesis) const {
+  const auto [first, count] = range_[given_ + hypothesis];
+  const Eigen::MatrixXd own = where.gram.block(first, first, count, count);
+  const Eigen::VectorXd u =
+      amplitude_uncertainty(own, where.known_norm.segment(first, count).cwiseAbs2() * kFaint);
+  return std::sqrt(detectable_noncentrality(state_.log10_level, static_cast<double>(count), state_.power)) *
+         u.minCoeff();
 }
 
 }  // namespace volcal

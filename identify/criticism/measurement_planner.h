@@ -37,11 +37,17 @@ class MeasurementPlanner {
 
   /// s^2 of two hypotheses (indices behind the given ones).
   double separation(const ProjectedHypotheses& where, std::size_t first, std::size_t second) const;
-  /// |g~| / |g_w| in root mean square over the columns.
+  /// |g~| / |g_w|, all columns together.
   double visible_fraction(const ProjectedHypotheses& where, std::size_t hypothesis) const;
+  /// |g~|^2, all columns together.
+  double information(const ProjectedHypotheses& where, std::size_t hypothesis) const;
+  /// Smallest amplitude found with the power asked for, SI, of the amplitude that is seen best; infinite:
+  /// none.
+  double detectable(const ProjectedHypotheses& where, std::size_t hypothesis) const;
 
  private:
   void add_campaign();
+  void clear_small_columns(ProjectedHypotheses& where) const;
   ProjectedHypotheses project(const Eigen::MatrixXd& gram, Eigen::Index parameters) const;
   ProjectedHypotheses extended(std::size_t measurement) const;
   Eigen::MatrixXd family_rows(std::size_t setup) const;

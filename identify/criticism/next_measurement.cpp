@@ -20,6 +20,7 @@ namespace {
 constexpr double kVisible = 0.02;
 constexpr double kHelps = 1.05;      // a gain below is no proposal
 constexpr double kMuchBetter = 1.5;  // for one pair than the measurement that serves all
+constexpr double kEffort = 2.0;      // how much better it must be with what is not at hand
 constexpr double kNothing = 1e-6;    // s^2 that counts as none
 constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostProposals = 6;
@@ -154,7 +155,8 @@ class Proposer {
     std::size_t least = 0;
     double least_fraction = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-      const double fraction = score_test(projected, projected.first[i], amplitudes).visible_fraction;
+      const double known = projected.norm.segment(projected.first[i], amplitudes).squaredNorm();
+      const double fraction = known > 0.0 ? projected.grams[i].trace() / known : 0.0;
       if (fraction >= least_fraction) continue;
       least_fraction = fraction;
       least = i;
@@ -186,11 +188,22 @@ class Proposer {
     return least;
   }
 
-  static std::size_t best_for(const MeasurementPlanner& planner, const std::vector<Pair>& pairs) {
+  /// An instrument or a tool that the campaign did not use has to be worth it.
+  double worth(const ExtraMeasurement& measurement) const {
+    const auto& used = state_.model.instruments();
+    const bool at_hand = std::ranges::all_of(measurement.setups, [&](const Setup& setup) {
+      return std::ranges::find(used, setup.instrument) != used.end();
+    });
+    return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kEffort;
+  }
+
+  std::size_t best_for(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+                       const std::vector<Pair>& pairs) const {
     std::size_t best = 0;
     double most = -1.0;
     for (std::size_t i = 0; i < planner.measurements(); ++i) {
-      const double apart = nearest(planner, planner.with(i), pairs).second;
+      const double apart =
+          nearest(planner, planner.with(i), pairs).second * worth(imagined.measurements()[i]);
       if (apart <= most) continue;
       most = apart;
       best = i;
@@ -202,10 +215,10 @@ class Proposer {
   void separate(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
                 const std::vector<PlannedHypothesis>& hypotheses, const std::vector<Pair>& pairs) {
     if (pairs.empty() || planner.measurements() == 0) return;
-    const std::size_t common = best_for(planner, pairs);
+    const std::size_t common = best_for(planner, imagined, pairs);
     propose(planner, imagined, hypotheses, nearest(planner, planner.now(), pairs).first, common);
     for (const Pair& pair : pairs) {
-      const std::size_t own = best_for(planner, {pair});
+      const std::size_t own = best_for(planner, imagined, {pair});
       const auto reached = [&](std::size_t i) {
         return planner.separation(planner.with(i), pair.first, pair.second);
       };
@@ -215,9 +228,12 @@ class Proposer {
     }
   }
 
+  /// s^2 without rounding.
+  static double something(double separation) { return separation > kNothing ? separation : 0.0; }
+
   static double ratio(double after, double before) {
-    if (before > kNothing) return after / before;
-    return after > kNothing ? std::numeric_limits<double>::infinity() : 1.0;
+    if (before > 0.0) return after / before;
+    return after > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
   }
 
   void propose(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
@@ -230,9 +246,9 @@ class Proposer {
     const PlannedHypothesis& second = hypotheses[pair.second];
     MeasurementProposal out;
     out.separates = {family(first).name(), family(second).name()};
-    out.separation = apart(planner.now());
-    out.gain = ratio(apart(planner.with(measurement)), out.separation);
-    out.plain_gain = ratio(apart(planner.plain(measurement)), out.separation);
+    out.separation = something(apart(planner.now()));
+    out.gain = ratio(something(apart(planner.with(measurement))), out.separation);
+    out.plain_gain = ratio(something(apart(planner.plain(measurement))), out.separation);
     const std::string both = described(first) + " from " + described(second);
     if (out.gain < kHelps) {
       out.gain = out.plain_gain = 1.0;
@@ -283,10 +299,19 @@ class Proposer {
     for (std::size_t action = 0; action < kMostActions && !hidden.empty(); ++action) {
       std::vector<std::size_t> most;
       std::size_t best = 0;
+      double most_information = 0.0;
       for (std::size_t i = 0; i < planner.measurements(); ++i) {
         std::vector<std::size_t> shown = shown_by(planner, i, hidden);
-        if (shown.size() <= most.size()) continue;
+        double information =
+            0.0;  // a tie goes to the measurement that says most, in logarithms: units differ
+        for (const std::size_t k : shown) {
+          information +=
+              std::log(planner.information(planner.with(i), k) * worth(imagined.measurements()[i]));
+        }
+        if (shown.size() < most.size()) continue;
+        if (shown.empty() || (shown.size() == most.size() && information <= most_information)) continue;
         most = std::move(shown);
+        most_information = information;
         best = i;
       }
       if (most.empty()) break;
@@ -309,27 +334,27 @@ class Proposer {
                        const std::vector<std::size_t>& shown, std::size_t hidden, std::size_t measurement) {
     MeasurementProposal out;
     set_measurement(imagined.measurements()[measurement], out);
-    const auto fraction = [&](const ProjectedHypotheses& where) {
-      return std::pow(planner.visible_fraction(where, shown.front()), 2);
-    };
-    const double before = fraction(planner.now());
-    const double unseen = kInvisibleShare * kInvisibleShare;
-    const auto times = [&](double after) {
-      return before > unseen  ? after / before
-             : after > unseen ? std::numeric_limits<double>::infinity()
-                              : 1.0;
-    };
-    out.gain = times(fraction(planner.with(measurement)));
-    out.plain_gain = times(fraction(planner.plain(measurement)));
+    const std::size_t first = shown.front();
+    const bool seen = planner.visible_fraction(planner.now(), first) > kInvisibleShare;
+    const double before = seen ? planner.information(planner.now(), first) : 0.0;
+    out.gain = ratio(planner.information(planner.with(measurement), first), before);
+    out.plain_gain = seen ? ratio(planner.information(planner.plain(measurement), first), before) : 1.0;
     std::string names;
     for (std::size_t k = 0; k < shown.size(); ++k) {
       out.makes_visible.push_back(family(hypotheses[shown[k]]).name());
       if (k < kNamed) names += (k > 0 ? ", " : "") + described(hypotheses[shown[k]]);
     }
     if (shown.size() > kNamed) names += ", ...";
-    out.words += hidden == 1 ? "makes visible " + names + "."
-                             : fmt::format("makes visible {} of {} effects that are not: {}.", shown.size(),
-                                           hidden, names);
+    if (hidden == 1) {
+      const auto& amplitude = family(hypotheses[shown.front()]).effect->amplitudes().front();
+      out.words +=
+          fmt::format("makes visible {}, from {:.2g} {} on.", names,
+                      planner.detectable(planner.with(measurement), shown.front()) / amplitude.si_per_unit(),
+                      amplitude.unit());
+    } else {
+      out.words +=
+          fmt::format("makes visible {} of {} effects that are not: {}.", shown.size(), hidden, names);
+    }
     add(std::move(out));
   }
 

@@ -35,6 +35,33 @@ TEST(DiagnoseProgram, AsksForACampaign) {
   EXPECT_THAT(run.errors, HasSubstr("no campaign is given"));
 }
 
+TEST(DiagnoseProgram, ProposesAMeasurementForWhatIsAsked) {
+  const auto run =
+      run_program("diagnose " + kData + "/small/campaign.toml --json --separate length-scale:readings");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  ASSERT_TRUE(json.at("next_measurement").is_array());
+  for (const auto& proposal : json.at("next_measurement")) {
+    for (const char* key :
+         {"action", "setup", "separates", "makes_visible", "readings", "gain", "plain_gain", "words"}) {
+      EXPECT_TRUE(proposal.contains(key)) << key;
+    }
+  }
+  const auto& confounding = json.at("confounding");
+  EXPECT_EQ(confounding.at("effects").size(), confounding.at("cosine").size());
+  ASSERT_FALSE(json.at("ranking").empty());
+  EXPECT_TRUE(json.at("ranking").front().contains("mib"));
+}
+
+TEST(DiagnoseProgram, RefusesToSeparateWhatDoesNotExist) {
+  const auto unknown = run_program("diagnose " + kData + "/small/campaign.toml --separate gremlins:EXX");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("--separate gremlins:EXX"));
+  const auto nothing = run_program("diagnose " + kData + "/small/campaign.toml --separate reversal:EC0Y");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.errors, HasSubstr("names nothing that could act here"));
+}
+
 class ExtendProgram : public ::testing::Test {
  protected:
   auto extend(const std::vector<std::string>& effects) {

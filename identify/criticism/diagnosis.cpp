@@ -41,6 +41,7 @@ constexpr double kVisible = 0.02;
 constexpr double kPower = 0.8;
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostAlternatives = 6;
+constexpr std::size_t kMostAmplitudesInWords = 3;
 
 class Diagnostician {
  public:
@@ -355,6 +356,7 @@ class Diagnostician {
 
   static std::string sentence(const EffectFinding& effect) {
     std::string text = effect.label + " (" + effect.name.kind + ")";
+    if (effect.amplitudes.size() > kMostAmplitudesInWords) return text;
     for (const AmplitudeFigure& amplitude : effect.amplitudes) {
       text +=
           fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitude.label, amplitude.value / amplitude.si_per_unit,

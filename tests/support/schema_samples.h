@@ -111,7 +111,7 @@ inline std::string sample_model() {
   text += "[locations]\nEC0Y_urad = 12.5\nEA0Z = \"zero\"\nEX0C_um = 3\n";
   const Campaign campaign = testing_support::effect_campaign();
   for (const EffectKind* kind : effect_kinds()) {
-    text += sample_effect(*kind, kind->candidates(campaign).front());
+    text += sample_effect(*kind, kind->examples(campaign).front());
   }
   return text;
 }

@@ -74,11 +74,16 @@ class Answerer {
     if (is({"tool-growth"}) && !has("tool")) set("spindle-growth", "tool", "");
     if (is({"tool-growth-channel"}) && !has("tool")) set("tool-expansion", "tool", channel);
     if (is({"thermal-tilt"}) && !has("by")) set("thermal-drift", symbol, channel);
-    if (is({"squareness-drift"})) set("squareness-drift", symbol, "");
+    if (is({"lagged-temperature"}) && !has("by")) set("lagged-temperature", symbol, channel);
+    if (is({"squareness-drift"})) set("squareness-drift", symbol, "time");
+    if (is({"squareness-channel"})) set("squareness-drift", symbol, channel);
     if (is({"cross-axis"})) set("axis-coupling", symbol, lower(text("by")), kPowers[power - 1]);
     if (is({"cross-product"})) {
       const std::string first = lower(text("by")), second = lower(text("and"));
       set("product-coupling", symbol, std::min(first, second) + " " + std::max(first, second));
+    }
+    if (is({"foundation-tilt"})) {
+      set("foundation-tilt", "machine about " + text("about"), lower(text("by")), kPowers[power - 1]);
     }
     if (is({"tool-load"}) && !has("by")) set("tool-load", symbol, "tool " + text("tool"));
     if (is({"length-scale"}) && !has("setup")) {
@@ -90,6 +95,10 @@ class Answerer {
     if (is({"tool-offset"})) set("tool-offset", "tool " + text("tool"), "");
     if (is({"bar-length"})) set("ball-bar-length", "readings", "");
     if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");
+    if (is({"beam-cosine"})) set("beam-misalignment", "readings of " + text("setup"), "");
+    if (is({"encoder-eccentricity"})) {
+      set("encoder-eccentricity", "station " + text("station"), has("encoder") ? text("encoder") : "azimuth");
+    }
   }
 
   void drivers() {

@@ -134,7 +134,7 @@ bool is_variable(const std::string& name) {
 }
 
 std::string names_that_may_be_used() {
-  return "variables are x y z a b c, dir_x ... dir_c, t, T_<channel>, " + listed_names(plain_variables()) +
+  return "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()) +
          ", p, q; functions are " + listed_names(Expression::function_names());
 }
 

@@ -122,8 +122,8 @@ Expression::Expression(std::string text, const IsVariable& is_variable) : text_(
     }
   } catch (const mu::ParserError& error) {
     const auto at = static_cast<std::size_t>(std::max(0, error.GetPos()));
-    throw ExpressionError(problem_of(error), std::min(at, text_.size()) + 1,
-                          at < text_.size() ? error.GetToken() : "");
+    const std::string token = error.GetToken().substr(0, error.GetToken().find_last_not_of(' ') + 1);
+    throw ExpressionError(problem_of(error), std::min(at, text_.size()) + 1, at < text_.size() ? token : "");
   }
 }
 

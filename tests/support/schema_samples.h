@@ -82,6 +82,8 @@ inline std::string sample_effect(const EffectKind& kind, const EffectSpec& spec)
     const auto is_key = [&](const auto& item) { return item.key == key.key; };
     const auto words = spec.options.text(key.key);
     if (key.type == KeyType::Text && words) text += key.key + " = \"" + *words + "\"\n";
+    if (key.type == KeyType::Number && key.required)
+      text += key.key + " = " + sample_value(key, false) + "\n";
     if (std::ranges::any_of(effect->amplitudes(), is_key) || std::ranges::any_of(effect->shapes(), is_key)) {
       text += key.key + " = " + sample_value(key, false) + "\n";
     }

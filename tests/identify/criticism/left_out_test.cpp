@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/resolution.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
 
@@ -22,7 +23,7 @@ const Campaign& campaign() {
     study.machine = sim::reference_machines()[0];
     study.seed = 44;
     sim::Tracking tracking;
-    tracking.grid = {6, 5, 5};
+    tracking.grid = {5, 4, 4};
     study.measurements.emplace_back().settings = tracking;
     study.validation.points = 10;
     return sim::simulate(study);
@@ -37,8 +38,7 @@ ModelSpec without(std::initializer_list<const char*> symbols) {
 }
 
 std::set<std::string> targets(const ModelSpec& model) {
-  const FitResult result = fit(campaign(), model);
-  const MeasurementModel bound(campaign(), result.adjustment.model);
+  const MeasurementModel bound(campaign(), resolve_knots(model, campaign()));
   std::set<std::string> names;
   for (const LeftOutError& error : left_out_errors(bound)) names.insert(error.effect->name().target);
   return names;
@@ -54,9 +54,7 @@ TEST(LeftOut, ListsWhatTheModelLacks) {
 TEST(LeftOut, IsNamedAndGivenBack) {
   const ModelSpec model = without({"EBX"});
   const FitResult result = fit(campaign(), model);
-  DiagnoseOptions options;
-  options.climb = true;
-  const Diagnosis diagnosis = diagnose(campaign(), result, options);
+  const Diagnosis diagnosis = diagnose(campaign(), result, DiagnoseOptions{});
   ASSERT_FALSE(diagnosis.effects.empty());
   const EffectFinding& found = diagnosis.effects.front();
   EXPECT_EQ(found.name, (EffectName{"left-out", "EBX", "x", "function"}));
@@ -65,7 +63,7 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   ModelSpec extended = model;
   ASSERT_TRUE(restore_left_out(found.spec, extended));
   EXPECT_TRUE(extended.functions.empty());
-  EXPECT_LT(fit(campaign(), extended).chi2, 0.5 * result.chi2);
+  EXPECT_LT(fit(campaign(), extended).chi2, 0.8 * result.chi2);
 }
 
 TEST(LeftOut, GoesBackToTheModelItCameFrom) {

@@ -158,8 +158,8 @@ TEST_P(BrokenCustomEffect, IsRefusedWithPlaceProblemAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     All, BrokenCustomEffect,
     ::testing::Values(
-        Broken{"NoTarget", "expression = \"z\"\n", 5, "key effects[1].target is missing", "add target"},
-        Broken{"NoExpression", "target = \"EAY\"\n", 5, "key effects[1].expression is missing",
+        Broken{"NoTarget", "expression = \"z\"\n", 5, "key target is missing in effects[1]", "add target"},
+        Broken{"NoExpression", "target = \"EAY\"\n", 5, "key expression is missing in effects[1]",
                "add expression"},
         Broken{"WrongTarget", "target = \"EAW\"\nexpression = \"z\"\n", 5, "\"EAW\" is no target",
                "write an error motion (EAY)"},

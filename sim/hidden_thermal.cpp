@@ -58,6 +58,16 @@ void thermal_tilt(const HiddenSettings& settings, HiddenScene& scene) {
        u = settings.share_or_one("by")](const MachineState& state) { return a * excess(state) * u(state); });
 }
 
+void lagged_temperature(const HiddenSettings& settings, HiddenScene& scene) {
+  const double time_constant = settings.positive("time_constant");
+  scene.machine.add_state_error(
+      settings.symbol(), [=, a = settings.amplitude(), channel = settings.channel("channel"),
+                          u = settings.share_or_one("by")](const MachineState& state) {
+        if (state.settled) return 0.0;
+        return a * u(state) * (channel.lagged(state.time, time_constant) - kReferenceTemperature);
+      });
+}
+
 void squareness_drift(const HiddenSettings& settings, HiddenScene& scene) {
   scene.machine.add_location_change(
       settings.location_symbol(),
@@ -106,6 +116,14 @@ std::vector<HiddenKind> hidden_thermal_kinds() {
        "",
        "K",
        thermal_tilt},
+      {"lagged-temperature",
+       "thermal",
+       "E += a (T1 - 20 degC), times u of `by` if given; T1 follows the channel with `time_constant`",
+       {symbol_key(), channel, number_key("time_constant_s", "of the lag"),
+        axis_key("by", "grows along this axis", false)},
+       "",
+       "K",
+       lagged_temperature},
       {"squareness-drift", "thermal", "location error += a h", {location}, "", "hour", squareness_drift},
       {"squareness-channel",
        "thermal",

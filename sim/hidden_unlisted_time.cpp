@@ -8,16 +8,6 @@
 namespace volcal::sim {
 namespace {
 
-void lagged_temperature(const HiddenSettings& settings, HiddenScene& scene) {
-  const double time_constant = settings.positive("time_constant");
-  scene.machine.add_state_error(
-      settings.symbol(), [=, a = settings.amplitude(), channel = settings.channel("channel"),
-                          u = settings.share_or_one("by")](const MachineState& state) {
-        if (state.settled) return 0.0;
-        return a * u(state) * (channel.lagged(state.time, time_constant) - kReferenceTemperature);
-      });
-}
-
 void direction_temperature(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
   scene.machine.add_state_error(
@@ -70,13 +60,6 @@ std::vector<HiddenKind> hidden_unlisted_time_kinds() {
   const KeySchema channel = text_key("channel", "temperature channel");
   const KeySchema by = axis_key("by", "grows along this axis", false);
   return {
-      {"lagged-temperature",
-       "unlisted",
-       "E += a (T1 - 20 degC), times u of `by` if given; T1 follows the channel with `time_constant`",
-       {symbol_key(), channel, number_key("time_constant_s", "of the lag"), by},
-       "",
-       "K",
-       lagged_temperature},
       {"direction-temperature",
        "unlisted",
        "E += d dT a/2, d of the symbol's axis",

@@ -7,6 +7,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"
@@ -39,11 +40,14 @@ int print_list() {
     fmt::print("{}\n  {}\n  source: {}\n", schema.kind, schema.summary, schema.source);
     for (const KeySchema& key : schema.keys) fmt::print("    {:<24} {}\n", key.key, key.help);
   }
+  fmt::print("{}\n  {}\n", kLeftOut, kLeftOutSummary);
   return kDone;
 }
 
 ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
-  for (const EffectFinding& effect : diagnosis.effects) model.effects.push_back(effect.spec);
+  for (const EffectFinding& effect : diagnosis.effects) {
+    if (!restore_left_out(effect.spec, model)) model.effects.push_back(effect.spec);
+  }
   return model;
 }
 

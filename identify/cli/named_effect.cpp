@@ -51,9 +51,11 @@ EffectSpec named_effect(const std::string& option, const std::string& text, cons
   }
   if (matching.size() == 1) return matching.front();
   if (matching.empty()) {
-    throw InputError(
-        {}, option + " " + text + " names nothing that could act here",
-        all.empty() ? "give --campaign: this kind depends on what was recorded" : "choose one of " + all);
+    const bool by_hand = all.empty() && !kind->examples(campaign).empty();
+    const std::string remedy = by_hand ? "this kind is written into the model file, as an [[effects]] table"
+                               : all.empty() ? "give --campaign: this kind depends on what was recorded"
+                                             : "choose one of " + all;
+    throw InputError({}, option + " " + text + " names nothing that could act here", remedy);
   }
   throw InputError({}, option + " " + text + " fits " + std::to_string(matching.size()) + " effects",
                    "choose one of " + names);

@@ -190,7 +190,7 @@ void add_unless_there(const Hypothesis& hypothesis, const std::vector<Hypothesis
 std::optional<Hypothesis> hypothesis_of(const EffectFinding& finding, std::span<const Family> families) {
   for (std::size_t i = 0; i < families.size(); ++i) {
     if (families[i].name() != finding.name) continue;
-    if (!families[i].effect) return Hypothesis{i, {}};
+    if (families[i].scan.size() == 1) return Hypothesis{i, families[i].scan.front()};
     return Hypothesis{i, find_effect(finding.spec.kind)->make(finding.spec, {})->shape_values()};
   }
   return std::nullopt;

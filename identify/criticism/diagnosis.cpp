@@ -39,6 +39,7 @@ constexpr double kPower = 0.8;
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostUnknown = 10;
+constexpr std::size_t kMostAmplitudesInWords = 3;
 
 int thread_count(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -285,6 +286,7 @@ class Diagnostician {
 
   static std::string sentence(const EffectFinding& effect) {
     std::string text = effect.label + " (" + effect.name.kind + ")";
+    if (effect.amplitudes.size() > kMostAmplitudesInWords) return text;
     for (const AmplitudeFigure& amplitude : effect.amplitudes) {
       text +=
           fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitude.label, amplitude.value / amplitude.si_per_unit,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/stats/chi_squared.h"
@@ -198,6 +199,9 @@ std::vector<Family> families(const LinearModel& model) {
       std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
       all.push_back({std::move(spec), std::move(effect), std::nullopt, std::move(scan)});
     }
+  }
+  for (LeftOutError& error : left_out_errors(model.model())) {
+    all.push_back({std::move(error.spec), std::move(error.effect), std::nullopt, {Eigen::VectorXd()}});
   }
   for (const ErrorSymbol symbol : model.model().layout().symbols()) {
     all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});

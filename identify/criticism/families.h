@@ -27,7 +27,7 @@ struct Family {
   bool independent_components() const;
 };
 
-/// The model's own effects are left out.
+/// Without the model's own effects; with the errors that the model leaves out (left_out.h).
 std::vector<Family> families(const LinearModel& model);
 
 /// Columns at one of the shapes.

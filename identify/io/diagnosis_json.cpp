@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/toml_writer.h"
 
 namespace volcal {
@@ -57,7 +58,11 @@ Json effect_json(const EffectFinding& effect) {
   json["visible_fraction"] = number(effect.visible_fraction);
   json["gain"] = number(effect.gain);
   if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
-  if (!effect.resolution) json["model_toml"] = effect_toml(effect.spec);
+  if (effect.spec.kind == kLeftOut) {
+    json["left_out"] = left_out_symbols(effect.spec);
+  } else if (!effect.resolution) {
+    json["model_toml"] = effect_toml(effect.spec);
+  }
   return json;
 }
 

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kMicro = 1e-6;
 constexpr std::size_t kRanked = 12;
-constexpr double kNear = 0.9;  // cosine
+constexpr double kNear = 0.9;               // cosine
+constexpr std::size_t kMostAmplitudes = 3;  // of an effect; functions that the model leaves out have more
 
 std::string edge(double si, double si_per_unit, int digits = 3) {
   return short_number(si / si_per_unit, digits);
@@ -86,8 +87,10 @@ std::string evidence_table(const std::vector<EffectFinding>& findings, const std
     const EffectFinding& finding = findings[i];
     const std::string visible = fixed_number(100.0 * finding.visible_fraction, 1);
     const std::string p = fixed_number(finding.log10_p, 1);
-    if (finding.amplitudes.empty())
+    if (finding.amplitudes.empty() || finding.amplitudes.size() > kMostAmplitudes) {
       table.add_row({finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
+      continue;
+    }
     for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
       const AmplitudeFigure& each = finding.amplitudes[k];
       table.add_row({each.label, k == 0 ? finding.name.kind : "", edge(each.value, each.si_per_unit),

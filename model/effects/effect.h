@@ -1,9 +1,9 @@
 #pragma once
 /// Effects beyond the rigid body: amplitude x driver, added to what the effect acts on. An effect has a
-/// target (an error motion, the tool's offset, a station, the reading itself), a driver (axis position,
-/// direction of approach, time, temperature, tool ...) and a shape (step, linear, periodic ...), which may
-/// have parameters of its own (period, time constant). A new effect is one file (a kind with its schema) and
-/// one line in registry.cpp.
+/// target (an error motion, the tool's offset, a station, the floor, the reading itself), a driver (axis
+/// position, direction of approach, time, temperature, tool ...) and a shape (step, linear, periodic ...),
+/// which may have parameters of its own (period, time constant). A new effect is one file (a kind with its
+/// schema) and one line in registry.cpp.
 
 #include <Eigen/Core>
 #include <memory>
@@ -18,14 +18,16 @@
 
 namespace volcal {
 
-enum class TargetKind { Motion, ToolOffset, Station, Reading };
+enum class TargetKind { Motion, ToolOffset, Station, Floor, Reading };
 
 /// What an amplitude is added to: an error motion (m, rad), the tool's offset in tool coordinates (m), the
-/// station's position in workpiece coordinates (m), a channel of the reading (m, rad).
+/// station's position in workpiece coordinates (m), the rotation of the machine against the floor about the
+/// middle of its travel (rad, about workpiece axes; for instruments on the floor), a channel of the reading
+/// (m, rad).
 struct EffectTarget {
   TargetKind kind = TargetKind::Motion;
   ErrorSymbol symbol;  ///< of Motion
-  int component = 0;   ///< ToolOffset, Station: 0..2 = x, y, z; Reading: the channel
+  int component = 0;   ///< ToolOffset, Station, Floor: 0..2 = x, y, z; Reading: the channel
 };
 
 /// One unknown amplitude: adds amplitude x driver to the target.
@@ -107,8 +109,10 @@ class EffectKind {
   virtual const EffectSchema& schema() const = 0;
   /// Throws InputError naming file and line of the effect in the model file.
   virtual std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const = 0;
-  /// Every effect of this kind that could act in the campaign, amplitudes unknown.
+  /// Every effect of this kind that could act in the campaign, amplitudes unknown: what a diagnosis tests.
   virtual std::vector<EffectSpec> candidates(const Campaign& campaign) const = 0;
+  /// Effects to show and to try the kind on; other than the candidates for a kind that nobody can guess.
+  virtual std::vector<EffectSpec> examples(const Campaign& campaign) const { return candidates(campaign); }
 };
 
 }  // namespace volcal

@@ -4,17 +4,13 @@
 #include <limits>
 #include <set>
 
+#include "volcal/model/instruments/nuisance.h"
+
 namespace volcal {
 namespace {
 
 void add_unique(std::vector<std::string>& names, const std::string& name) {
   if (!name.empty() && std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? "none" : text;
 }
 
 Eigen::VectorXd mapped(const std::vector<double>& column) {
@@ -102,6 +98,12 @@ std::vector<std::string> temperature_channels(const Campaign& campaign) {
   return channels;
 }
 
+std::string listed_names(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
 std::string station_of(const Setup& setup) {
   if (!setup.options.vector("station")) return {};
   return setup.options.text("station").value_or(setup.name);
@@ -148,7 +150,7 @@ void check_channel(const Campaign& campaign, const std::string& channel, const S
   if (std::ranges::find(channels, channel) != channels.end()) return;
   throw InputError(place, "no reading has the temperature channel \"" + channel + "\"",
                    "add the column T_" + channel + "_degC, name a channel of the campaign (" +
-                       listed(channels) + ") or remove the effect");
+                       listed_names(channels) + ") or remove the effect");
 }
 
 void check_time(const Campaign& campaign, const std::string& what, const SourcePlace& place) {
@@ -161,14 +163,30 @@ void check_station(const Campaign& campaign, const std::string& station, const S
   const auto stations = station_names(campaign);
   if (std::ranges::find(stations, station) != stations.end()) return;
   throw InputError(place, "no setup stands at a station \"" + station + "\"",
-                   "name a station of the campaign (" + listed(stations) + ") or remove the effect");
+                   "name a station of the campaign (" + listed_names(stations) + ") or remove the effect");
 }
 
 void check_tool(const Campaign& campaign, const std::string& tool, const SourcePlace& place) {
   const auto tools = tools_in_use(campaign);
   if (std::ranges::find(tools, tool) != tools.end()) return;
   throw InputError(place, "no setup uses a tool \"" + tool + "\"",
-                   "name a tool of the campaign (" + listed(tools) + ") or remove the effect");
+                   "name a tool of the campaign (" + listed_names(tools) + ") or remove the effect");
+}
+
+void check_setup(const Campaign& campaign, const std::string& setup, const SourcePlace& place) {
+  std::vector<std::string> setups;
+  for (const Setup& each : campaign.setups) setups.push_back(each.name);
+  if (std::ranges::find(setups, setup) != setups.end()) return;
+  throw InputError(place, "the campaign has no setup \"" + setup + "\"",
+                   "name a setup of the campaign (" + listed_names(setups) + ") or remove the effect");
+}
+
+SquarenessMotion motion_of_squareness(LocationSymbol location) {
+  const int about = direction_of(location.component);
+  const int along = direction_of(location.axis);
+  const int across = 3 - about - along;
+  return {{kAllComponents[static_cast<std::size_t>(across)], location.axis},
+          (along - about + 3) % 3 == 1 ? 1.0 : -1.0};
 }
 
 Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis) {
@@ -189,6 +207,19 @@ Eigen::VectorXd times(const SetupView& view, double unknown) {
     return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), unknown);
   }
   return mapped(view.setup.readings.time);
+}
+
+Eigen::VectorXd beam_displacements(const SetupView& view) {
+  const auto& points_w = view.nominal_point_w;
+  const Eigen::Vector3d first_w = points_w.front();
+  const auto given = view.setup.options.vector("direction");
+  const Eigen::Vector3d beam_w =
+      given ? given->normalized() : line_direction(points_w).value_or(Eigen::Vector3d::Zero());
+  Eigen::VectorXd along(static_cast<Eigen::Index>(points_w.size()));
+  for (std::size_t row = 0; row < points_w.size(); ++row) {
+    along[static_cast<Eigen::Index>(row)] = beam_w.dot(points_w[row] - first_w);
+  }
+  return along;
 }
 
 Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& channel) {

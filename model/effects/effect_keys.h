@@ -44,6 +44,8 @@ std::vector<AxisName> linear_axes(const Machine& machine);
 std::vector<std::string> temperature_channels(const Campaign& campaign);
 std::vector<std::string> station_names(const Campaign& campaign);
 std::vector<std::string> tools_in_use(const Campaign& campaign);
+/// "a, b, c"; "none" when there are none.
+std::string listed_names(const std::vector<std::string>& names);
 /// Station of a setup; empty for instruments that have none.
 std::string station_of(const Setup& setup);
 bool has_time(const Campaign& campaign);
@@ -55,6 +57,15 @@ void check_channel(const Campaign& campaign, const std::string& channel, const S
 void check_time(const Campaign& campaign, const std::string& what, const SourcePlace& place);
 void check_station(const Campaign& campaign, const std::string& station, const SourcePlace& place);
 void check_tool(const Campaign& campaign, const std::string& tool, const SourcePlace& place);
+void check_setup(const Campaign& campaign, const std::string& setup, const SourcePlace& place);
+
+/// Squareness turns the direction of travel by e_component x e_axis: one displacement of the axis, the sign
+/// times its position.
+struct SquarenessMotion {
+  ErrorSymbol symbol;
+  double sign = 1.0;
+};
+SquarenessMotion motion_of_squareness(LocationSymbol location);
 
 /// Per reading of a setup: commanded position less home, m or rad.
 Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis);
@@ -62,6 +73,8 @@ Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis);
 Eigen::VectorXd directions(const SetupView& view, AxisName axis);
 /// s of the campaign's clock; `unknown` where not recorded.
 Eigen::VectorXd times(const SetupView& view, double unknown = 0.0);
+/// Nominal displacement along the beam of a displacement setup, m, from its first reading, with its sign.
+Eigen::VectorXd beam_displacements(const SetupView& view);
 /// Temperature less 20 degC; 0 where the channel was not recorded.
 Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& channel);
 

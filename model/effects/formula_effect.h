@@ -48,8 +48,9 @@ class FormulaKind final : public EffectKind {
   using Make = std::unique_ptr<FormulaEffect> (*)(const EffectTable& table);
   using Candidates = std::vector<EffectSpec> (*)(const Campaign& campaign);
 
-  FormulaKind(EffectSchema schema, Make maker, Candidates finder)
-      : schema_(std::move(schema)), make_(maker), candidates_(finder) {}
+  /// `example_finder` is given for a kind without candidates.
+  FormulaKind(EffectSchema schema, Make maker, Candidates finder, Candidates example_finder = nullptr)
+      : schema_(std::move(schema)), make_(maker), candidates_(finder), examples_(example_finder) {}
   const EffectSchema& schema() const override { return schema_; }
   std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const override {
     return make_(EffectTable(spec, model_file));
@@ -57,11 +58,15 @@ class FormulaKind final : public EffectKind {
   std::vector<EffectSpec> candidates(const Campaign& campaign) const override {
     return candidates_(campaign);
   }
+  std::vector<EffectSpec> examples(const Campaign& campaign) const override {
+    return examples_ != nullptr ? examples_(campaign) : candidates_(campaign);
+  }
 
  private:
   EffectSchema schema_;
   Make make_;
   Candidates candidates_;
+  Candidates examples_;
 };
 
 /// Unrecorded when the setup has no times, or no such temperature channel.

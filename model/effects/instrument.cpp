@@ -35,7 +35,8 @@ std::unique_ptr<FormulaEffect> make_length_scale(const EffectTable& table) {
       [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const bool acts =
             measures_lengths(view.setup) && (station.empty() || station_of(view.setup) == station);
-        return acts ? view.length : constant(view, 0.0);
+        if (!acts) return constant(view, 0.0);
+        return view.setup.instrument == "displacement" ? beam_displacements(view) : view.length;
       },
       [station](const Campaign& campaign, const SourcePlace& place) {
         if (!station.empty()) check_station(campaign, station, place);
@@ -76,11 +77,7 @@ std::unique_ptr<FormulaEffect> make_dead_path(const EffectTable& table) {
       },
       [setup, channel](const Campaign& campaign, const SourcePlace& place) {
         if (!channel.empty()) check_channel(campaign, channel, place);
-        for (const Setup& each : campaign.setups) {
-          if (each.name == setup) return;
-        }
-        throw InputError(place, "dead path: the campaign has no setup \"" + setup + "\"",
-                         "name a setup of the campaign or remove the effect");
+        check_setup(campaign, setup, place);
       });
   return effect;
 }

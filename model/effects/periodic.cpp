@@ -44,13 +44,24 @@ EffectSchema periodic_schema(const PeriodRange& range, const std::string& summar
   return {.kind = range.kind,
           .summary = summary,
           .source = source,
-          .keys = joined(
-              {{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
-               shape_keys("period", "mm", "period in positions of the axis"),
-               {{.key = "cos_um", .help = "amplitude of the cosine, displacements", .plausible_max = 1e4},
-                {.key = "cos_urad", .help = "amplitude of the cosine, rotations", .plausible_max = 1e4},
-                {.key = "sin_um", .help = "amplitude of the sine, displacements", .plausible_max = 1e4},
-                {.key = "sin_urad", .help = "amplitude of the sine, rotations", .plausible_max = 1e4}}})};
+          .keys = joined({{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
+                          shape_keys("period", "mm", "period in positions of the axis"),
+                          {{.key = "cos_um",
+                            .help = "amplitude of the cosine, displacements",
+                            .plausible_min = 1e-6,
+                            .plausible_max = 1e4},
+                           {.key = "cos_urad",
+                            .help = "amplitude of the cosine, rotations",
+                            .plausible_min = 1e-6,
+                            .plausible_max = 1e4},
+                           {.key = "sin_um",
+                            .help = "amplitude of the sine, displacements",
+                            .plausible_min = 1e-6,
+                            .plausible_max = 1e4},
+                           {.key = "sin_urad",
+                            .help = "amplitude of the sine, rotations",
+                            .plausible_min = 1e-6,
+                            .plausible_max = 1e4}}})};
 }
 
 std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const PeriodRange& range) {

@@ -6,27 +6,34 @@
 namespace volcal {
 
 // One line per effect.
-#define VOLCAL_EFFECTS(EFFECT)       \
-  EFFECT(reversal_effect)            \
-  EFFECT(position_reversal_effect)   \
-  EFFECT(lead_error_effect)          \
-  EFFECT(encoder_subdivision_effect) \
-  EFFECT(screw_heating_effect)       \
-  EFFECT(scale_expansion_effect)     \
-  EFFECT(thermal_drift_effect)       \
-  EFFECT(spindle_growth_effect)      \
-  EFFECT(tool_expansion_effect)      \
-  EFFECT(squareness_drift_effect)    \
-  EFFECT(axis_coupling_effect)       \
-  EFFECT(product_coupling_effect)    \
-  EFFECT(tool_load_effect)           \
-  EFFECT(length_scale_effect)        \
-  EFFECT(dead_path_effect)           \
-  EFFECT(station_drift_effect)       \
-  EFFECT(station_event_effect)       \
-  EFFECT(tool_offset_effect)         \
-  EFFECT(ball_bar_length_effect)     \
-  EFFECT(servo_mismatch_effect)
+#define VOLCAL_EFFECTS(EFFECT)        \
+  EFFECT(reversal_effect)             \
+  EFFECT(position_reversal_effect)    \
+  EFFECT(lead_error_effect)           \
+  EFFECT(encoder_subdivision_effect)  \
+  EFFECT(screw_heating_effect)        \
+  EFFECT(scale_expansion_effect)      \
+  EFFECT(thermal_drift_effect)        \
+  EFFECT(spindle_growth_effect)       \
+  EFFECT(tool_expansion_effect)       \
+  EFFECT(squareness_drift_effect)     \
+  EFFECT(axis_coupling_effect)        \
+  EFFECT(product_coupling_effect)     \
+  EFFECT(tool_load_effect)            \
+  EFFECT(length_scale_effect)         \
+  EFFECT(dead_path_effect)            \
+  EFFECT(station_drift_effect)        \
+  EFFECT(station_event_effect)        \
+  EFFECT(tool_offset_effect)          \
+  EFFECT(ball_bar_length_effect)      \
+  EFFECT(servo_mismatch_effect)       \
+  EFFECT(lagged_temperature_effect)   \
+  EFFECT(lagged_expansion_effect)     \
+  EFFECT(foundation_tilt_effect)      \
+  EFFECT(beam_misalignment_effect)    \
+  EFFECT(encoder_eccentricity_effect) \
+  EFFECT(run_offset_effect)           \
+  EFFECT(custom_effect)
 
 #define VOLCAL_DECLARE(name) const EffectKind& name();
 #define VOLCAL_ADDRESS(name) &(name)(),

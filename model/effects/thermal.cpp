@@ -163,7 +163,6 @@ std::vector<EffectSpec> screw_heatings(const Campaign& campaign) {
   return specs;
 }
 
-/// Squareness turns the direction of travel: e_component x e_axis per metre, one displacement with a sign.
 std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
   const std::string name = table.text("symbol", "add symbol = \"EC0Y\"");
   const auto location = LocationSymbol::parse(name);
@@ -171,39 +170,41 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
       direction_of(location->component) == direction_of(location->axis)) {
     table.fail("\"" + name + "\" is no squareness", "write EC0Y, EA0Z, EB0Z, or those of another datum");
   }
-  const int about = direction_of(location->component);
-  const int along = direction_of(location->axis);
-  const int across = 3 - about - along;
-  const double sign = (along - about + 3) % 3 == 1 ? 1.0 : -1.0;
+  const SquarenessMotion motion = motion_of_squareness(*location);
   const AxisName axis = location->axis;
-  const std::string label = "drift of " + name;
+  const std::string channel = table.spec.options.text("temperature").value_or("");
+  const std::string label = "drift of " + name + (channel.empty() ? "" : " by " + channel);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"squareness-drift", name, "time", "linear"},
-      std::vector<EffectAmplitude>{
-          {.label = label,
-           .target = {.kind = TargetKind::Motion,
-                      .symbol = {kAllComponents[static_cast<std::size_t>(across)], axis}},
-           .key = "amplitude_urad_per_h",
-           .guess = table.number("amplitude", 0.0)}},
-      [axis, sign](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+      EffectName{"squareness-drift", name, channel.empty() ? "time" : "T_" + channel, "linear"},
+      std::vector<EffectAmplitude>{{.label = label,
+                                    .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
+                                    .key = channel.empty() ? "amplitude_urad_per_h" : "amplitude_urad_per_K",
+                                    .guess = table.number("amplitude", 0.0)}},
+      [axis, sign = motion.sign, channel](const SetupView& view,
+                                          const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const double start = time_span(view.campaign).first;
-        const Eigen::VectorXd position = Eigen::Map<const Eigen::VectorXd>(
-            view.setup.readings.position[index_of(axis)].data(), static_cast<Eigen::Index>(view.rows()));
-        return sign * position.array() * (times(view, start).array() - start);
+        const Eigen::ArrayXd driver = channel.empty() ? Eigen::ArrayXd(times(view, start).array() - start)
+                                                      : temperature_excess(view, channel).array();
+        const Eigen::Map<const Eigen::ArrayXd> position(view.setup.readings.position[index_of(axis)].data(),
+                                                        static_cast<Eigen::Index>(view.rows()));
+        return (sign * position * driver).matrix();
       },
-      [axis, label](const Campaign& campaign, const SourcePlace& place) {
+      [axis, label, channel](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, axis, label, place);
+        if (!channel.empty()) return check_channel(campaign, channel, place);
         check_time(campaign, label, place);
       });
-  effect->count_unrecorded(without_time());
+  effect->count_unrecorded(channel.empty() ? without_time() : without_channel(channel));
   return effect;
 }
 
 std::vector<EffectSpec> squareness_drifts(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  if (!has_time(campaign)) return specs;
   for (const LocationSymbol& symbol : campaign.machine.datum.squareness()) {
-    specs.push_back(effect_spec("squareness-drift", {{"symbol", symbol.name()}}));
+    if (has_time(campaign)) specs.push_back(effect_spec("squareness-drift", {{"symbol", symbol.name()}}));
+    for (const std::string& channel : temperature_channels(campaign)) {
+      specs.push_back(effect_spec("squareness-drift", {{"symbol", symbol.name()}, {"temperature", channel}}));
+    }
   }
   return specs;
 }
@@ -275,10 +276,13 @@ const EffectKind& screw_heating_effect() {
 const EffectKind& squareness_drift_effect() {
   static const FormulaKind kind(
       {.kind = "squareness-drift",
-       .summary = "two axes turn against each other slowly: squareness changes in proportion to time",
+       .summary = "two axes turn against each other slowly: squareness changes in proportion to time or to a "
+                  "temperature",
        .source = "ISO 230-3 (environmental temperature variation)",
        .keys = {symbol_key("squareness that drifts: EC0Y, EA0Z, EB0Z"),
-                amplitude_key("amplitude_urad_per_h", "change per hour")}},
+                text_key("temperature", "channel that drives it; absent = time", false),
+                amplitude_key("amplitude_urad_per_h", "change per hour"),
+                amplitude_key("amplitude_urad_per_K", "change per kelvin")}},
       make_squareness_drift, squareness_drifts);
   return kind;
 }

@@ -122,6 +122,10 @@ class CampaignBinder {
       : campaign_(campaign), machine_(campaign.machine), spec_(spec), chain_(chain) {}
 
   CampaignBinding bind() {
+    for (const Axis& axis : machine_.axes) {
+      if (is_rotary(axis.name)) continue;
+      binding_.floor_pivot_w[direction_of(axis.name)] = 0.5 * (axis.travel_min + axis.travel_max);
+    }
     add_function_groups();
     for (const LocationSymbol& symbol : active_locations()) add_location(symbol);
     for (const Axis& axis : machine_.axes) add_expansion(axis);
@@ -226,6 +230,7 @@ class CampaignBinder {
       }
       binding.target.push_back(disturbance_of(amplitude.target, machine_));
       binding_.effect_moves_tool |= amplitude.target.kind == TargetKind::ToolOffset;
+      binding_.effect_tilts_floor |= amplitude.target.kind == TargetKind::Floor;
       add_block(effect_block(amplitude));
     }
     binding.shape = binding.effect->shape_values();
@@ -340,6 +345,8 @@ int disturbance_of(const EffectTarget& target, const Machine& machine) {
       return kToolDisturbance + target.component;
     case TargetKind::Station:
       return kStationDisturbance + target.component;
+    case TargetKind::Floor:
+      return kFloorDisturbance + target.component;
     case TargetKind::Reading:
       return kReadingDisturbance + target.component;
   }

@@ -40,10 +40,12 @@ struct LocationBinding {
 };
 
 /// Everything that a reading can be disturbed by, one number each: six motions of every joint, the tool's
-/// offset (tool coordinates), the station's position (workpiece coordinates), the channels of the reading.
+/// offset (tool coordinates), the station's position (workpiece coordinates), the rotation of the machine
+/// against the floor (workpiece axes), the channels of the reading.
 inline constexpr int kToolDisturbance = 6 * static_cast<int>(kAxisCount);
 inline constexpr int kStationDisturbance = kToolDisturbance + 3;
-inline constexpr int kReadingDisturbance = kStationDisturbance + 3;
+inline constexpr int kFloorDisturbance = kStationDisturbance + 3;
+inline constexpr int kReadingDisturbance = kFloorDisturbance + 3;
 inline constexpr int kDisturbances = kReadingDisturbance + kMaxChannels;
 
 /// An effect's parameters: its amplitudes, then those of its shape that are estimated. Drivers are tabulated
@@ -101,6 +103,8 @@ struct CampaignBinding {
   int effect_parameters = 0;       ///< of all effects; every reading has them
   int effect_drivers = 0;          ///< numbers per reading that they need
   bool effect_moves_tool = false;  ///< some effect acts on the tool's offset
+  bool effect_tilts_floor = false;
+  Eigen::Vector3d floor_pivot_w = Eigen::Vector3d::Zero();  ///< middle of the linear axes' travel
 };
 
 /// Index of the disturbance that a target is.

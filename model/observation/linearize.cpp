@@ -17,6 +17,7 @@ struct MeasurementModel::RowState {
       disturbance[kDisturbances];  ///< motions of the joints, EX EY EZ EA EB EC each; tool; station; reading
   double driver[kMaxSharedTerms];  ///< per shared term, then what the effects need
   Eigen::Matrix3d rotation_wt;     ///< filled when the tool's offset is uncertain
+  Eigen::Vector3d floor_arm_w;     ///< from the pivot of the floor to the functional point
 
   double* motion(int joint) { return disturbance + 6 * joint; }
   ToolState<double> tool;
@@ -128,9 +129,17 @@ void MeasurementModel::move_tool(RowState& state) const {
     state.tool.point_w +=
         state.rotation_wt * Eigen::Map<const Vector3d>(state.disturbance + kToolDisturbance);
   }
+  state.floor_arm_w = state.tool.point_w - binding_.floor_pivot_w;
+  if (binding_.effect_tilts_floor) {
+    const Eigen::Map<const Vector3d> tilt(state.disturbance + kFloorDisturbance);
+    state.tool.point_w += tilt.cross(state.floor_arm_w);
+    state.tool.rotation_tool_side += tilt;
+    state.tool.rotation_workpiece_side -= tilt;
+  }
 }
 
-/// Derivatives of a channel to a unit of every disturbance; those of the tool only when an effect needs them.
+/// Derivatives of a channel to a unit of every disturbance; those of tool and floor only when an effect needs
+/// them.
 void MeasurementModel::disturbance_sensitivity(const RowState& state, const Linearization& reading,
                                                int channel, bool all, double* sensitivity) const {
   for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
@@ -142,6 +151,12 @@ void MeasurementModel::disturbance_sensitivity(const RowState& state, const Line
     Eigen::Map<Eigen::Vector3d>(sensitivity + kToolDisturbance) = state.rotation_wt.transpose() * d_point;
   }
   Eigen::Map<Eigen::Vector3d>(sensitivity + kStationDisturbance) = -d_point;
+  if (binding_.effect_tilts_floor || all) {
+    const double* d_state = reading.d_state[channel];
+    Eigen::Map<Eigen::Vector3d>(sensitivity + kFloorDisturbance) =
+        state.floor_arm_w.cross(d_point) + Eigen::Map<const Eigen::Vector3d>(d_state + 3) -
+        Eigen::Map<const Eigen::Vector3d>(d_state + 6);
+  }
   std::fill_n(sensitivity + kReadingDisturbance, kMaxChannels, 0.0);
   sensitivity[kReadingDisturbance + channel] = 1.0;
 }

@@ -23,8 +23,8 @@ const std::string kData = VOLCAL_SOURCE_DIR "/tests/data";
 TEST(DiagnoseProgram, ListsEveryKind) {
   const auto run = run_program("diagnose --list");
   EXPECT_EQ(run.exit_code, 0);
-  for (const char* kind :
-       {"reversal", "lead-error", "scale-expansion", "axis-coupling", "length-scale", "station-event"}) {
+  for (const char* kind : {"reversal", "lead-error", "scale-expansion", "axis-coupling", "length-scale",
+                           "station-event", "custom", "foundation-tilt", "left-out"}) {
     EXPECT_THAT(run.output, HasSubstr(kind));
   }
 }
@@ -93,6 +93,9 @@ TEST_F(ExtendProgram, SaysWhatANameCouldMean) {
   const auto unknown = extend({"gremlins:EXX"});
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.errors, HasSubstr("no kind of effect"));
+  const auto by_hand = extend({"custom:EAY"});
+  EXPECT_EQ(by_hand.exit_code, 2);
+  EXPECT_THAT(by_hand.errors, HasSubstr("written into the model file"));
   EXPECT_FALSE(fs::exists(output_));
 }
 

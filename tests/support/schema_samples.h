@@ -82,6 +82,8 @@ inline std::string sample_effect(const EffectKind& kind, const EffectSpec& spec)
     const auto is_key = [&](const auto& item) { return item.key == key.key; };
     const auto words = spec.options.text(key.key);
     if (key.type == KeyType::Text && words) text += key.key + " = \"" + *words + "\"\n";
+    if (key.type == KeyType::Number && key.required)
+      text += key.key + " = " + sample_value(key, false) + "\n";
     if (std::ranges::any_of(effect->amplitudes(), is_key) || std::ranges::any_of(effect->shapes(), is_key)) {
       text += key.key + " = " + sample_value(key, false) + "\n";
     }
@@ -111,7 +113,7 @@ inline std::string sample_model() {
   text += "[locations]\nEC0Y_urad = 12.5\nEA0Z = \"zero\"\nEX0C_um = 3\n";
   const Campaign campaign = testing_support::effect_campaign();
   for (const EffectKind* kind : effect_kinds()) {
-    text += sample_effect(*kind, kind->candidates(campaign).front());
+    text += sample_effect(*kind, kind->examples(campaign).front());
   }
   return text;
 }

@@ -34,7 +34,7 @@ class Drawer {
     draw_target();
     draw_place();
     draw_shape();
-    if (grows || is({"lagged-temperature", "root-time", "gradient-bending", "temperature-squared"})) {
+    if (grows || is({"root-time", "gradient-bending", "temperature-squared"})) {
       if (grows || random_.uniform() < 0.5) set("by", other_axis());
     }
     return std::move(effect_);
@@ -222,7 +222,10 @@ const std::vector<std::pair<std::string, std::string>>& listed() {
       {"screw-heating", "screw-heating"},
       {"bar-length", "ball-bar-length"},
       {"tool-growth-channel", "tool-expansion"},
-      {"servo-mismatch", "servo-mismatch"}};
+      {"servo-mismatch", "servo-mismatch"},
+      {"lagged-temperature", "lagged-temperature"},
+      {"squareness-channel", "squareness-drift"},
+      {"foundation-tilt", "foundation-tilt"}};
   return kListed;
 }
 
@@ -238,17 +241,26 @@ std::span<const std::string> listed_kinds() {
 }
 
 std::span<const std::string> unlisted_kinds() {
-  static const std::vector<std::string> kKinds = {"tool-growth-on-off", "air-index",
-                                                  "station-swing",      "tool-clamping",
-                                                  "backlash-kink",      "triangle-wave",
-                                                  "cross-wave",         "local-bump",
-                                                  "position-step",      "cross-kink",
-                                                  "reversal-spike",     "direction-memory",
-                                                  "lagged-temperature", "direction-temperature",
-                                                  "root-time",          "heated-zone",
-                                                  "gradient-bending",   "temperature-squared",
-                                                  "squareness-channel", "thermal-tilt by",
-                                                  "tool-load by",       "foundation-tilt"};
+  static const std::vector<std::string> kKinds = {"tool-growth-on-off",
+                                                  "air-index",
+                                                  "station-swing",
+                                                  "tool-clamping",
+                                                  "backlash-kink",
+                                                  "triangle-wave",
+                                                  "cross-wave",
+                                                  "local-bump",
+                                                  "position-step",
+                                                  "cross-kink",
+                                                  "reversal-spike",
+                                                  "direction-memory",
+                                                  "lagged-temperature by",
+                                                  "direction-temperature",
+                                                  "root-time",
+                                                  "heated-zone",
+                                                  "gradient-bending",
+                                                  "temperature-squared",
+                                                  "thermal-tilt by",
+                                                  "tool-load by"};
   return kKinds;
 }
 

@@ -74,7 +74,9 @@ class Answerer {
     if (is({"tool-growth"}) && !has("tool")) set("spindle-growth", "tool", "");
     if (is({"tool-growth-channel"}) && !has("tool")) set("tool-expansion", "tool", channel);
     if (is({"thermal-tilt"}) && !has("by")) set("thermal-drift", symbol, channel);
-    if (is({"squareness-drift"})) set("squareness-drift", symbol, "");
+    if (is({"lagged-temperature"}) && !has("by")) set("lagged-temperature", symbol, channel);
+    if (is({"squareness-drift"})) set("squareness-drift", symbol, "time");
+    if (is({"squareness-channel"})) set("squareness-drift", symbol, channel);
     if (is({"cross-axis"})) set("axis-coupling", symbol, lower(text("by")), kPowers[power - 1]);
     if (is({"cross-product"})) {
       const std::string by = lower(text("by")), with = lower(text("and"));
@@ -84,6 +86,9 @@ class Answerer {
       const std::string target =
           displacement ? symbol.substr(0, 2) + static_cast<char>(std::toupper(first[0])) : symbol;
       set("product-coupling", target, first + " " + second);
+    }
+    if (is({"foundation-tilt"})) {
+      set("foundation-tilt", "machine about " + text("about"), lower(text("by")), kPowers[power - 1]);
     }
     if (is({"tool-load"}) && !has("by")) set("tool-load", symbol, "tool " + text("tool"));
     if (is({"length-scale"}) && !has("setup")) {
@@ -95,6 +100,10 @@ class Answerer {
     if (is({"tool-offset"})) set("tool-offset", "tool " + text("tool"), "");
     if (is({"bar-length"})) set("ball-bar-length", "readings", "");
     if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");
+    if (is({"beam-cosine"})) set("beam-misalignment", "readings of " + text("setup"), "");
+    if (is({"encoder-eccentricity"})) {
+      set("encoder-eccentricity", "station " + text("station"), has("encoder") ? text("encoder") : "azimuth");
+    }
   }
 
   void drivers() {

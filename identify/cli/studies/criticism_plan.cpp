@@ -197,7 +197,8 @@ class Planner {
     Layout layout(study.machine, study.seed, hides("tool-load") || hides("tool-offset") ? 2 : 1);
     study.measurements.push_back(layout.measurement(readings_, noise));
     plan_.layout = layout.text();
-    if (!hides("bar-length") && !hides("servo-mismatch")) return;
+    // A foundation that tilts is told from an axis that tilts by what does not stand on it.
+    if (!hides("bar-length") && !hides("servo-mismatch") && !hides("foundation-tilt")) return;
     sim::BallBarCircles circles;
     circles.planes = {"XY"};
     if (hides("bar-length")) circles.length_sigma = 0.0;

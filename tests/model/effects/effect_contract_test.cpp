@@ -28,7 +28,7 @@ struct Candidate {
 std::vector<Candidate> candidates_of(const Campaign& campaign) {
   std::vector<Candidate> all;
   for (const EffectKind* kind : effect_kinds()) {
-    for (EffectSpec& spec : kind->candidates(campaign)) {
+    for (EffectSpec& spec : kind->examples(campaign)) {
       all.push_back({kind, spec, kind->make(spec, "model.toml")});
     }
   }

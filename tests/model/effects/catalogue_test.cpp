@@ -1,0 +1,172 @@
+// Effects of the catalogue against hand calculations.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/support/effect_campaign.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::effect_campaign;
+using testing_support::kEffectRows;
+
+class Catalogue : public ::testing::Test {
+ protected:
+  Catalogue() { model_.default_function.basis = "zero"; }
+
+  std::size_t index(const std::string& setup) const {
+    for (std::size_t i = 0; i < campaign_.setups.size(); ++i) {
+      if (campaign_.setups[i].name == setup) return i;
+    }
+    throw std::out_of_range(setup);
+  }
+  const Readings& readings(const std::string& setup) const { return campaign_.setups[index(setup)].readings; }
+
+  Eigen::MatrixXd drivers(const EffectSpec& spec, const std::string& setup) const {
+    const MeasurementModel model(campaign_, model_);
+    const auto effect = find_effect(spec.kind)->make(spec, "model.toml");
+    return effect->drivers(setup_views(campaign_, model.binding(), model.chain())[index(setup)],
+                           effect->shape_values());
+  }
+
+  /// Change of a reading when the effect's first amplitude goes from 0 to this.
+  double change(const EffectSpec& spec, double amplitude, const std::string& setup, std::size_t row,
+                int channel = 0) const {
+    ModelSpec with_effect = model_;
+    with_effect.effects = {spec};
+    const MeasurementModel model(campaign_, with_effect);
+    Eigen::VectorXd parameters = model.initial_parameters();
+    double low[kMaxChannels], high[kMaxChannels];
+    model.predict(index(setup), row, parameters, low);
+    parameters[model.binding().effects[0].first_parameter] = amplitude;
+    model.predict(index(setup), row, parameters, high);
+    return high[channel] - low[channel];
+  }
+
+  Campaign campaign_ = effect_campaign();
+  ModelSpec model_;
+};
+
+/// A ramp r t is followed by r (t - tau (1 - exp(-t / tau))): exact, since it is linear between readings.
+TEST_F(Catalogue, ALaggedTemperatureFollowsARamp) {
+  constexpr double kRate = 0.5 / 3600.0, kLag = 1500.0;
+  for (volcal::Setup& setup : campaign_.setups) {
+    auto& column = setup.readings.temperature["ramp"];
+    for (const double time : setup.readings.time) column.push_back(20.0 + kRate * time);
+  }
+  const EffectSpec spec = effect_spec(
+      "lagged-temperature",
+      {{"symbol", std::string("EAZ")}, {"temperature", std::string("ramp")}, {"time_constant", kLag}});
+  for (const char* setup : {"S1", "S2", "S3"}) {
+    const Eigen::MatrixXd driver = drivers(spec, setup);
+    for (std::size_t row = 0; row < kEffectRows; ++row) {
+      const double t = readings(setup).time[row];
+      EXPECT_NEAR(driver(static_cast<Eigen::Index>(row), 0), kRate * (t - kLag * (1.0 - std::exp(-t / kLag))),
+                  1e-12);
+    }
+  }
+}
+
+/// After a step by 1 K between two readings far apart in time nothing is left to follow; before, nothing.
+TEST_F(Catalogue, ALaggedTemperatureSettles) {
+  for (volcal::Setup& setup : campaign_.setups) {
+    setup.readings.temperature["step"].assign(kEffectRows, setup.name == "S3" ? 21.0 : 20.0);
+  }
+  const EffectSpec spec =
+      effect_spec("lagged-expansion", {{"temperature", std::string("step")}, {"time_constant", 60.0}});
+  EXPECT_EQ(drivers(spec, "S2").norm(), 0.0);
+  const Eigen::MatrixXd after = drivers(spec, "S3");
+  EXPECT_EQ(after.cols(), 3);
+  EXPECT_NEAR(after(static_cast<Eigen::Index>(kEffectRows) - 1, 2), 1.0, 1e-3);
+}
+
+/// A tilt about y by a x: a tracer sees P move by a x (z, 0, -x) from the middle of the travel, a level on
+/// the tool or the table reads a x, a ball-bar and a relative angle nothing.
+TEST_F(Catalogue, AFoundationTiltIsSeenFromTheFloor) {
+  constexpr double kTilt = 20e-6;
+  const EffectSpec spec =
+      effect_spec("foundation-tilt", {{"axis", std::string("X")}, {"about", std::string("y")}});
+  const Eigen::Vector3d station(-0.4, -0.3, -0.2), pivot(0.5, 0.5, 0.5), tool(0.0, 0.0, -0.1);
+  const Eigen::Vector3d position(readings("S1").position[0][3], readings("S1").position[1][3],
+                                 readings("S1").position[2][3]);
+  const Eigen::Vector3d point = position + tool;
+  const Eigen::Vector3d moved =
+      point + kTilt * position.x() * Eigen::Vector3d(point.z() - pivot.z(), 0.0, pivot.x() - point.x());
+  EXPECT_NEAR(change(spec, kTilt, "S1", 3), (moved - station).norm() - (point - station).norm(), 1e-10);
+  EXPECT_EQ(change(spec, kTilt, "B1", 3), 0.0);
+  EXPECT_EQ(change(spec, kTilt, "D1", 3), 0.0);
+  volcal::Setup& level = campaign_.setups[index("A1")];
+  level.options.set("axis", Eigen::Vector3d(0.0, 1.0, 0.0));
+  EXPECT_EQ(change(spec, kTilt, "A1", 3), 0.0);
+  for (const char* body : {"tool", "table"}) {
+    level.options.set("body", std::string(body));
+    EXPECT_NEAR(change(spec, kTilt, "A1", 3), kTilt * level.readings.position[0][3], 1e-15) << body;
+  }
+}
+
+/// Its square, about the two other directions, is a candidate only beside instruments that do not see it.
+TEST_F(Catalogue, AFoundationTiltAloneIsAnErrorMotion) {
+  const EffectKind* kind = find_effect("foundation-tilt");
+  EXPECT_EQ(kind->candidates(campaign_).size(), 18U);
+  std::erase_if(campaign_.setups,
+                [](const volcal::Setup& setup) { return setup.instrument != "laser-tracer"; });
+  EXPECT_TRUE(kind->candidates(campaign_).empty());
+}
+
+/// A beam of 1 mrad reads half a ppm too short; a path that runs backwards counts with its sign.
+TEST_F(Catalogue, ABeamThatIsNotParallelReadsTooShort) {
+  const EffectSpec spec = effect_spec("beam-misalignment", {{"setup", std::string("D1")}});
+  campaign_.setups[index("D1")].options.set("direction", Eigen::Vector3d(2.0, 0.0, 0.0));
+  const auto& x = readings("D1").position[0];
+  EXPECT_NEAR(change(spec, 0.5e-6, "D1", 9), -0.5e-6 * (x[9] - x[0]), 1e-15);
+  EXPECT_EQ(change(spec, 0.5e-6, "S1", 9), 0.0);
+}
+
+TEST_F(Catalogue, AnEccentricEncoderWavesOncePerTurn) {
+  volcal::Setup& tracker = campaign_.setups[index("K1")];
+  for (std::size_t row = 0; row < kEffectRows; ++row) {
+    tracker.readings.value[1][row] = 0.3 * static_cast<double>(row);
+    tracker.readings.value[2][row] = 0.02 * static_cast<double>(row);
+  }
+  const auto spec = [](const char* encoder) {
+    return effect_spec("encoder-eccentricity",
+                       {{"station", std::string("K1")}, {"encoder", std::string(encoder)}});
+  };
+  EXPECT_NEAR(drivers(spec("azimuth"), "K1")(7, 0), std::cos(2.1), 1e-12);
+  EXPECT_NEAR(drivers(spec("azimuth"), "K1")(7, 1), std::sin(2.1), 1e-12);
+  EXPECT_NEAR(drivers(spec("elevation"), "K1")(7, 1), std::sin(0.14), 1e-12);
+  EXPECT_NEAR(change(spec("elevation"), 3e-6, "K1", 7, 2), 3e-6 * std::cos(0.14), 1e-15);
+  EXPECT_EQ(change(spec("elevation"), 3e-6, "K1", 7, 1), 0.0);
+  EXPECT_EQ(drivers(spec("azimuth"), "S1").norm(), 0.0);
+}
+
+TEST_F(Catalogue, ARunIsShiftedAgainstTheOthers) {
+  const EffectSpec spec = effect_spec("run-offset", {{"setup", std::string("S2")}, {"run", 1.0}});
+  EXPECT_EQ(change(spec, 2e-6, "S2", 11), 0.0);
+  EXPECT_NEAR(change(spec, 2e-6, "S2", 12), 2e-6, 1e-15);
+  EXPECT_EQ(change(spec, 2e-6, "S1", 12), 0.0);
+  for (const EffectSpec& candidate : find_effect("run-offset")->candidates(campaign_)) {
+    EXPECT_EQ(candidate.options.number("run"), 1.0);
+    EXPECT_NE(candidate.options.text("setup"), "A1");
+  }
+}
+
+/// EC0Y of 1 urad turns the travel of Y by -1 um/m along x (u_Y = e_Y - EC0Y e_X).
+TEST_F(Catalogue, SquarenessDriftsWithAChannel) {
+  const EffectSpec spec = effect_spec(
+      "squareness-drift", {{"symbol", std::string("EC0Y")}, {"temperature", std::string("spindle")}});
+  const auto effect = find_effect("squareness-drift")->make(spec, "model.toml");
+  EXPECT_EQ(effect->amplitudes()[0].target.symbol, (ErrorSymbol{Component::X, AxisName::Y}));
+  EXPECT_EQ(effect->amplitudes()[0].unit(), "urad/K");
+  EXPECT_NEAR(drivers(spec, "S1")(10, 0), -2.0 * readings("S1").position[1][10], 1e-12);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 #include <thread>
 
 #include "volcal/identify/criticism/ladder.h"
@@ -30,6 +31,14 @@ std::string to_string(Verdict verdict) {
       return "NOT_VISIBLE";
   }
   return "";
+}
+
+Verdict verdict_from(const std::string& text) {
+  for (const Verdict verdict : {Verdict::Named, Verdict::NamedMoreRemains, Verdict::OneOf, Verdict::Unknown,
+                                Verdict::NothingAbove, Verdict::NotVisible}) {
+    if (to_string(verdict) == text) return verdict;
+  }
+  throw std::invalid_argument("\"" + text + "\" is no verdict");
 }
 
 namespace {
@@ -67,17 +76,23 @@ class Diagnostician {
     for (int step = 0; step <= options_.most_effects; ++step) {
       progress(fmt::format("tests, step {}", step + 1), 0.2 + 0.7 * step / (options_.most_effects + 1.0));
       test();
-      if (step == 0) list_invisible();
+      if (step == 0) list_detectable();
       if (step == options_.most_effects || !accept_leading()) break;
       if (!options_.climb && !diagnosis_.effects.empty()) {
         test();
         break;
       }
     }
+    restate_ladder();
     list_noise();
     rank();
     drop_unneeded();
     conclude();
+    if (options_.figures) {
+      diagnosis_.figures =
+          diagnosis_figures({model_, heldout_, noise_, *projector_, families_, tests_, accepted_order_,
+                             accepted_columns_, variables_, generic_given_, generic_, threads_});
+    }
     progress("done", 1.0);
     return std::move(diagnosis_);
   }
@@ -209,14 +224,15 @@ class Diagnostician {
     out.visible_fraction = test.score.visible_fraction;
     out.resolution = family.resolution.has_value();
     if (!family.effect) return out;
-    const double detectable = std::sqrt(
+    const double found_from = std::sqrt(
         detectable_noncentrality(kLog10FamilyRisk - log10_families_, std::max(1, test.score.dof), kPower));
     const auto& amplitudes = family.effect->amplitudes();
     for (std::size_t k = 0; k < amplitudes.size(); ++k) {
       const auto at = static_cast<Eigen::Index>(k);
       const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-      out.amplitudes.push_back({amplitudes[k].label, test.score.amplitude[at], u, u * detectable,
-                                amplitudes[k].unit(), amplitudes[k].si_per_unit()});
+      const double mdb = u > 0.0 ? u * found_from : std::nan("");
+      out.amplitudes.push_back({amplitudes[k].label, test.score.amplitude[at], u, mdb, amplitudes[k].unit(),
+                                amplitudes[k].si_per_unit()});
       out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), test.score.amplitude[at]);
     }
     const auto& shapes = family.effect->shapes();
@@ -237,13 +253,52 @@ class Diagnostician {
     diagnosis_.ladder.push_back(step);
   }
 
-  void list_invisible() {
+  /// All steps against the noise of the model reached: noise estimated beside a missing effect holds part of
+  /// the effect, and would hide its fall.
+  void restate_ladder() {
+    if (accepted_columns_.empty()) return;
+    Projector projector(model_.problem(), without(model_.problem().data, heldout_), noise_, threads_,
+                        model_.parts());
+    heldout_loglik_.reset();
+    std::vector<Eigen::MatrixXd> accepted;
+    for (LadderStep& step : diagnosis_.ladder) {
+      if (&step != &diagnosis_.ladder.front()) {
+        accepted.push_back(accepted_columns_[accepted.size()]);
+        projector.accept(accepted.back());
+      }
+      LadderStep restated = ladder_step(model_, heldout_, noise_, projector, accepted, heldout_loglik_);
+      restated.model = step.model;
+      restated.added = step.added;
+      step = restated;
+    }
+  }
+
+  /// At the given model: what would have been found, and what could not be.
+  void list_detectable() {
+    generic_given_ = generic_;
+    const FunctionalPointLevers levers(model_);
     for (const FamilyTest& test : tests_) {
       if (families_[test.family].resolution) continue;
-      if (test.score.dof == 0 || test.score.visible_fraction < kVisible) {
-        diagnosis_.not_visible.push_back(finding(test));
-      }
+      const EffectFinding found = finding(test);
+      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kVisible;
+      if (!visible) diagnosis_.not_visible.push_back(found);
+      diagnosis_.detectable.push_back(
+          detectable(found, *families_[test.family].effect, test.shape, visible, levers));
     }
+  }
+
+  /// By the amplitude that is hardest to find.
+  static DetectableEffect detectable(const EffectFinding& found, const Effect& effect,
+                                     const Eigen::VectorXd& shape, bool visible,
+                                     const FunctionalPointLevers& levers) {
+    std::size_t hardest = 0;
+    for (std::size_t k = 1; k < found.amplitudes.size(); ++k) {
+      if (!(found.amplitudes[k].mdb <= found.amplitudes[hardest].mdb)) hardest = k;
+    }
+    const AmplitudeFigure& amplitude = found.amplitudes[hardest];
+    return {found.name,     found.label,           found.shape_text,
+            amplitude.unit, amplitude.si_per_unit, found.visible_fraction,
+            visible,        amplitude.mdb,         amplitude.mdb * levers.rms(effect, shape, hardest)};
   }
 
   void rank() {
@@ -381,7 +436,7 @@ class Diagnostician {
   std::vector<NoiseParameters> noise_;
   std::unique_ptr<Projector> projector_;
   std::vector<FamilyTest> tests_;
-  std::vector<GenericTest> generic_;
+  std::vector<GenericTest> generic_given_, generic_;
   std::set<std::size_t> accepted_;
   std::vector<std::size_t> accepted_order_;
   std::vector<Eigen::MatrixXd> accepted_columns_;
@@ -391,6 +446,9 @@ class Diagnostician {
 };
 
 }  // namespace
+
+double log10_family_risk() { return kLog10FamilyRisk; }
+double log10_generic_risk() { return kLog10GenericRisk; }
 
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
   return Diagnostician(campaign, result, options).run();

@@ -115,6 +115,9 @@ Json after_json(const Diagnosis& diagnosis) {
   Json lines = Json::array();
   if (diagnosis.ladder.size() < 2) {
     lines.push_back("Nothing was added: the given model is the model reached.");
+    if (!diagnosis.unknown.empty()) {
+      lines.push_back("The noise was estimated beside what remains, and its floor may hold part of that.");
+    }
   } else if (std::isfinite(last.rms_heldout)) {
     lines.push_back(
         fmt::format("The systematic error on held-out lines falls from {} to {}; RMS from {} to {} "
@@ -127,7 +130,7 @@ Json after_json(const Diagnosis& diagnosis) {
         "Still seen by the scan without a catalogue: something that depends on {}, along {}, "
         "about {} RMS (10^{:.1f}).",
         fmt::join(unknown.variables, " and "), unknown.direction, micrometres(unknown.rms), unknown.log10_p));
-    if (lines.size() == 4) break;
+    if (lines.size() == 5) break;
   }
   return lines;
 }

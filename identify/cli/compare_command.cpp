@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -28,12 +30,15 @@ struct Arguments {
   std::size_t worst = 10;
   int threads = 0;
   bool all = false;
+  bool heldout = false;
   bool json = false;
 };
 
 struct NamedModel {
   std::string name;
   ModelSpec spec;
+  ModelSpec refittable;  ///< what --held-out fits
+  bool can_be_fitted = true;
 };
 
 bool predicts_errors(const ModelSpec& model) {
@@ -44,7 +49,7 @@ bool predicts_errors(const ModelSpec& model) {
 
 /// A result, a model file, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
-  if (argument == kNominal) return {"nominal machine", nominal_model()};
+  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
   if (is_result(argument) || std::filesystem::is_directory(argument)) {
     const FitResult result = read_result(argument);
     if (const std::string difference = machine_difference(result.machine, campaign.machine);
@@ -52,9 +57,10 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
                        "compare with a result of the same machine");
     }
-    return {argument, result.identified};
+    return {argument, result.identified, refittable_model(result)};
   }
-  NamedModel model{argument, read_model(argument, campaign.machine)};
+  NamedModel model{argument, read_model(argument, campaign.machine), {}};
+  model.refittable = model.spec;
   if (!predicts_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
   return model;
 }
@@ -74,18 +80,50 @@ void write_folder(const std::string& target, const Campaign& campaign,
   folder.commit();
 }
 
+std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vector<NamedModel>& models,
+                                        const Arguments& arguments, const ComparisonOptions& comparison) {
+  const auto rows = judging_rows(campaign);
+  if (std::ranges::none_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; })) {
+    throw InputError({campaign.file, 0}, "--held-out: the setups have too few readings to hold lines out",
+                     "at least fifty readings, or five lines, of a setup are needed");
+  }
+  ProgressBar bar("held-out lines");
+  std::vector<HeldOutModel> judged;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const auto count = static_cast<double>(models.size());
+    HeldOutOptions options{arguments.threads, models[m].can_be_fitted,
+                           [&](const std::string& stage, double done) {
+                             bar.update(stage, (static_cast<double>(m) + done) / count);
+                           }};
+    const auto records = heldout_residuals(campaign, models[m].refittable, rows, options);
+    judged.push_back({arguments.models[m], models[m].can_be_fitted, compare(campaign, records, comparison)});
+  }
+  bar.finish();
+  return judged;
+}
+
 int run(const Arguments& arguments) {
   const Campaign campaign = read_campaign(arguments.campaign);
   ComparisonOptions comparison;
   comparison.worst = arguments.worst;
+  std::vector<NamedModel> named;
   std::vector<ComparedModel> models;
   for (const std::string& argument : arguments.models) {
-    NamedModel model = load(argument, campaign);
+    const NamedModel& model = named.emplace_back(load(argument, campaign));
     Evaluation evaluation = evaluate_model(campaign, model.spec, nullptr, arguments.threads);
     models.push_back(compared_model(model.name, campaign, std::move(evaluation.residuals), comparison));
   }
-  const std::string json = comparison_json(campaign, models);
-  const std::string text = comparison_text(campaign, models, {arguments.all, arguments.worst});
+  std::vector<HeldOutModel> heldout;
+  if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
+  const std::string json = comparison_json(campaign, models, heldout);
+  std::string text = comparison_text(campaign, models, {arguments.all, arguments.worst});
+  if (!heldout.empty()) {
+    text += '\n' + heldout_text(campaign, heldout, campaign.reading_count());
+  } else if (models.size() > 1 && std::ranges::any_of(named, [](const NamedModel& model) {
+               return predicts_errors(model.spec);
+             })) {
+    text += '\n' + heldout_hint();
+  }
   if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
   if (arguments.json) {
     fmt::print("{}", json);
@@ -112,6 +150,8 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("--worst", arguments->worst, "readings listed")->capture_default_str();
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
+  app.add_flag("--held-out", arguments->heldout,
+               "fit the models anew without every fifth line and judge them on those lines");
   app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");
   app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
   return [arguments] { return run(*arguments); };
@@ -125,6 +165,7 @@ const Command& compare_command() {
       "  volcal compare campaign.toml nominal\n"
       "  volcal compare campaign.toml result -o comparison\n"
       "  volcal compare campaign.toml nominal result\n"
+      "  volcal compare campaign.toml result result-1 --held-out\n"
       "  volcal compare campaign.toml result --json | jq -r '.models[0].where_it_fails'\n",
       define};
   return command;

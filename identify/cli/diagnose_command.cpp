@@ -1,5 +1,7 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <ctime>
 #include <memory>
 #include <string>
 
@@ -14,6 +16,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/toml_writer.h"
 #include "volcal/identify/report/diagnosis_text.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/registry.h"
@@ -25,6 +28,7 @@ struct Arguments {
   std::string campaign;
   std::string model;
   std::string output;
+  std::string shown;
   int threads = 0;
   bool climb = false;
   bool list = false;
@@ -51,10 +55,39 @@ ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
   return model;
 }
 
+/// The ladder of an earlier diagnosis again.
+int show(const Arguments& arguments) {
+  if (!arguments.campaign.empty()) {
+    throw InputError({}, "both a campaign to diagnose and --show are given",
+                     "volcal diagnose --show DIR prints an earlier diagnosis; leave one of the two out");
+  }
+  const Diagnosis diagnosis = read_diagnosis(arguments.shown);
+  fmt::print("{}", arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
+  return kDone;
+}
+
+void write_folder(const Arguments& arguments, const Campaign& campaign, const ModelSpec& model,
+                  const Diagnosis& diagnosis, const std::string& json) {
+  AtomicFolder folder(arguments.output);
+  folder.write("diagnosis.json", json);
+  folder.write("diagnosis.txt", diagnosis_text(diagnosis));
+  if (report_available()) {
+    folder.write(
+        "report.html",
+        report_html(diagnosis, campaign, {fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr)))}));
+  }
+  folder.write("machine.toml", machine_toml(campaign.machine));
+  folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
+                                           "the given model with the effects that volcal diagnose added"));
+  folder.commit();
+}
+
 int run(const Arguments& arguments) {
   if (arguments.list) return print_list();
+  if (!arguments.shown.empty()) return show(arguments);
   if (arguments.campaign.empty()) {
-    throw InputError({}, "no campaign is given", "volcal diagnose CAMPAIGN.toml -o DIR, or --list");
+    throw InputError({}, "no campaign is given",
+                     "volcal diagnose CAMPAIGN.toml -o DIR, --show DIR, or --list");
   }
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model =
@@ -78,19 +111,14 @@ int run(const Arguments& arguments) {
   const Diagnosis diagnosis = diagnose(campaign, result, options);
   bar.finish();
   const std::string json = diagnosis_json(diagnosis);
-  if (!arguments.output.empty()) {
-    AtomicFolder folder(arguments.output);
-    folder.write("diagnosis.json", json);
-    folder.write("machine.toml", machine_toml(campaign.machine));
-    folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
-                                             "the given model with the effects that volcal diagnose added"));
-    folder.commit();
-  }
+  if (!arguments.output.empty()) write_folder(arguments, campaign, model, diagnosis, json);
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
     fmt::print("{}", diagnosis_text(diagnosis));
     if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+    if (!arguments.output.empty() && !report_available())
+      fmt::print("no report.html: {}\n", how_to_get_report());
   }
   return kDone;
 }
@@ -99,7 +127,8 @@ std::function<int()> define(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml");
   app.add_option("-m,--model", arguments->model, "model.toml to criticise; default: all 21 errors");
-  app.add_option("-o,--output", arguments->output, "folder for diagnosis.json and extended.toml");
+  app.add_option("-o,--output", arguments->output,
+                 "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--auto", arguments->climb, "add effects one after another until nothing is left");
@@ -109,6 +138,8 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
       ->check(CLI::Range(8, 10000))
       ->capture_default_str();
+  app.add_option("--show", arguments->shown,
+                 "print the diagnosis kept in a folder (or diagnosis.json) again");
   app.add_flag("--list", arguments->list, "print every kind of effect and stop");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
   return [arguments] { return run(*arguments); };
@@ -122,6 +153,7 @@ const Command& diagnose_command() {
       "  volcal diagnose campaign.toml -o diagnosis\n"
       "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
       "  volcal diagnose campaign.toml --separate station-drift:\"station P1\",dead-path:\"readings of S1\"\n"
+      "  volcal diagnose --show diagnosis\n"
       "  volcal diagnose --list\n",
       define};
   return command;

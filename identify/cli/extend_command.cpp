@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -7,10 +8,14 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/named_effect.h"
+#include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/diagnosis_json.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/report/diagnosis_text.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -18,9 +23,96 @@ namespace {
 struct Arguments {
   std::string model;
   std::vector<std::string> effects;
+  std::string diagnosis;
+  int rank = 0;
+  bool accepted = false;
   std::string campaign;
   std::string output;
 };
+
+std::vector<EffectFinding> chosen(const Arguments& arguments) {
+  const Diagnosis diagnosis = read_diagnosis(arguments.diagnosis);
+  const std::string again = "volcal diagnose --show " + arguments.diagnosis + " prints the ranking";
+  if (arguments.accepted) {
+    if (!diagnosis.effects.empty()) return diagnosis.effects;
+    throw InputError({arguments.diagnosis, 0},
+                     "the diagnosis added no effect, its verdict is " + to_string(diagnosis.verdict),
+                     "choose one by --rank; " + again);
+  }
+  const std::vector<EffectFinding> all = ranked_effects(diagnosis);
+  if (all.empty()) {
+    throw InputError({arguments.diagnosis, 0}, "the diagnosis ranks no effect",
+                     "name one by --effect; volcal diagnose --list prints all kinds");
+  }
+  if (arguments.rank > static_cast<int>(all.size())) {
+    throw InputError({arguments.diagnosis, 0},
+                     fmt::format("--rank {}: the diagnosis ranks {} effects", arguments.rank, all.size()),
+                     again);
+  }
+  return {all[static_cast<std::size_t>(arguments.rank) - 1]};
+}
+
+/// Throws when the model has it already, or the machine cannot have it.
+void add_found(const EffectFinding& effect, const Arguments& arguments, ModelSpec& model,
+               const Machine& machine) {
+  for (const EffectSpec& present : model.effects) {
+    if (find_effect(present.kind)->make(present, model.file)->name() != effect.name) continue;
+    throw InputError({arguments.model, present.source_line}, "the model has " + effect.label + " already",
+                     "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
+                         " -o DIR), or choose another --rank");
+  }
+  if (restore_left_out(effect.spec, model)) {
+    fmt::print("given back: {}\n", effect.label);
+    return;
+  }
+  const EffectKind* kind = find_effect(effect.spec.kind);
+  if (kind == nullptr) {
+    throw InputError({arguments.diagnosis, 0},
+                     "\"" + printable(effect.spec.kind) + "\" is no kind of effect of this program",
+                     "run the diagnosis again");
+  }
+  const auto made = kind->make(effect.spec, arguments.diagnosis);
+  for (const EffectAmplitude& amplitude : made->amplitudes()) {
+    if (amplitude.target.kind == TargetKind::Motion && !machine.has_axis(amplitude.target.symbol.axis)) {
+      throw InputError({arguments.model, 0},
+                       effect.label + " acts on an axis that the model's machine does not have",
+                       "give the model that was diagnosed, or one of the same machine");
+    }
+  }
+  if (!arguments.campaign.empty()) made->check(read_campaign(arguments.campaign), {arguments.diagnosis, 0});
+  model.effects.push_back(effect.spec);
+  fmt::print("added: {}{}{}\n", effect.label, effect.shape_text.empty() ? "" : ", ", effect.shape_text);
+}
+
+void require_one_source(const Arguments& arguments) {
+  const std::string usage = "volcal extend MODEL --diagnosis DIR --rank 1 (or --accepted) -o NEW.toml";
+  const bool chooses = arguments.rank > 0 || arguments.accepted;
+  if (arguments.diagnosis.empty()) {
+    if (chooses) throw InputError({}, "--rank and --accepted need a diagnosis to choose from", usage);
+    if (!arguments.effects.empty()) return;
+    throw InputError({}, "nothing to add is given", "give --effect KIND:TARGET, or " + usage);
+  }
+  if (arguments.rank > 0 && arguments.accepted)
+    throw InputError({}, "--rank and --accepted are both given", "leave one of the two out");
+  if (!chooses) throw InputError({}, "it is not said which effect of the diagnosis to add", usage);
+}
+
+/// model.toml, model-1.toml, model-2.toml ...: the next of them that does not exist.
+std::string next_name(const std::string& model) {
+  const std::filesystem::path path(model);
+  std::string stem = path.stem().string();
+  const std::size_t dash = stem.rfind('-');
+  const bool numbered = dash != std::string::npos && dash + 1 < stem.size() &&
+                        stem.find_first_not_of("0123456789", dash + 1) == std::string::npos &&
+                        stem.size() - dash < 6;
+  int number = numbered ? std::stoi(stem.substr(dash + 1)) : 0;
+  if (numbered) stem.resize(dash);
+  std::filesystem::path next;
+  do {
+    next = path.parent_path() / fmt::format("{}-{}{}", stem, ++number, path.extension().string());
+  } while (std::filesystem::exists(next));
+  return next.string();
+}
 
 /// Path of a file as a file elsewhere names it.
 std::string path_from(const std::string& from, const std::string& file) {
@@ -29,6 +121,7 @@ std::string path_from(const std::string& from, const std::string& file) {
 }
 
 int run(const Arguments& arguments) {
+  require_one_source(arguments);
   auto [machine, model] = read_model_with_machine(arguments.model);
   Campaign campaign;
   if (arguments.campaign.empty()) {
@@ -38,8 +131,13 @@ int run(const Arguments& arguments) {
   }
   for (const std::string& effect : arguments.effects)
     model.effects.push_back(named_effect("--effect", effect, campaign));
-  write_text_file(arguments.output, model_toml(model, path_from(arguments.output, machine.file)));
-  fmt::print("written: {} ({} effects)\n", arguments.output, model.effects.size());
+  if (!arguments.diagnosis.empty()) {
+    for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, model, machine);
+  }
+  const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
+  write_text_file(output, model_toml(model, path_from(output, machine.file)));
+  fmt::print("written: {} ({} effect{})\n", output, model.effects.size(),
+             model.effects.size() == 1 ? "" : "s");
   return kDone;
 }
 
@@ -47,11 +145,17 @@ std::function<int()> define(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   app.add_option("MODEL", arguments->model, "model.toml to extend")->required();
   app.add_option("-e,--effect", arguments->effects,
-                 "KIND:TARGET[:DRIVER[:SHAPE]]; may be given several times")
-      ->required();
+                 "KIND:TARGET[:DRIVER[:SHAPE]]; may be given several times");
+  app.add_option("--diagnosis", arguments->diagnosis,
+                 "folder that volcal diagnose wrote, to choose effects from");
+  app.add_option("--rank", arguments->rank,
+                 "place in the diagnosis: what it added or could not tell apart first, then its ranking")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--accepted", arguments->accepted, "all effects that the diagnosis added");
   app.add_option("--campaign", arguments->campaign,
                  "campaign.toml, for effects of temperatures, stations, setups and tools");
-  app.add_option("-o,--output", arguments->output, "model file to write")->required();
+  app.add_option("-o,--output", arguments->output,
+                 "model file to write; default: the model's name with the next free number, model-1.toml");
   return [arguments] { return run(*arguments); };
 }
 
@@ -61,6 +165,8 @@ const Command& extend_command() {
   static const Command command = {
       "extend", "add effects to a model file",
       "  volcal extend model.toml --effect reversal:EXX -o model-1.toml\n"
+      "  volcal extend model.toml --diagnosis diagnosis --rank 1\n"
+      "  volcal extend model.toml --diagnosis diagnosis --accepted -o model-1.toml\n"
       "  volcal extend model.toml --effect axis-coupling:EAY:z:linear -o model-1.toml\n"
       "  volcal extend model.toml --effect thermal-drift:EAZ:T_column --campaign campaign.toml -o "
       "model-1.toml\n",

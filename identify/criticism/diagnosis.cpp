@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 #include <thread>
 
 #include "volcal/identify/criticism/effect_search.h"
@@ -30,6 +31,14 @@ std::string to_string(Verdict verdict) {
       return "NOT_VISIBLE";
   }
   return "";
+}
+
+Verdict verdict_from(const std::string& text) {
+  for (const Verdict verdict : {Verdict::Named, Verdict::NamedMoreRemains, Verdict::OneOf, Verdict::Unknown,
+                                Verdict::NothingAbove, Verdict::NotVisible}) {
+    if (to_string(verdict) == text) return verdict;
+  }
+  throw std::invalid_argument("\"" + text + "\" is no verdict");
 }
 
 namespace {
@@ -72,12 +81,13 @@ class Diagnostician {
     diagnosis_.generic_tests = search_.generic().size();
     diagnosis_.ladder = search_.ladder();
     list_added();
-    list_invisible();
+    list_detectable();
     rank();
     collect_unknown();
     list_noise();
     conclude();
     compare_hypotheses();
+    draw();
     progress("done", 1.0);
     return std::move(diagnosis_);
   }
@@ -105,13 +115,14 @@ class Diagnostician {
     out.visible_fraction = test.score.visible_fraction;
     out.resolution = family.resolution.has_value();
     if (!family.effect) return out;
-    const double detectable =
+    const double found_from =
         std::sqrt(detectable_noncentrality(search_.log10_level(), std::max(1, test.score.dof), kPower));
     for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
       const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
       const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-      out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u, u * detectable,
-                                amplitude.unit(), amplitude.si_per_unit()});
+      out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u,
+                                u > 0.0 ? u * found_from : std::nan(""), amplitude.unit(),
+                                amplitude.si_per_unit()});
     }
     state_values(family, test.shape, Eigen::VectorXd::Zero(test.shape.size()), out);
     return out;
@@ -182,13 +193,44 @@ class Diagnostician {
     }
   }
 
-  void list_invisible() {
+  /// At the given model: what would have been found, and what could not be.
+  void list_detectable() {
+    const FunctionalPointLevers levers(model_);
     for (const FamilyTest& test : search_.first_tests()) {
-      if (families_[test.family].resolution) continue;
-      if (test.score.dof == 0 || test.score.visible_fraction < kVisible) {
-        diagnosis_.not_visible.push_back(finding(test));
-      }
+      const Family& family = families_[test.family];
+      if (family.resolution) continue;
+      const EffectFinding found = finding(test);
+      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kVisible;
+      if (!visible) diagnosis_.not_visible.push_back(found);
+      diagnosis_.detectable.push_back(detectable(found, *family.effect, test.shape, visible, levers));
     }
+  }
+
+  /// By the amplitude that is hardest to find.
+  static DetectableEffect detectable(const EffectFinding& found, const Effect& effect,
+                                     const Eigen::VectorXd& shape, bool visible,
+                                     const FunctionalPointLevers& levers) {
+    std::size_t hardest = 0;
+    for (std::size_t k = 1; k < found.amplitudes.size(); ++k) {
+      if (!(found.amplitudes[k].mdb <= found.amplitudes[hardest].mdb)) hardest = k;
+    }
+    const AmplitudeFigure& amplitude = found.amplitudes[hardest];
+    return {found.name,     found.label,           found.shape_text,
+            amplitude.unit, amplitude.si_per_unit, found.visible_fraction,
+            visible,        amplitude.mdb,         amplitude.mdb * levers.rms(effect, shape, hardest)};
+  }
+
+  void draw() {
+    if (!options_.figures) return;
+    std::vector<std::size_t> added;
+    std::vector<Eigen::MatrixXd> columns;
+    for (const AddedEffect& effect : search_.added()) {
+      added.push_back(effect.test.family);
+      columns.push_back(effect.columns);
+    }
+    diagnosis_.figures = diagnosis_figures(
+        {model_, heldout_, search_.noise(), search_.projector(), families_, search_.tests(), added, columns,
+         search_.variables(), search_.first_generic(), search_.generic(), thread_count(options_.threads)});
   }
 
   void rank() {
@@ -312,6 +354,9 @@ class Diagnostician {
 };
 
 }  // namespace
+
+double log10_family_risk() { return kLog10FamilyRisk; }
+double log10_generic_risk() { return kLog10GenericRisk; }
 
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
   return Diagnostician(campaign, result, options).run();

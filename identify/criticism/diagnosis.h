@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "volcal/identify/criticism/confounding.h"
+#include "volcal/identify/criticism/detectable.h"
+#include "volcal/identify/criticism/diagnosis_figures.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/criticism/next_measurement.h"
@@ -24,13 +26,19 @@ namespace volcal {
 enum class Verdict { Named, NamedMoreRemains, OneOf, Unknown, NothingAbove, NotVisible };
 /// "NAMED", "NAMED_MORE_REMAINS", "ONE_OF", "UNKNOWN", "NOTHING_ABOVE", "NOT_VISIBLE".
 std::string to_string(Verdict verdict);
+/// Throws std::invalid_argument for another text.
+Verdict verdict_from(const std::string& text);
+
+/// log10 of the family-wise probability below which an effect, or a generic test, is above the noise.
+double log10_family_risk();
+double log10_generic_risk();
 
 /// One amplitude of a named effect, or of a candidate.
 struct AmplitudeFigure {
   std::string label;
   double value = 0.0;  ///< SI
   double u = 0.0;
-  double mdb = 0.0;  ///< smallest amplitude found with 80 % power at the family-wise level
+  double mdb = 0.0;  ///< smallest amplitude found with 80 % power at the family-wise level; NaN: never
   std::string unit;  ///< edge
   double si_per_unit = 1.0;
   /// Smallest amplitude that is also told apart from every rival (confounding.h); infinite: never; NaN: not
@@ -61,7 +69,7 @@ struct UnknownFinding {
   double log10_p = 0.0;  ///< family-wise
 };
 
-/// One step of the ladder. SI.
+/// One step of the ladder, all against the noise model at the last step. SI.
 struct LadderStep {
   std::string model;  ///< "0", "1" ...
   std::string added;  ///< empty for the given model
@@ -80,6 +88,7 @@ struct DiagnoseOptions {
   bool climb = false;  ///< add effects until nothing is left
   int most_effects = 8;
   double heldout_share = 0.1;
+  bool figures = true;                 ///< what the report draws; a study leaves it out
   std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
   bool compare = true;                 ///< MIB, confounding matrix, next measurement
   PlanningOptions planning;
@@ -88,12 +97,13 @@ struct DiagnoseOptions {
 
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
-  std::vector<std::string> words;          ///< the verdict in plain sentences
-  std::vector<EffectFinding> effects;      ///< named, in the order in which they were added
-  std::vector<EffectFinding> one_of;       ///< alternatives that the readings do not tell apart
-  std::vector<UnknownFinding> unknown;     ///< leading first
-  std::vector<EffectFinding> ranking;      ///< families by gain, at the model reached; at most 40
-  std::vector<EffectFinding> not_visible;  ///< families of which less than 2 % shows
+  std::vector<std::string> words;            ///< the verdict in plain sentences
+  std::vector<EffectFinding> effects;        ///< named, in the order in which they were added
+  std::vector<EffectFinding> one_of;         ///< alternatives that the readings do not tell apart
+  std::vector<UnknownFinding> unknown;       ///< leading first
+  std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40
+  std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
+  std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
   std::vector<EffectFinding> model_changes;
   std::vector<LadderStep> ladder;
   std::vector<NoiseRow> noise;
@@ -104,6 +114,7 @@ struct Diagnosis {
   std::size_t removed_readings = 0;
   std::size_t families = 0;
   std::size_t generic_tests = 0;
+  DiagnosisFigures figures;  ///< not kept in files
 };
 
 /// `result` must come from fit() of this campaign.

@@ -53,6 +53,7 @@ void EffectSearch::run() {
   climb();
   for (int change = 0; change < kMostChanges && reconsider(); ++change) climb();
   give_up();
+  restate_ladder();
 }
 
 void EffectSearch::start() {
@@ -130,7 +131,10 @@ void EffectSearch::climb() {
                         0.2 + 0.7 * static_cast<double>(added_.size()) / (options_.most + 1.0));
     }
     test();
-    if (first_tests_.empty()) first_tests_ = tests_;
+    if (first_tests_.empty()) {
+      first_tests_ = tests_;
+      first_generic_ = generic_;
+    }
     const bool enough =
         static_cast<int>(added_.size()) >= options_.most || (!options_.climb && !added_.empty());
     if (enough || !add_leading()) return;
@@ -213,6 +217,25 @@ void EffectSearch::add_step(const std::string& added) {
   step.model = std::to_string(ladder_.size());
   step.added = added;
   ladder_.push_back(std::move(step));
+}
+
+/// All steps against the noise of the model reached: noise estimated beside a missing effect holds part of
+/// the effect, and would hide its fall.
+void EffectSearch::restate_ladder() {
+  Projector projector(model_.problem(), without(model_.problem().data, heldout_), noise_, options_.threads,
+                      model_.parts());
+  std::vector<Eigen::MatrixXd> columns;
+  heldout_loglik_.reset();
+  for (std::size_t i = 0; i < ladder_.size(); ++i) {
+    if (i > 0) {
+      columns.push_back(added_[i - 1].columns);
+      projector.accept(columns.back());
+    }
+    LadderStep step = ladder_step(model_, heldout_, noise_, projector, columns, heldout_loglik_);
+    step.model = ladder_[i].model;
+    step.added = ladder_[i].added;
+    ladder_[i] = std::move(step);
+  }
 }
 
 /// Each added effect against all others, now that the rest is in the model: true when one was exchanged or

@@ -47,6 +47,8 @@ class EffectSearch {
   const std::vector<GenericTest>& generic() const { return generic_; }
   /// At the given model.
   const std::vector<FamilyTest>& first_tests() const { return first_tests_; }
+  const std::vector<GenericTest>& first_generic() const { return first_generic_; }
+  const std::vector<ScanVariable>& variables() const { return variables_; }
   const std::vector<LadderStep>& ladder() const { return ladder_; }
   const Projector& projector() const { return *projector_; }
   const std::vector<NoiseParameters>& noise() const { return noise_; }
@@ -73,6 +75,7 @@ class EffectSearch {
   std::optional<FamilyTest> likelihood_ratio(const FamilyTest& test) const;
   void add(const FamilyTest& test);
   void add_step(const std::string& added);
+  void restate_ladder();
   bool reconsider();
   void find_no_names();
   void give_up();
@@ -91,6 +94,7 @@ class EffectSearch {
   std::vector<FamilyTest> tests_;
   std::vector<FamilyTest> first_tests_;
   std::vector<GenericTest> generic_;
+  std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
   std::set<std::size_t> given_up_;
   std::vector<LadderStep> ladder_;

@@ -43,8 +43,10 @@ void add_variable(std::vector<ScanVariable>& variables, const std::string& name,
   if (!(high - low > 1e-9 * std::max(1.0, std::abs(high)))) return;
   value = ((value.array() - low) * (2.0 / (high - low)) - 1.0).matrix();
   const bool two_valued = (value.array().abs() > 1.0 - 1e-9).all();
-  if (two_valued) value.array() -= value.mean();
-  variables.push_back({name, std::move(value), two_valued});
+  const double shift = two_valued ? value.mean() : 0.0;
+  value.array() -= shift;
+  const double scale = 0.5 * (high - low);
+  variables.push_back({name, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
 }
 
 /// One variable, or two.

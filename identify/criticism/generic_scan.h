@@ -18,6 +18,8 @@ struct ScanVariable {
   std::string name;  ///< "x", "time", "T_air", "dir_x", "length", "tool side", "station P1"
   Eigen::VectorXd value;
   bool two_valued = false;  ///< powers say nothing new
+  double centre = 0.0;      ///< what was recorded = centre + scale value, SI
+  double scale = 1.0;
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
 

@@ -11,20 +11,6 @@ namespace {
 
 constexpr std::int32_t kStretch = 10;
 
-/// Variance of an observation on its own, all parts of the noise.
-std::vector<double> noise_variance(const NoiseProblem& problem, std::span<const NoiseParameters> noise) {
-  std::vector<double> variance(problem.data.sigma.size(), 0.0);
-  for (const NoiseSequence& sequence : problem.data.sequences) {
-    const NoiseParameters& part = noise[sequence.group];
-    for (const std::size_t i : sequence.observation) {
-      const double white = part.white * problem.data.sigma[i];
-      const double long_part = part.per_metre * problem.data.length[i];
-      variance[i] = white * white + part.wander * part.wander + part.line * part.line + long_part * long_part;
-    }
-  }
-  return variance;
-}
-
 /// Derivatives of the held-out readings to all parameters, accepted columns last.
 Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const NoiseProblem& problem,
                         const std::vector<Eigen::MatrixXd>& accepted, Eigen::Index parameters) {
@@ -40,24 +26,42 @@ Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const Noi
 
 }  // namespace
 
-std::vector<bool> heldout_lines(const LinearModel& model, double share) {
-  std::vector<bool> heldout(model.size(), false);
-  if (!(share > 0.0)) return heldout;
-  const auto every = std::max(2, static_cast<int>(std::lround(1.0 / share)));
-  const auto& setups = model.campaign().setups;
-  std::vector<std::map<std::int32_t, int>> order(setups.size());
-  for (std::size_t setup = 0; setup < setups.size(); ++setup) {
-    for (const std::int32_t line : setups[setup].readings.line) {
-      order[setup].try_emplace(line, static_cast<int>(order[setup].size()));
+std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise) {
+  std::vector<double> variance(data.sigma.size(), 0.0);
+  for (const NoiseSequence& sequence : data.sequences) {
+    const NoiseParameters& part = noise[sequence.group];
+    for (const std::size_t i : sequence.observation) {
+      const double white = part.white * data.sigma[i];
+      const double long_part = data.length.empty() ? 0.0 : part.per_metre * data.length[i];
+      variance[i] = white * white + part.wander * part.wander + part.line * part.line + long_part * long_part;
     }
   }
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    const auto& [setup, row, channel] = model.observations()[i];
-    const Readings& readings = setups[setup].readings;
-    const bool by_line = static_cast<int>(order[setup].size()) >= every;
-    const int group = by_line ? order[setup].at(readings.line[row]) : static_cast<int>(row) / kStretch;
-    heldout[i] = (group + static_cast<int>(setup)) % every == every - 1;
+  return variance;
+}
+
+std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share) {
+  std::vector<std::vector<bool>> heldout;
+  const int every = share > 0.0 ? std::max(2, static_cast<int>(std::lround(1.0 / share))) : 0;
+  for (const Setup& setup : campaign.setups) {
+    const Readings& readings = setup.readings;
+    std::map<std::int32_t, int> order;
+    for (const std::int32_t line : readings.line) order.try_emplace(line, static_cast<int>(order.size()));
+    const bool by_line = static_cast<int>(order.size()) >= every;
+    const int place = static_cast<int>(heldout.size());
+    std::vector<bool>& rows = heldout.emplace_back(readings.size(), false);
+    for (std::size_t row = 0; every > 0 && row < rows.size(); ++row) {
+      const int group = by_line ? order.at(readings.line[row]) : static_cast<int>(row) / kStretch;
+      rows[row] = (group + place) % every == every - 1;
+    }
   }
+  return heldout;
+}
+
+std::vector<bool> heldout_lines(const LinearModel& model, double share) {
+  const auto rows = heldout_rows(model.campaign(), share);
+  std::vector<bool> heldout;
+  for (const auto& observation : model.observations())
+    heldout.push_back(rows[observation.setup][observation.row]);
   return heldout;
 }
 
@@ -65,7 +69,7 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
                        std::span<const NoiseParameters> noise, const Projector& projector,
                        const std::vector<Eigen::MatrixXd>& accepted, std::optional<double>& loglik) {
   const NoiseProblem& problem = model.problem();
-  const std::vector<double> variance = noise_variance(problem, noise);
+  const std::vector<double> variance = noise_variance(problem.data, noise);
   const Eigen::VectorXd solution = projector.solution();
   std::vector<Eigen::Index> fitted, held;
   for (std::size_t i = 0; i < model.size(); ++i) {

@@ -12,6 +12,11 @@ namespace volcal {
 /// Every tenth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
 /// of ten readings instead. Spread evenly, the same for every run.
 std::vector<bool> heldout_lines(const LinearModel& model, double share);
+/// The same choice by setup and row.
+std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share);
+
+/// Variance of every observation on its own, all parts of the noise; SI squared.
+std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise);
 
 /// Figures of the model that `projector` holds, with the accepted columns; `loglik` is the held-out
 /// log-likelihood of the step before, and becomes this one's.

@@ -108,6 +108,18 @@ ProjectedColumns Projector::project(const Eigen::MatrixXd& columns) const {
                   }});
 }
 
+Eigen::MatrixXd Projector::imitation(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(parameters() + 1, columns.cols());
+  for (std::size_t part = 0; part < part_count(); ++part) {
+    const Eigen::MatrixXd whitened = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]),
+                                                           columns.middleRows(parts_[part], part_rows(part)));
+    add_transposed_product(whitened_[part], whitened, products);
+  }
+  Eigen::MatrixXd rotated = scale_.asDiagonal() * products.topRows(parameters());
+  solve_lower(lower_, rotated);
+  return scale_.asDiagonal() * lower_.triangularView<Eigen::Lower>().transpose().solve(rotated).eval();
+}
+
 void Projector::accept(const Eigen::MatrixXd& columns) {
   const Eigen::Index before = parameters();
   for (std::size_t part = 0; part < part_count(); ++part) {

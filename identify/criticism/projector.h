@@ -50,6 +50,8 @@ class Projector {
   ProjectedColumns project(const CandidateColumns& candidates) const;
   /// One group.
   ProjectedColumns project(const Eigen::MatrixXd& columns) const;
+  /// Parameters of the model, accepted columns last, with which it imitates columns best; parameters x k.
+  Eigen::MatrixXd imitation(const Eigen::MatrixXd& columns) const;
   /// Takes columns into the model, without prior.
   void accept(const Eigen::MatrixXd& columns);
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/criticism/left_out.h"
+#include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/toml_writer.h"
 
 namespace volcal {
@@ -28,7 +29,8 @@ Json effect_json(const EffectFinding& effect) {
   Json json = {{"kind", effect.name.kind},
                {"target", effect.name.target},
                {"driver", effect.name.driver},
-               {"shape", effect.name.shape}};
+               {"shape", effect.name.shape},
+               {"label", effect.label}};
   if (!effect.amplitudes.empty()) {
     const auto size = [](const AmplitudeFigure& each) {
       return each.u > 0.0 ? std::abs(each.value) / each.u : 0.0;
@@ -57,11 +59,15 @@ Json effect_json(const EffectFinding& effect) {
   json["log10_p"] = number(effect.log10_p);
   json["visible_fraction"] = number(effect.visible_fraction);
   json["gain"] = number(effect.gain);
+  json["lm"] = number(effect.lm);
+  json["dof"] = effect.dof;
   if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
   if (effect.spec.kind == kLeftOut) {
     json["left_out"] = left_out_symbols(effect.spec);
+    json["spec"] = json_parts::effect(effect.spec);
   } else if (!effect.resolution) {
     json["model_toml"] = effect_toml(effect.spec);
+    json["spec"] = json_parts::effect(effect.spec);
   }
   return json;
 }
@@ -69,6 +75,24 @@ Json effect_json(const EffectFinding& effect) {
 Json list_json(const std::vector<EffectFinding>& effects) {
   Json json = Json::array();
   for (const EffectFinding& effect : effects) json.push_back(effect_json(effect));
+  return json;
+}
+
+Json detectable_json(const std::vector<DetectableEffect>& effects) {
+  Json json = Json::array();
+  for (const DetectableEffect& effect : effects) {
+    json.push_back({{"kind", effect.name.kind},
+                    {"target", effect.name.target},
+                    {"driver", effect.name.driver},
+                    {"shape", effect.name.shape},
+                    {"label", effect.label},
+                    {"shape_value", effect.shape_text},
+                    {"mdb", number(effect.mdb / effect.si_per_unit)},
+                    {"unit", effect.unit},
+                    {"visible", effect.visible},
+                    {"visible_fraction", number(effect.visible_fraction)},
+                    {"volumetric_um", micro(effect.volumetric)}});
+  }
   return json;
 }
 
@@ -166,6 +190,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["ranking"] = list_json(diagnosis.ranking);
   json["families"] = diagnosis.families;
   json["generic_tests"] = diagnosis.generic_tests;
+  json["log10_p_threshold"] = log10_family_risk();
+  json["detectable"] = detectable_json(diagnosis.detectable);
   return json.dump(2) + "\n";
 }
 

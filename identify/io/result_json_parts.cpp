@@ -139,23 +139,6 @@ OptionValue option_from(const Json& json) {
   return number(json);
 }
 
-Json effect_json(const EffectSpec& effect) {
-  Json options = Json::array();
-  for (const auto& [key, value] : effect.options.all()) {
-    options.push_back({{"key", key.first}, {"value", option_json(value)}});
-  }
-  return {{"kind", effect.kind}, {"options", options}};
-}
-
-EffectSpec effect_from(const Json& json) {
-  EffectSpec effect;
-  effect.kind = json.at("kind").get<std::string>();
-  for (const Json& option : json.at("options")) {
-    effect.options.set(option.at("key").get<std::string>(), option_from(option.at("value")));
-  }
-  return effect;
-}
-
 Json block_json(const ParameterBlock& block) {
   Json json = {{"kind", name_in(kParameterKinds, block.kind)},
                {"name", block.name},
@@ -246,6 +229,23 @@ ErrorSymbol error_symbol(const Json& json) {
   return *symbol;
 }
 
+Json effect(const EffectSpec& effect) {
+  Json options = Json::array();
+  for (const auto& [key, value] : effect.options.all()) {
+    options.push_back({{"key", key.first}, {"value", option_json(value)}});
+  }
+  return {{"kind", effect.kind}, {"options", options}};
+}
+
+EffectSpec effect_from(const Json& json) {
+  EffectSpec effect;
+  effect.kind = json.at("kind").get<std::string>();
+  for (const Json& option : json.at("options")) {
+    effect.options.set(option.at("key").get<std::string>(), option_from(option.at("value")));
+  }
+  return effect;
+}
+
 Json machine(const Machine& machine) {
   Json axes = Json::array();
   for (const Axis& axis : machine.axes) axes.push_back(axis_json(axis));
@@ -290,7 +290,7 @@ Json model(const ModelSpec& spec) {
   Json off = Json::array();
   for (const LocationSymbol& symbol : spec.locations_off) off.push_back(symbol.name());
   Json effects = Json::array();
-  for (const EffectSpec& effect : spec.effects) effects.push_back(effect_json(effect));
+  for (const EffectSpec& each : spec.effects) effects.push_back(effect(each));
   return {{"file", spec.file},      {"default_function", function_json(spec.default_function)},
           {"functions", functions}, {"locations", locations},
           {"locations_off", off},   {"effects", effects}};

@@ -24,6 +24,9 @@ Json machine(const Machine& machine);
 Machine machine_from(const Json& json);
 Json model(const ModelSpec& spec);
 ModelSpec model_from(const Json& json);
+/// kind and options of an effect, SI.
+Json effect(const EffectSpec& effect);
+EffectSpec effect_from(const Json& json);
 Json layout(const ParameterLayout& layout);
 /// Bases are made anew from the identified model.
 ParameterLayout layout_from(const Json& json, const Machine& machine, const ModelSpec& spec);

@@ -159,29 +159,41 @@ Json worst_json(const Campaign& campaign, const ComparedModel& model) {
   return worst;
 }
 
-Json model_json(const Campaign& campaign, const ComparedModel& model) {
+Json breakdowns_json(const Comparison& comparison) {
   Json breakdowns = Json::object();
-  for (const Breakdown& breakdown : model.comparison.breakdowns) {
+  for (const Breakdown& breakdown : comparison.breakdowns) {
     Json cells = Json::array();
     for (const ComparisonCell& cell : breakdown.cells) cells.push_back(cell_json(cell));
     breakdowns[breakdown.by] = std::move(cells);
   }
+  return breakdowns;
+}
+
+Json model_json(const Campaign& campaign, const ComparedModel& model) {
   return {{"name", model.name},
           {"where_it_fails", failure_sentence(model)},
           {"total", cell_json(model.comparison.total)},
           {"removed", model.comparison.removed},
           {"cells_tested", model.comparison.cells},
-          {"by", breakdowns},
+          {"by", breakdowns_json(model.comparison)},
           {"worst_readings", worst_json(campaign, model)},
           {"standards", figures_json(model.figures)}};
 }
 
 }  // namespace
 
-std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models) {
+std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models,
+                            std::span<const HeldOutModel> heldout) {
   Json list = Json::array();
   for (const ComparedModel& model : models) list.push_back(model_json(campaign, model));
-  const Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
+  Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
+  if (!heldout.empty()) json["held_out"] = Json::array();
+  for (const HeldOutModel& model : heldout) {
+    json["held_out"].push_back({{"name", model.name},
+                                {"fitted_without_them", model.fitted},
+                                {"total", cell_json(model.comparison.total)},
+                                {"by", breakdowns_json(model.comparison)}});
+  }
   return json.dump(2) + '\n';
 }
 

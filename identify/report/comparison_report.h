@@ -33,11 +33,25 @@ struct ComparisonTextOptions {
 /// "where does the model fail", one to three sentences.
 std::string failure_sentence(const ComparedModel& model);
 
-/// One or two models, side by side; the models are of the same campaign.
+/// A model on lines that its fit has not seen.
+struct HeldOutModel {
+  std::string name;
+  bool fitted = true;  ///< anew, without these lines; false: nothing to fit, or its coefficients as they are
+  Comparison comparison;
+};
+
+/// One model, or two side by side with difference B - A and ratio B / A; the models are of the same campaign.
 std::string comparison_text(const Campaign& campaign, std::span<const ComparedModel> models,
                             const ComparisonTextOptions& options = {});
 
-/// Everything of the text and more as one JSON document, ending in a newline.
-std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models);
+/// Both models on the held-out lines, in the same form; `observations`: of the whole campaign.
+std::string heldout_text(const Campaign& campaign, std::span<const HeldOutModel> models,
+                         std::size_t observations);
+/// What to do for figures of lines that no fit has seen, when two models are shown without them.
+std::string heldout_hint();
+
+/// Everything of the text and more as one JSON document, ending in a newline; "held_out" when there are any.
+std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models,
+                            std::span<const HeldOutModel> heldout = {});
 
 }  // namespace volcal

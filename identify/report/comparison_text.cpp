@@ -18,7 +18,7 @@ constexpr std::size_t kSetupsShown = 40;
 
 const char* const kSuffix[] = {" A", " B"};
 
-std::string observations(std::size_t count) {
+std::string observations_text(std::size_t count) {
   return count_number(static_cast<long long>(count)) + (count == 1 ? " observation" : " observations");
 }
 
@@ -61,10 +61,6 @@ std::string list_of(const std::vector<std::pair<std::string, const ComparisonCel
   return text;
 }
 
-std::string column(const char* name, std::size_t model, std::size_t models, const char* unit = "") {
-  return std::string(name) + (models > 1 ? kSuffix[model] : "") + unit;
-}
-
 std::string size_cell(const ResidualSize& size, double ResidualSize::*figure) {
   return size.count == 0 ? "-" : fixed_number(size.*figure * 1e6, 2);
 }
@@ -73,42 +69,69 @@ std::string mark(const ComparisonCell& cell) {
   return cell.stands_out ? "**" : (cell.significant ? "*" : "");
 }
 
-/// Columns of residual sizes and chi2/dof, one group per model.
+std::string chi2_cell(const ComparisonCell& cell) {
+  return cell.dof > 0.0 ? short_number(cell.reduced_chi2(), 3) : "-";
+}
+
+/// Residual sizes and chi2/dof of one model; of two, side by side with B - A and B / A.
 class CellColumns {
  public:
-  explicit CellColumns(std::span<const ComparedModel> models) : models_(models) {
-    for (const ComparedModel& model : models) {
-      lengths_ = lengths_ || model.comparison.total.lengths.count > 0;
-      angles_ = angles_ || model.comparison.total.angles.count > 0;
+  explicit CellColumns(std::span<const Comparison* const> models) : two_(models.size() > 1) {
+    for (const Comparison* model : models) {
+      lengths_ = lengths_ || model->total.lengths.count > 0;
+      angles_ = angles_ || model->total.angles.count > 0;
     }
   }
 
   void add_headers(std::vector<TextColumn>& columns) const {
-    for (std::size_t m = 0; m < models_.size(); ++m) {
-      if (lengths_) columns.push_back({column("rms", m, models_.size(), " [um]")});
-      if (lengths_) columns.push_back({column("max", m, models_.size(), " [um]")});
-      if (angles_) columns.push_back({column("rms", m, models_.size(), " [urad]")});
-      columns.push_back({column("chi2/dof", m, models_.size())});
+    if (lengths_) add_size_headers(columns, "um");
+    if (lengths_ && !two_) columns.push_back({"max [um]"});
+    if (angles_) add_size_headers(columns, "urad");
+    if (two_) {
+      for (const char* header : {"chi2/dof A", "chi2/dof B"}) columns.push_back({header});
+      for (const char* header : {"A", "B"}) columns.push_back({header, Align::Left});
+    } else {
+      columns.push_back({"chi2/dof"});
       columns.push_back({"", Align::Left});
     }
   }
 
-  void add_cells(const ComparisonCell& cell, std::vector<std::string>& cells) const {
-    if (lengths_) cells.push_back(size_cell(cell.lengths, &ResidualSize::rms));
-    if (lengths_) cells.push_back(size_cell(cell.lengths, &ResidualSize::max));
-    if (angles_) cells.push_back(size_cell(cell.angles, &ResidualSize::rms));
-    cells.push_back(cell.dof > 0.0 ? short_number(cell.reduced_chi2(), 3) : "-");
-    cells.push_back(mark(cell));
+  void add_cells(std::span<const ComparisonCell* const> of_models, std::vector<std::string>& cells) const {
+    if (lengths_) add_sizes(of_models, &ComparisonCell::lengths, cells);
+    if (lengths_ && !two_) cells.push_back(size_cell(of_models[0]->lengths, &ResidualSize::max));
+    if (angles_) add_sizes(of_models, &ComparisonCell::angles, cells);
+    for (const ComparisonCell* cell : of_models) cells.push_back(chi2_cell(*cell));
+    for (const ComparisonCell* cell : of_models) cells.push_back(mark(*cell));
   }
 
  private:
-  std::span<const ComparedModel> models_;
+  void add_size_headers(std::vector<TextColumn>& columns, const char* unit) const {
+    if (!two_) {
+      columns.push_back({fmt::format("rms [{}]", unit)});
+      return;
+    }
+    for (const char* name : {"rms A", "rms B", "B - A"})
+      columns.push_back({fmt::format("{} [{}]", name, unit)});
+    columns.push_back({"B / A"});
+  }
+
+  void add_sizes(std::span<const ComparisonCell* const> of_models, ResidualSize ComparisonCell::*kind,
+                 std::vector<std::string>& cells) const {
+    for (const ComparisonCell* cell : of_models) cells.push_back(size_cell(cell->*kind, &ResidualSize::rms));
+    if (!two_) return;
+    const ResidualSize &a = of_models[0]->*kind, &b = of_models[1]->*kind;
+    const bool both = a.count > 0 && b.count > 0;
+    cells.push_back(both ? fixed_number((b.rms - a.rms) * 1e6, 2) : "-");
+    cells.push_back(both && a.rms > 0.0 ? fixed_number(b.rms / a.rms, 3) : "-");
+  }
+
+  bool two_;
   bool lengths_ = false;
   bool angles_ = false;
 };
 
-const ComparisonCell* same_cell(const ComparedModel& model, const std::string& by, const std::string& label) {
-  const Breakdown* breakdown = model.comparison.find(by);
+const ComparisonCell* same_cell(const Comparison& model, const std::string& by, const std::string& label) {
+  const Breakdown* breakdown = model.find(by);
   if (!breakdown) return nullptr;
   const auto found = std::find_if(breakdown->cells.begin(), breakdown->cells.end(),
                                   [&](const ComparisonCell& cell) { return cell.label == label; });
@@ -127,24 +150,34 @@ std::vector<const ComparisonCell*> shown_cells(const Breakdown& breakdown, std::
   return cells;
 }
 
+using Comparisons = std::vector<const Comparison*>;
+
+template <class Model>
+Comparisons comparisons_of(std::span<const Model> models) {
+  Comparisons all;
+  for (const Model& model : models) all.push_back(&model.comparison);
+  return all;
+}
+
 std::vector<std::string> row_of(const std::string& by, const std::string& label, std::size_t count,
-                                std::span<const ComparedModel> models, const CellColumns& columns) {
-  std::vector<std::string> row = {label, count_number(static_cast<long long>(count))};
-  for (const ComparedModel& model : models) {
-    const ComparisonCell* cell = same_cell(model, by, label);
-    columns.add_cells(cell ? *cell : ComparisonCell{}, row);
+                                const Comparisons& models, const CellColumns& columns) {
+  static const ComparisonCell kNone;
+  std::vector<const ComparisonCell*> cells;
+  for (const Comparison* model : models) {
+    const ComparisonCell* cell = same_cell(*model, by, label);
+    cells.push_back(cell ? cell : &kNone);
   }
+  std::vector<std::string> row = {label, count_number(static_cast<long long>(count))};
+  columns.add_cells(cells, row);
   return row;
 }
 
-std::string setups_text(const Campaign& campaign, std::span<const ComparedModel> models,
-                        const ComparisonTextOptions& options) {
+std::string setups_text(const Campaign& campaign, const Comparisons& models, bool all, std::string title) {
   const CellColumns cell_columns(models);
-  const Breakdown& setups = *models.back().comparison.find("setup");
+  const Breakdown& setups = *models.back()->find("setup");
   std::vector<TextColumn> columns = {{"setup", Align::Left}, {"instrument", Align::Left}, {"n"}};
   cell_columns.add_headers(columns);
-  const auto shown = shown_cells(setups, options.all_cells ? setups.cells.size() : kSetupsShown);
-  std::string title = "Residuals by setup";
+  const auto shown = shown_cells(setups, all ? setups.cells.size() : kSetupsShown);
   if (shown.size() < setups.cells.size()) {
     title += fmt::format(", worst {} of {}", shown.size(), setups.cells.size());
   }
@@ -156,14 +189,16 @@ std::string setups_text(const Campaign& campaign, std::span<const ComparedModel>
     row.insert(row.begin() + 1, setup->instrument);
     table.add_row(std::move(row));
   }
-  std::vector<std::string> total = {
-      "all", "", count_number(static_cast<long long>(models.back().comparison.total.observations))};
-  for (const ComparedModel& model : models) cell_columns.add_cells(model.comparison.total, total);
+  std::vector<std::string> total = {"all", "",
+                                    count_number(static_cast<long long>(models.back()->total.observations))};
+  std::vector<const ComparisonCell*> totals;
+  for (const Comparison* model : models) totals.push_back(&model->total);
+  cell_columns.add_cells(totals, total);
   table.add_row(std::move(total));
   return table.text();
 }
 
-std::string places_text(std::span<const ComparedModel> models, const ComparisonTextOptions& options) {
+std::string places_text(const Comparisons& models, const ComparisonTextOptions& options) {
   const CellColumns cell_columns(models);
   std::vector<TextColumn> columns = {{"by", Align::Left}, {"where", Align::Left}, {"n"}};
   cell_columns.add_headers(columns);
@@ -171,7 +206,7 @@ std::string places_text(std::span<const ComparedModel> models, const ComparisonT
                   options.all_cells
                       ? std::string("Residuals by place, direction and time")
                       : fmt::format("Residuals by place, direction and time, worst {} of each", kCellsShown));
-  for (const Breakdown& breakdown : models.back().comparison.breakdowns) {
+  for (const Breakdown& breakdown : models.back()->breakdowns) {
     if (breakdown.by == "setup") continue;
     std::string by = fmt::format("{} ({})", breakdown.by, breakdown.cells.size());
     for (const ComparisonCell* cell :
@@ -184,29 +219,72 @@ std::string places_text(std::span<const ComparedModel> models, const ComparisonT
   return table.text();
 }
 
-std::string worst_text(const Campaign& campaign, const ComparedModel& model, std::size_t count, bool named) {
-  TextTable table({{"setup", Align::Left},
-                   {"line"},
-                   {"channel", Align::Left},
-                   {"residual"},
-                   {"sigma"},
-                   {"unit", Align::Left},
-                   {"residual/sigma"},
-                   {"", Align::Left}},
-                  "Worst readings" + (named ? " of " + model.name : std::string()));
+/// Indices of the worst readings; of two models taken in turn from both, worst first.
+std::vector<std::size_t> worst_of(std::span<const ComparedModel> models, std::size_t count) {
+  std::vector<std::size_t> worst;
+  for (std::size_t place = 0; worst.size() < count; ++place) {
+    bool any = false;
+    for (const ComparedModel& model : models) {
+      if (place >= model.comparison.worst.size()) continue;
+      any = true;
+      const std::size_t i = model.comparison.worst[place];
+      if (worst.size() < count && std::find(worst.begin(), worst.end(), i) == worst.end()) worst.push_back(i);
+    }
+    if (!any) break;
+  }
+  return worst;
+}
+
+std::string remark_of(const ComparedModel& model, std::size_t i) {
   const bool fits = !model.comparison.total.significant;  // else a large residual is the model's
-  for (const std::size_t i : model.comparison.worst) {
-    if (count-- == 0) break;
-    const ResidualRecord& record = model.records[i];
+  return model.records[i].removed ? "left out" : (fits && model.records[i].flagged ? "outlier?" : "");
+}
+
+std::string worst_text(const Campaign& campaign, std::span<const ComparedModel> models, std::size_t count) {
+  const bool two = models.size() > 1;
+  std::vector<TextColumn> columns = {{"setup", Align::Left}, {"line"}, {"channel", Align::Left}};
+  for (std::size_t m = 0; m < models.size(); ++m)
+    columns.push_back({std::string("residual") + (two ? kSuffix[m] : "")});
+  if (two) columns.push_back({"B - A"});
+  columns.insert(columns.end(), {{"sigma"}, {"unit", Align::Left}});
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    columns.push_back({std::string("residual/sigma") + (two ? kSuffix[m] : "")});
+  }
+  for (std::size_t m = 0; m < models.size(); ++m)
+    columns.push_back({two ? std::string(1, "AB"[m]) : "", Align::Left});
+  TextTable table(columns, two ? "Worst readings of A and of B" : "Worst readings");
+  for (const std::size_t i : worst_of(models, count)) {
+    const ResidualRecord& record = models[0].records[i];
     const Setup& setup = campaign.setups[record.setup];
     const auto channel = static_cast<std::size_t>(record.channel);
-    table.add_row({setup.name, std::to_string(record.source_line), channel_column(setup, channel),
-                   fixed_number(record.residual() * 1e6, 2), fixed_number(record.sigma * 1e6, 2),
-                   is_angle_channel(setup, channel) ? "urad" : "um",
-                   fixed_number(record.residual() / record.sigma, 1),
-                   record.removed ? "left out" : (fits && record.flagged ? "outlier?" : "")});
+    std::vector<std::string> row = {setup.name, std::to_string(record.source_line),
+                                    channel_column(setup, channel)};
+    for (const ComparedModel& model : models)
+      row.push_back(fixed_number(model.records[i].residual() * 1e6, 2));
+    if (two) row.push_back(fixed_number((models[1].records[i].residual() - record.residual()) * 1e6, 2));
+    row.push_back(fixed_number(record.sigma * 1e6, 2));
+    row.emplace_back(is_angle_channel(setup, channel) ? "urad" : "um");
+    for (const ComparedModel& model : models) {
+      row.push_back(fixed_number(model.records[i].residual() / model.records[i].sigma, 1));
+    }
+    for (const ComparedModel& model : models) row.push_back(remark_of(model, i));
+    table.add_row(std::move(row));
   }
   return table.text();
+}
+
+/// "B against A: RMS 1.92 -> 1.31 um (0.68 times)".
+std::string against_sentence(const Comparison& a, const Comparison& b, const std::string& where) {
+  std::string text;
+  const auto add = [&](const ResidualSize& of_a, const ResidualSize& of_b, const char* unit) {
+    if (of_a.count == 0 || of_b.count == 0) return;
+    text += fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", fixed_number(of_a.rms * 1e6, 2),
+                        fixed_number(of_b.rms * 1e6, 2), unit);
+    if (of_a.rms > 0.0) text += fmt::format(" ({} times)", fixed_number(of_b.rms / of_a.rms, 3));
+  };
+  add(a.total.lengths, b.total.lengths, "um");
+  add(a.total.angles, b.total.angles, "urad");
+  return text.empty() ? "" : "B against A, " + where + ": " + text + ".\n";
 }
 
 }  // namespace
@@ -223,7 +301,7 @@ std::string failure_sentence(const ComparedModel& model) {
   const Comparison& comparison = model.comparison;
   const ComparisonCell& total = comparison.total;
   const std::string overall = fmt::format("chi2/dof {} over {}", short_number(total.reduced_chi2(), 3),
-                                          observations(total.observations));
+                                          observations_text(total.observations));
   const auto significant = worst_places(comparison, &ComparisonCell::significant, 0.0);
   if (!total.significant && significant.empty()) {
     return fmt::format(
@@ -254,11 +332,13 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
     text += (two ? std::string(kSuffix[m]).substr(1) + " = " : "") + failure_sentence(models[m]) + '\n';
     if (models[m].comparison.removed > 0) {
       text += fmt::format("{} that the adjustment left out are not counted.\n",
-                          observations(models[m].comparison.removed));
+                          observations_text(models[m].comparison.removed));
     }
   }
-  text += '\n' + setups_text(campaign, models, options);
-  const std::string places = places_text(models, options);
+  const Comparisons comparisons = comparisons_of(models);
+  if (two) text += against_sentence(*comparisons[0], *comparisons[1], "all readings");
+  text += '\n' + setups_text(campaign, comparisons, options.all_cells, "Residuals by setup");
+  const std::string places = places_text(comparisons, options);
   if (!places.empty()) text += '\n' + places;
   text +=
       "  * worse than chance, ** also worse than the rest (chi2 tests, 5 % over all cells)\n"
@@ -272,11 +352,30 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
   }
   const std::string standards = standard_figures_text(figures);
   if (!standards.empty()) text += '\n' + standards;
-  for (const ComparedModel& model : models) {
-    const std::string worst = worst_text(campaign, model, options.worst, two);
-    if (!worst.empty()) text += '\n' + worst;
+  const std::string worst = worst_text(campaign, models, options.worst);
+  return worst.empty() ? text : text + '\n' + worst;
+}
+
+std::string heldout_text(const Campaign& campaign, std::span<const HeldOutModel> models,
+                         std::size_t observations) {
+  const Comparisons comparisons = comparisons_of(models);
+  std::string text = fmt::format("Lines that no fit has seen: every fifth, {} of {}.\n",
+                                 count_number(static_cast<long long>(comparisons[0]->total.observations)),
+                                 observations_text(observations));
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    text +=
+        fmt::format("{}{}: {}.\n", models.size() > 1 ? std::string(1, "AB"[m]) + " = " : "", models[m].name,
+                    models[m].fitted ? "fitted anew without them, then its errors held" : "nothing to fit");
   }
-  return text;
+  if (models.size() > 1) text += against_sentence(*comparisons[0], *comparisons[1], "held-out lines");
+  return text + '\n' + setups_text(campaign, comparisons, false, "Residuals of held-out lines by setup");
+}
+
+std::string heldout_hint() {
+  return "These readings may be the ones that the models were fitted to, and more parameters always fit them "
+         "better:\na result does not say which it left out. --held-out fits both anew without every fifth "
+         "line "
+         "and judges\nthem on those lines.\n";
 }
 
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
 
 namespace volcal {
@@ -70,9 +71,16 @@ std::string confounding_table(const Confounding& confounding) {
   return "\n" + table.text();
 }
 
-std::string evidence_table(const std::vector<EffectFinding>& findings, const std::string& title,
+std::string rank_of(const EffectFinding& finding, const std::vector<EffectFinding>& ranked) {
+  const auto found = std::ranges::find(ranked, finding.name, &EffectFinding::name);
+  return found == ranked.end() ? "-" : std::to_string(found - ranked.begin() + 1);
+}
+
+std::string evidence_table(const std::vector<EffectFinding>& findings,
+                           const std::vector<EffectFinding>& ranked, const std::string& title,
                            std::size_t most) {
-  TextTable table({{"effect", Align::Left},
+  TextTable table({{"rank"},
+                   {"effect", Align::Left},
                    {"kind", Align::Left},
                    {"amplitude"},
                    {"+- U95"},
@@ -85,17 +93,19 @@ std::string evidence_table(const std::vector<EffectFinding>& findings, const std
                   title);
   for (std::size_t i = 0; i < std::min(most, findings.size()); ++i) {
     const EffectFinding& finding = findings[i];
+    const std::string rank = rank_of(finding, ranked);
     const std::string visible = fixed_number(100.0 * finding.visible_fraction, 1);
     const std::string p = fixed_number(finding.log10_p, 1);
     if (finding.amplitudes.empty() || finding.amplitudes.size() > kMostAmplitudes) {
-      table.add_row({finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
+      table.add_row({rank, finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
       continue;
     }
     for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
       const AmplitudeFigure& each = finding.amplitudes[k];
-      table.add_row({each.label, k == 0 ? finding.name.kind : "", edge(each.value, each.si_per_unit),
-                     edge(1.96 * each.u, each.si_per_unit, 2), each.unit, edge(each.mdb, each.si_per_unit, 2),
-                     mib_text(each), each.mib_rival, k == 0 ? visible : "", k == 0 ? p : ""});
+      table.add_row({k == 0 ? rank : "", each.label, k == 0 ? finding.name.kind : "",
+                     edge(each.value, each.si_per_unit), edge(1.96 * each.u, each.si_per_unit, 2), each.unit,
+                     edge(each.mdb, each.si_per_unit, 2), mib_text(each), each.mib_rival,
+                     k == 0 ? visible : "", k == 0 ? p : ""});
     }
   }
   return table.text();
@@ -132,22 +142,59 @@ std::string unknown_table(const Diagnosis& diagnosis) {
   return table.text();
 }
 
+/// By kind; diagnosis.json and report.html have every effect.
+std::string detectable_table(const Diagnosis& diagnosis) {
+  TextTable table({{"kind", Align::Left},
+                   {"effects"},
+                   {"not visible"},
+                   {"smallest MDB"},
+                   {"largest MDB"},
+                   {"unit", Align::Left},
+                   {"in the volume [um]"},
+                   {"found first", Align::Left}},
+                  "Below the detection limit: smallest detectable amplitudes (MDB), found with 80 % power");
+  for (const report::DetectableGroup& group : report::detectable_groups(diagnosis.detectable)) {
+    const bool any = group.easiest != nullptr;
+    table.add_row({group.kind, std::to_string(group.effects), std::to_string(group.not_visible),
+                   any ? edge(group.easiest->mdb, group.si_per_unit, 2) : "-",
+                   any ? edge(group.hardest->mdb, group.si_per_unit, 2) : "-", group.unit,
+                   any ? edge(group.easiest->volumetric, kMicro, 2) : "-", any ? group.easiest->label : "-"});
+  }
+  return table.text();
+}
+
 }  // namespace
 
+std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
+  std::vector<EffectFinding> all;
+  for (const auto* list : {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking}) {
+    for (const EffectFinding& effect : *list) {
+      const bool known = std::ranges::find(all, effect.name, &EffectFinding::name) != all.end();
+      if (!known && !effect.resolution) all.push_back(effect);
+    }
+  }
+  return all;
+}
+
 std::string diagnosis_text(const Diagnosis& diagnosis) {
+  const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
   std::string text = to_string(diagnosis.verdict) + "\n";
   for (const std::string& words : diagnosis.words) text += words + "\n";
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
-    text += "\n" + evidence_table(diagnosis.effects, "Added", diagnosis.effects.size());
+    text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
   if (!diagnosis.one_of.empty())
-    text += "\n" + evidence_table(diagnosis.one_of, "Not told apart", diagnosis.one_of.size());
+    text += "\n" + evidence_table(diagnosis.one_of, ranked, "Not told apart", diagnosis.one_of.size());
   if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
-  text += "\n" + evidence_table(diagnosis.ranking, "Ranked evidence at the model reached", kRanked);
+  text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
   text += confounding_table(diagnosis.confounding);
   if (!diagnosis.next_measurement.empty()) {
     text += "\nWhich measurement next\n";
     for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
+  }
+  if (!diagnosis.detectable.empty()) {
+    text += "\n" + detectable_table(diagnosis) +
+            "  in the volume: root mean square displacement of the functional point by the one found first\n";
   }
   text += "\n" + noise_text(diagnosis);
   text += fmt::format(

@@ -36,10 +36,15 @@ double position_factor(AxisName axis) {
 std::string axis_letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 
 std::string shown_unit(const std::string& edge_unit) {
-  if (edge_unit == "um") return "µm";
-  if (edge_unit == "urad") return "µrad";
-  if (edge_unit == "um/m/K") return "µm/(m K)";
-  return edge_unit;
+  std::string shown = edge_unit;
+  if (shown.starts_with("um") || shown.starts_with("urad")) shown.replace(0, 1, "µ");
+  const std::size_t first = shown.find('/');
+  const std::size_t second = first == std::string::npos ? first : shown.find('/', first + 1);
+  if (second != std::string::npos) {
+    shown = shown.substr(0, first + 1) + "(" + shown.substr(first + 1, second - first - 1) + " " +
+            shown.substr(second + 1) + ")";
+  }
+  return shown;
 }
 
 const Observability* find_observability(const FitResult& result, const std::string& symbol) {

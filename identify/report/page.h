@@ -1,6 +1,6 @@
 #pragma once
-/// Sections of the report. A new section is one file in pages/ with a builder, one line in pages.cpp, and a
-/// renderer of the same kind with one line in web/src/pages.js.
+/// Sections of the reports, of a result and of a diagnosis. A new section is one file in pages/ with a
+/// builder, one line in pages.cpp, and a renderer of the same kind with one line in web/src/pages.js.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/volume_error.h"
 
@@ -25,12 +26,14 @@ struct PageInput {
   PageInput(const FitResult& fit, const Campaign& readings, const ReportOptions& report_options);
 };
 
-struct Page {
+template <class Input>
+struct PageOf {
   std::string_view kind;   ///< name of the renderer
   std::string_view title;  ///< heading and entry of the section list
-  Json (*build)(const PageInput& input);
+  Json (*build)(const Input& input);
 };
 
+using Page = PageOf<PageInput>;
 std::span<const Page> pages();
 
 Json summary_page(const PageInput& input);
@@ -44,5 +47,24 @@ Json observability_page(const PageInput& input);
 Json resolution_page(const PageInput& input);
 Json nuisance_page(const PageInput& input);
 Json computation_page(const PageInput& input);
+
+/// What a section of a diagnosis' report is made from.
+struct DiagnosisInput {
+  const Diagnosis& diagnosis;
+  const Campaign& campaign;
+};
+
+using DiagnosisPage = PageOf<DiagnosisInput>;
+std::span<const DiagnosisPage> diagnosis_pages();
+
+Json story_page(const DiagnosisInput& input);
+Json evidence_page(const DiagnosisInput& input);
+Json added_variable_page(const DiagnosisInput& input);
+Json residual_variables_page(const DiagnosisInput& input);
+Json residual_vectors_page(const DiagnosisInput& input);
+Json generic_map_page(const DiagnosisInput& input);
+Json autocorrelation_page(const DiagnosisInput& input);
+Json detectable_page(const DiagnosisInput& input);
+Json noise_model_page(const DiagnosisInput& input);
 
 }  // namespace volcal::report

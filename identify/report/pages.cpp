@@ -19,8 +19,21 @@ constexpr std::array kPages = {
     Page{"computation", "Computation and symbols", computation_page},
 };
 
+constexpr std::array kDiagnosisPages = {
+    DiagnosisPage{"story", "What was missing", story_page},
+    DiagnosisPage{"evidence", "Ranked evidence", evidence_page},
+    DiagnosisPage{"added_variable", "The leading effect", added_variable_page},
+    DiagnosisPage{"residual_variables", "Residuals against what was recorded", residual_variables_page},
+    DiagnosisPage{"residual_vectors", "Residuals in the work volume", residual_vectors_page},
+    DiagnosisPage{"generic_map", "Scan without a catalogue", generic_map_page},
+    DiagnosisPage{"autocorrelation", "Memory of the residuals", autocorrelation_page},
+    DiagnosisPage{"detectable", "Smallest detectable effects", detectable_page},
+    DiagnosisPage{"noise_model", "Noise model", noise_model_page},
+};
+
 }  // namespace
 
 std::span<const Page> pages() { return kPages; }
+std::span<const DiagnosisPage> diagnosis_pages() { return kDiagnosisPages; }
 
 }  // namespace volcal::report

@@ -56,6 +56,26 @@ std::string fill(std::string_view page, std::string_view slot, const std::string
   return filled;
 }
 
+template <class Input>
+std::string document(const std::string& title, std::string_view subtitle, const ReportOptions& options,
+                     std::span<const report::PageOf<Input>> pages, const Input& input) {
+  report::Json document;
+  document["format"] = "volcal-report-1";
+  document["title"] = title;
+  document["subtitle"] = subtitle;
+  document["date"] = options.date;
+  document["pages"] = report::Json::array();
+  for (const report::PageOf<Input>& page : pages) {
+    document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
+  }
+  return document.dump(-1, ' ', false, report::Json::error_handler_t::replace);
+}
+
+std::string filled_page(const std::string& title, const std::string& json) {
+  if (!report_available()) throw std::runtime_error(std::string(how_to_get_report()));
+  return fill(fill(report::page_template(), kTitleSlot, html_text(title)), kDataSlot, without_markup(json));
+}
+
 }  // namespace
 
 namespace report {
@@ -72,23 +92,22 @@ std::string_view how_to_get_report() {
 }
 
 std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
-  const report::PageInput input(result, campaign, options);
-  report::Json document;
-  document["format"] = "volcal-report-1";
-  document["title"] = result.machine.name;
-  document["date"] = options.date;
-  document["pages"] = report::Json::array();
-  for (const report::Page& page : report::pages()) {
-    document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
-  }
-  return document.dump(-1, ' ', false, report::Json::error_handler_t::replace);
+  return document(result.machine.name, "Geometric errors identified from measurements", options,
+                  report::pages(), report::PageInput(result, campaign, options));
+}
+
+std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {
+  return document(campaign.machine.name, "Where the model fails, and which effect is missing", options,
+                  report::diagnosis_pages(), report::DiagnosisInput{diagnosis, campaign});
 }
 
 std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
-  if (!report_available()) throw std::runtime_error(std::string(how_to_get_report()));
-  const std::string titled =
-      fill(report::page_template(), kTitleSlot, html_text(result.machine.name + " \u2013 volcal report"));
-  return fill(titled, kDataSlot, without_markup(report_json(result, campaign, options)));
+  return filled_page(result.machine.name + " \u2013 volcal report", report_json(result, campaign, options));
+}
+
+std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {
+  return filled_page(campaign.machine.name + " \u2013 volcal diagnosis",
+                     report_json(diagnosis, campaign, options));
 }
 
 void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,

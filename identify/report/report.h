@@ -1,5 +1,6 @@
 #pragma once
-/// The report of a result: one self-contained HTML page with interactive plots, readable without a network.
+/// The reports of a result and of a diagnosis: each one self-contained HTML page with interactive plots,
+/// readable without a network.
 ///
 /// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
@@ -9,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/description/campaign.h"
 
@@ -28,6 +30,11 @@ std::string_view how_to_get_report();
 std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
 /// The whole page. Throws std::runtime_error with how_to_get_report() when it is not available.
 std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
+/// The same for a diagnosis that diagnose() made of the campaign (not one read back: files hold no figures).
+std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign,
+                        const ReportOptions& options = {});
+std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign,
+                        const ReportOptions& options = {});
 /// Writes report_html() to a file. Throws std::runtime_error also when the file cannot be written.
 void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,
                   const ReportOptions& options = {});

@@ -2,22 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
+
+#include "volcal/identify/stats/even_sample.h"
 
 namespace volcal::report {
 namespace {
 
 constexpr std::size_t kWorst = 300;  ///< largest |w| that are always shown
-
-/// Scrambles an index (Steele, Lea and Flood 2014, SplitMix64): an even choice that does not beat with the
-/// regular positions of a measuring line, as every n-th reading would.
-std::uint64_t scrambled(std::uint64_t index) {
-  std::uint64_t z = index + 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return z ^ (z >> 31);
-}
 
 }  // namespace
 

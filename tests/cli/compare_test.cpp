@@ -69,6 +69,20 @@ TEST(Compare, WritesEveryResidual) {
   EXPECT_TRUE(nlohmann::json::accept(content(target / "comparison.json")));
 }
 
+TEST(Compare, HeldOutLinesAreJudgedApart) {
+  const testing::ProgramRun outcome = compare(kExample + "campaign.toml nominal nominal --held-out --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto json = nlohmann::json::parse(outcome.output);
+  ASSERT_EQ(json.at("held_out").size(), 2U);
+  EXPECT_FALSE(json.at("held_out").at(0).at("fitted_without_them").get<bool>());
+  const double share = json.at("held_out").at(0).at("total").at("observations").get<double>() / 4712.0;
+  EXPECT_NEAR(share, 0.2, 0.06);
+  const testing::ProgramRun text = compare(kExample + "campaign.toml nominal nominal --held-out");
+  EXPECT_THAT(text.output, HasSubstr("Lines that no fit has seen: every fifth"));
+  EXPECT_THAT(text.output, HasSubstr("B against A, held-out lines: RMS "));
+  EXPECT_THAT(text.output, HasSubstr("(1.000 times)"));
+}
+
 TEST(Compare, BadArgumentsAreExitCodeTwo) {
   const testing::ProgramRun missing = compare(kExample + "campaign.toml no-such-model.toml");
   EXPECT_EQ(missing.exit_code, 2);

@@ -4,11 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/hand_made_diagnosis.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
+#include "volcal/identify/io/diagnosis_json.h"
 
 namespace volcal {
 namespace {
@@ -97,6 +100,92 @@ TEST_F(ExtendProgram, SaysWhatANameCouldMean) {
   EXPECT_EQ(by_hand.exit_code, 2);
   EXPECT_THAT(by_hand.errors, HasSubstr("written into the model file"));
   EXPECT_FALSE(fs::exists(output_));
+}
+
+/// A folder with the diagnosis.json of hand_made_diagnosis.h.
+class FromADiagnosis : public ::testing::Test {
+ protected:
+  FromADiagnosis() {
+    write(testing::hand_made_diagnosis());
+    fs::copy_file(kData + "/small/machine.toml", scratch_.path() / "machine.toml");
+    std::ofstream(model_) << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n";
+  }
+
+  void write(const Diagnosis& diagnosis) {
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "diagnosis.json") << diagnosis_json(diagnosis);
+  }
+  auto extend(const std::string& arguments, const std::string& model = {}) {
+    return run_program("extend " + (model.empty() ? model_ : model) + " --diagnosis " + folder_.string() +
+                       " " + arguments + " -o " + output_);
+  }
+
+  testing::ScratchFolder scratch_;
+  fs::path folder_ = scratch_.path() / "diagnosis";
+  std::string model_ = (scratch_.path() / "model.toml").string();
+  std::string output_ = (scratch_.path() / "model-1.toml").string();
+};
+
+TEST_F(FromADiagnosis, TheLadderIsShownAgain) {
+  const auto shown = run_program("diagnose --show " + folder_.string());
+  EXPECT_EQ(shown.exit_code, 0) << shown.errors;
+  for (const char* part : {"NAMED_MORE_REMAINS", "The ladder", "reversal EXX", "1.25 .. 1.75",
+                           "Below the detection limit", "Measure next: visit station P1"}) {
+    EXPECT_THAT(shown.output, HasSubstr(part));
+  }
+  const auto as_json = run_program("diagnose --json --show " + (folder_ / "diagnosis.json").string());
+  EXPECT_EQ(nlohmann::json::parse(as_json.output).at("ladder").size(), 2U);
+  EXPECT_EQ(run_program("diagnose " + kData + "/small/campaign.toml --show " + folder_.string()).exit_code,
+            2);
+  const auto nowhere = run_program("diagnose --show " + scratch_.path().string());
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.errors, HasSubstr("holds no diagnosis.json"));
+}
+
+TEST_F(FromADiagnosis, RankOneIsWhatItAddedAndRankTwoItsRival) {
+  const auto first = extend("--rank 1");
+  EXPECT_EQ(first.exit_code, 0) << first.errors;
+  EXPECT_THAT(first.output, HasSubstr("added: reversal EXX"));
+  EXPECT_THAT(content(output_), HasSubstr("symbol = \"EXX\""));
+  EXPECT_THAT(content(output_), HasSubstr("amplitude_um = 4"));
+  EXPECT_EQ(extend("--rank 2").exit_code, 0);
+  EXPECT_THAT(content(output_), HasSubstr("symbol = \"EYY\""));
+  EXPECT_EQ(extend("--rank 3").exit_code, 0) << "more of an error function is no effect and has no rank";
+  EXPECT_THAT(content(output_), HasSubstr("symbol = \"EZZ\""));
+  EXPECT_EQ(extend("--accepted").exit_code, 0);
+  EXPECT_THAT(content(output_), HasSubstr("symbol = \"EXX\""));
+}
+
+TEST_F(FromADiagnosis, TheModelGetsTheNextNumberByDefault) {
+  const std::string from = " --diagnosis " + folder_.string();
+  EXPECT_THAT(run_program("extend " + model_ + from + " --rank 1").output,
+              HasSubstr("model-1.toml (1 effect)"));
+  EXPECT_THAT(run_program("extend " + output_ + from + " --rank 2").output,
+              HasSubstr("model-2.toml (2 effects)"));
+}
+
+TEST_F(FromADiagnosis, EveryFailureSaysWhatToDo) {
+  const auto expect = [](const testing::ProgramRun& run, const std::string& part) {
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.errors, HasSubstr(part));
+  };
+  expect(extend("--rank 4"), "ranks 3 effects");
+  expect(extend(""), "--rank 1");
+  expect(extend("--rank 1 --accepted"), "leave one of the two out");
+  expect(run_program("extend " + model_ + " --rank 1 -o " + output_), "need a diagnosis");
+  expect(run_program("extend " + model_ + " -o " + output_), "nothing to add is given");
+  EXPECT_FALSE(fs::exists(output_));
+  ASSERT_EQ(extend("--rank 1").exit_code, 0);
+  expect(extend("--rank 1", output_), "has reversal EXX already");
+  Diagnosis nothing = testing::hand_made_diagnosis();
+  nothing.effects.clear();
+  nothing.verdict = Verdict::NothingAbove;
+  write(nothing);
+  expect(extend("--accepted"), "its verdict is NOTHING_ABOVE");
+  nothing.one_of.clear();
+  nothing.ranking.clear();
+  write(nothing);
+  expect(extend("--rank 1"), "ranks no effect");
 }
 
 }  // namespace

@@ -119,10 +119,43 @@ TEST(ComparisonText, TwoModelsStandSideBySide) {
   const std::string text = comparison_text(campaign, models);
   EXPECT_THAT(text, StartsWith("A = nominal machine: does not explain"));
   EXPECT_THAT(text, HasSubstr("\nB = result: no failure found"));
-  EXPECT_THAT(text, HasSubstr("rms A [um]"));
+  EXPECT_THAT(text, HasSubstr("rms A [um]  rms B [um]  B - A [um]  B / A"));
+  EXPECT_THAT(text, HasSubstr("B against A, all readings: RMS 4.53 -> 0.99 um (0.219 times)"));
   EXPECT_THAT(text, HasSubstr("chi2/dof B"));
   EXPECT_THAT(text, HasSubstr("model A"));
-  EXPECT_THAT(text, HasSubstr("Worst readings of nominal machine"));
+  EXPECT_THAT(text, HasSubstr("Worst readings of A and of B"));
+  EXPECT_THAT(text, HasSubstr("residual A  residual B  B - A  sigma"));
+}
+
+/// RMS of A over all 406 readings: sqrt((320 + 8,000) / 406) = 4.527 um, of B sqrt(400 / 406) = 0.993 um; of
+/// S1 sqrt(8,320 / 400) = 4.561 and 1.
+TEST(ComparisonText, DifferenceAndRatioStandBesideTheTwo) {
+  const Campaign campaign = campaign_of_two_setups();
+  const std::vector<ComparedModel> models = {
+      compared_model("nominal machine", campaign, records_of(campaign, 10.0)),
+      compared_model("result", campaign, records_of(campaign, 1.0))};
+  const std::string text = comparison_text(campaign, models);
+  EXPECT_THAT(text, testing::ContainsRegex("S1 +laser-tracer +400 +4.56 +1.00 +-3.56 +0.219"));
+  EXPECT_THAT(text, testing::ContainsRegex("all +406 +4.53 +0.99 +-3.53 +0.219"));
+}
+
+TEST(HeldOut, HasTheSameColumnsAndItsOwnEntryInTheJson) {
+  const Campaign campaign = campaign_of_two_setups();
+  const std::vector<ComparedModel> models = {
+      compared_model("nominal machine", campaign, records_of(campaign, 10.0)),
+      compared_model("result", campaign, records_of(campaign, 1.0))};
+  std::vector<HeldOutModel> heldout = {{"nominal", false, models[0].comparison},
+                                       {"result", true, models[1].comparison}};
+  const std::string text = heldout_text(campaign, heldout, 2030);
+  EXPECT_THAT(text, HasSubstr("every fifth, 406 of 2,030 observations"));
+  EXPECT_THAT(text, HasSubstr("A = nominal: nothing to fit"));
+  EXPECT_THAT(text, HasSubstr("B against A, held-out lines: RMS 4.53 -> 0.99 um"));
+  const auto with = nlohmann::json::parse(comparison_json(campaign, models, heldout));
+  const auto without = nlohmann::json::parse(comparison_json(campaign, models));
+  EXPECT_EQ(with.at("models"), without.at("models"));
+  EXPECT_FALSE(without.contains("held_out"));
+  EXPECT_TRUE(with.at("held_out").at(1).at("fitted_without_them").get<bool>());
+  EXPECT_EQ(with.at("held_out").at(0).at("total").at("observations"), 406);
 }
 
 TEST(ComparisonJson, HoldsTheSameFiguresAndNullForUndefinedOnes) {

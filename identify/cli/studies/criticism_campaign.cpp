@@ -167,6 +167,7 @@ class CampaignRun {
     const FitResult given = fitted(simulated.campaign, {});
     DiagnoseOptions options;
     options.compare = false;
+    options.figures = false;
     options.threads = 1;
     options.climb = true;
     options.leave_out = plan_.leave_out;
@@ -305,8 +306,9 @@ class CampaignRun {
       const AmplitudeFigure& figure = finding.amplitudes[k];
       const double truth =
           nearest.amplitude.size() > 0 ? nearest.amplitude[static_cast<Eigen::Index>(k)] : 0.0;
+      const double mdb = std::isfinite(figure.mdb) ? figure.mdb : 0.0;  // 0: never found
       answer.amplitudes.push_back({figure.value / figure.si_per_unit, figure.u / figure.si_per_unit,
-                                   figure.mdb / figure.si_per_unit, truth / figure.si_per_unit});
+                                   mdb / figure.si_per_unit, truth / figure.si_per_unit});
     }
     return answer;
   }

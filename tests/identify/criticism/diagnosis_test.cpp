@@ -48,6 +48,49 @@ Diagnosed diagnosed(const sim::Study& study) {
   return out;
 }
 
+/// A reversal of Y by b moves the functional point by b/2 at every position.
+void expect_figures_of_reversal(const Diagnosed& found) {
+  const AmplitudeFigure& amplitude = found.diagnosis.effects[0].amplitudes[0];
+  const DiagnosisFigures& figures = found.diagnosis.figures;
+  EXPECT_TRUE(figures.leading.accepted);
+  EXPECT_EQ(figures.leading.label, "reversal EYY");
+  EXPECT_NEAR(figures.leading.slope, amplitude.value, 0.02 * amplitude.u);
+  EXPECT_NEAR(figures.leading.u, amplitude.u, 0.01 * amplitude.u);
+  EXPECT_LE(figures.observations.size(), 2500U);
+  EXPECT_EQ(figures.observation_count, found.simulated.campaign.reading_count());
+  const auto variable = std::ranges::find(figures.variables, "dir_y", &VariableFigure::name);
+  ASSERT_NE(variable, figures.variables.end());
+  ASSERT_EQ(variable->given[0].count.size(), 2U);
+  EXPECT_EQ(variable->given[0].count[0] + variable->given[0].count[1], figures.observation_count);
+  EXPECT_EQ(variable->given[0].count, variable->reached[0].count);
+  const BinnedMean &given = variable->given[3], &reached = variable->reached[3];  // along Y
+  ASSERT_EQ(given.mean.size(), 2U);
+  EXPECT_NEAR(given.mean[1] - given.mean[0], amplitude.value, 0.15 * std::abs(amplitude.value));
+  EXPECT_LT(std::abs(reached.mean[1] - reached.mean[0]), 0.2 * std::abs(amplitude.value));
+  const auto& names = figures.generic.variables;
+  const auto y = std::ranges::find(names, "dir_y") - names.begin();
+  EXPECT_LT(figures.generic.given[1](y, y), log10_generic_risk());
+  EXPECT_GT(figures.generic.reached[1](y, y), log10_generic_risk());
+  const auto detectable =
+      std::ranges::find(found.diagnosis.detectable, found.diagnosis.effects[0].name, &DetectableEffect::name);
+  ASSERT_NE(detectable, found.diagnosis.detectable.end());
+  EXPECT_NEAR(detectable->volumetric, 0.5 * detectable->mdb, 1e-3 * detectable->mdb);
+}
+
+void expect_all_detectable(const Diagnosis& diagnosis) {
+  std::size_t invisible = 0;
+  for (const DetectableEffect& effect : diagnosis.detectable) {
+    if (!effect.visible) {
+      ++invisible;
+      continue;
+    }
+    EXPECT_GT(effect.mdb, 0.0) << effect.label;
+    EXPECT_FALSE(effect.volumetric <= 0.0) << effect.label;  // not-a-number for effects of the instrument
+  }
+  EXPECT_EQ(invisible, diagnosis.not_visible.size());
+  EXPECT_GT(diagnosis.detectable.size(), 100U);
+}
+
 TEST(Diagnosis, NothingHiddenIsNothingAbove) {
   const Diagnosis diagnosis = diagnosed(hiding({})).diagnosis;
   EXPECT_EQ(to_string(diagnosis.verdict), "NOTHING_ABOVE");
@@ -55,6 +98,7 @@ TEST(Diagnosis, NothingHiddenIsNothingAbove) {
   ASSERT_EQ(diagnosis.ladder.size(), 1U);
   EXPECT_GT(diagnosis.families, 100U);
   EXPECT_GT(diagnosis.generic_tests, 100U);
+  expect_all_detectable(diagnosis);
 }
 
 TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
@@ -69,6 +113,8 @@ TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
   ASSERT_EQ(found.diagnosis.ladder.size(), 2U);
   EXPECT_LT(found.diagnosis.ladder[1].rms_heldout, found.diagnosis.ladder[0].rms_heldout);
   EXPECT_GT(found.diagnosis.ladder[1].heldout_loglik_gain, 10.0);
+  EXPECT_GT(found.diagnosis.ladder[0].systematic_low, found.diagnosis.ladder[1].systematic_high);
+  expect_figures_of_reversal(found);
 }
 
 /// To the bit.
@@ -87,6 +133,10 @@ TEST(Diagnosis, TheNumberOfThreadsChangesNothing) {
   ASSERT_EQ(one.ladder.size(), three.ladder.size());
   EXPECT_EQ(one.ladder.back().rms_heldout, three.ladder.back().rms_heldout);
   EXPECT_EQ(one.noise.front().value, three.noise.front().value);
+  EXPECT_EQ(one.figures.leading.residual, three.figures.leading.residual);
+  EXPECT_EQ(one.figures.generic.reached.at(0), three.figures.generic.reached.at(0));
+  ASSERT_EQ(one.figures.variables.size(), three.figures.variables.size());
+  EXPECT_EQ(one.figures.variables[0].reached[0].mean, three.figures.variables[0].reached[0].mean);
 }
 
 /// The extended model, fitted, explains what was hidden.

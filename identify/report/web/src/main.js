@@ -44,7 +44,7 @@ function start() {
   main.replaceChildren(
     el('header', {}, [
       el('h1', {}, report.title),
-      el('p', { class: 'muted' }, ['Geometric errors identified from measurements', report.date ? `, ${report.date}` : ''].join('')),
+      el('p', { class: 'muted' }, [report.subtitle, report.date ? `, ${report.date}` : ''].join('')),
     ]),
   );
   const sections = report.pages.map(section);

@@ -1,13 +1,22 @@
 // Renderers by kind of section; the C++ side has the matching table in pages.cpp.
+import { renderAddedVariable } from './pages/added_variable.js';
+import { renderAutocorrelation } from './pages/autocorrelation.js';
 import { renderComputation } from './pages/computation.js';
+import { renderDetectable } from './pages/detectable.js';
+import { renderEvidence } from './pages/evidence.js';
 import { renderFunctions } from './pages/functions.js';
+import { renderGenericMap } from './pages/generic_map.js';
 import { renderLocations } from './pages/locations.js';
+import { renderNoiseModel } from './pages/noise_model.js';
 import { renderNuisance } from './pages/nuisance.js';
 import { renderObservability } from './pages/observability.js';
 import { renderOutliers } from './pages/outliers.js';
+import { renderResidualVariables } from './pages/residual_variables.js';
+import { renderResidualVectors } from './pages/residual_vectors.js';
 import { renderResiduals } from './pages/residuals.js';
 import { renderResolution } from './pages/resolution.js';
 import { renderSetups } from './pages/setups.js';
+import { renderStory } from './pages/story.js';
 import { renderSummary } from './pages/summary.js';
 import { renderVolume } from './pages/volume.js';
 
@@ -23,4 +32,13 @@ export const renderers = {
   resolution: renderResolution,
   nuisance: renderNuisance,
   computation: renderComputation,
+  story: renderStory,
+  evidence: renderEvidence,
+  added_variable: renderAddedVariable,
+  residual_variables: renderResidualVariables,
+  residual_vectors: renderResidualVectors,
+  generic_map: renderGenericMap,
+  autocorrelation: renderAutocorrelation,
+  detectable: renderDetectable,
+  noise_model: renderNoiseModel,
 };

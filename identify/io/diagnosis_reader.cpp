@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/io/result_json_parts.h"
+#include "volcal/identify/io/text_file.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMicro = 1e-6;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// null stands for what is not a number.
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+double number(const Json& json, const char* key) { return number(json.at(key)); }
+double micro(const Json& json, const char* key) { return number(json, key) * kMicro; }
+std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
+
+/// Of a unit as it is printed: "um/m/K" stands for the suffix um_per_m_K.
+double si_per_unit(std::string unit) {
+  const std::size_t first = unit.find('/');
+  if (first != std::string::npos) unit.replace(first, 1, "_per_");
+  std::ranges::replace(unit, '/', '_');
+  return unit_of_key("amplitude_" + unit).si_per_unit;
+}
+
+EffectName name_from(const Json& json) {
+  return {text(json, "kind"), text(json, "target"), text(json, "driver"), text(json, "shape")};
+}
+
+AmplitudeFigure amplitude_from(const Json& json) {
+  AmplitudeFigure figure;
+  figure.label = text(json, "label");
+  figure.unit = text(json, "unit");
+  figure.si_per_unit = si_per_unit(figure.unit);
+  figure.value = number(json, "amplitude") * figure.si_per_unit;
+  figure.u = number(json, "u") * figure.si_per_unit;
+  figure.mdb = number(json, "mdb") * figure.si_per_unit;
+  figure.mib = number(json, "mib") * figure.si_per_unit;
+  figure.mib_rival = text(json, "mib_rival");
+  if (std::isnan(figure.mib) && !figure.mib_rival.empty()) figure.mib = kInfinity;
+  return figure;
+}
+
+EffectFinding effect_from(const Json& json) {
+  EffectFinding effect;
+  effect.name = name_from(json);
+  effect.label = text(json, "label");
+  if (json.contains("amplitudes")) {
+    for (const Json& each : json.at("amplitudes")) effect.amplitudes.push_back(amplitude_from(each));
+  } else if (json.contains("amplitude")) {
+    effect.amplitudes.push_back(amplitude_from(json));
+  }
+  effect.log10_p = number(json, "log10_p");
+  effect.visible_fraction = number(json, "visible_fraction");
+  effect.gain = number(json, "gain");
+  effect.lm = number(json, "lm");
+  effect.dof = json.at("dof").get<int>();
+  if (json.contains("shape_value")) effect.shape_text = text(json, "shape_value");
+  effect.resolution = !json.contains("spec");
+  if (!effect.resolution) effect.spec = json_parts::effect_from(json.at("spec"));
+  return effect;
+}
+
+std::vector<EffectFinding> list_from(const Json& json) {
+  std::vector<EffectFinding> effects;
+  for (const Json& each : json) effects.push_back(effect_from(each));
+  return effects;
+}
+
+DetectableEffect detectable_from(const Json& json) {
+  DetectableEffect effect;
+  effect.name = name_from(json);
+  effect.label = text(json, "label");
+  effect.shape_text = text(json, "shape_value");
+  effect.unit = text(json, "unit");
+  effect.si_per_unit = si_per_unit(effect.unit);
+  effect.visible = json.at("visible").get<bool>();
+  effect.visible_fraction = number(json, "visible_fraction");
+  effect.mdb = number(json, "mdb") * effect.si_per_unit;
+  effect.volumetric = micro(json, "volumetric_um");
+  return effect;
+}
+
+/// kind:target:driver:shape
+EffectName name_from(const std::string& text) {
+  EffectName name;
+  std::size_t begin = 0;
+  for (std::string* part : {&name.kind, &name.target, &name.driver, &name.shape}) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    *part = text.substr(begin, end - begin);
+    begin = std::min(end + 1, text.size());
+  }
+  return name;
+}
+
+std::vector<EffectName> names_from(const Json& json) {
+  std::vector<EffectName> names;
+  for (const Json& each : json) names.push_back(name_from(each.get<std::string>()));
+  return names;
+}
+
+/// A gain over nothing is infinite, and null in the file.
+double gain_from(const Json& json, const char* key) {
+  return json.at(key).is_null() ? kInfinity : json.at(key).get<double>();
+}
+
+MeasurementProposal proposal_from(const Json& json) {
+  MeasurementProposal proposal;
+  proposal.action = text(json, "action");
+  proposal.setup = text(json, "setup");
+  proposal.separates = names_from(json.at("separates"));
+  proposal.makes_visible = names_from(json.at("makes_visible"));
+  proposal.readings = json.at("readings").get<std::size_t>();
+  proposal.separation = number(json, "separation");
+  proposal.gain = gain_from(json, "gain");
+  proposal.plain_gain = gain_from(json, "plain_gain");
+  proposal.words = text(json, "words");
+  return proposal;
+}
+
+Confounding confounding_from(const Json& json) {
+  Confounding confounding;
+  confounding.names = names_from(json.at("effects"));
+  confounding.labels = json.at("labels").get<std::vector<std::string>>();
+  const auto count = static_cast<Eigen::Index>(confounding.names.size());
+  const Json& rows = json.at("cosine");
+  confounding.cosine.resize(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      confounding.cosine(i, j) = number(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)));
+    }
+  }
+  return confounding;
+}
+
+LadderStep step_from(const Json& json) {
+  LadderStep step;
+  step.model = text(json, "model");
+  step.added = text(json, "added");
+  step.rms_fit = micro(json, "rms_fit_um");
+  step.rms_heldout = micro(json, "rms_heldout_um");
+  step.reduced_chi2 = number(json, "reduced_chi2");
+  step.noise_floor = micro(json, "noise_floor_um");
+  step.systematic = micro(json, "systematic_um");
+  step.systematic_low = micro(json, "systematic_low_um");
+  step.systematic_high = micro(json, "systematic_high_um");
+  step.heldout_loglik_gain = number(json, "heldout_loglik_gain");
+  return step;
+}
+
+void read_noise(const Json& json, Diagnosis& diagnosis) {
+  for (const Json& each : json) {
+    const std::string instrument = text(each, "instrument");
+    auto& names = diagnosis.noise_instruments;
+    const auto known = std::ranges::find(names, instrument);
+    const auto place = static_cast<std::size_t>(known - names.begin());
+    if (known == names.end()) names.push_back(instrument);
+    diagnosis.noise.push_back({place, text(each, "term"), text(each, "unit"), number(each, "value"),
+                               number(each, "low"), number(each, "high"), number(each, "likelihood_ratio"),
+                               text(each, "remark")});
+  }
+}
+
+Diagnosis diagnosis_from(const Json& json) {
+  if (const std::string format = text(json, "format"); format != kDiagnosisFormat) {
+    throw std::invalid_argument("format is \"" + printable(format) + "\"");
+  }
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict_from(text(json, "verdict"));
+  diagnosis.words = json.at("words").get<std::vector<std::string>>();
+  diagnosis.effects = list_from(json.at("effects"));
+  diagnosis.one_of = list_from(json.at("one_of"));
+  for (const Json& each : json.at("unknown")) {
+    diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
+                                 text(each, "direction"), micro(each, "rms_um"), number(each, "log10_p")});
+  }
+  diagnosis.not_visible = list_from(json.at("not_visible"));
+  for (const Json& each : json.at("next_measurement")) {
+    diagnosis.proposals.push_back(proposal_from(each));
+    diagnosis.next_measurement.push_back(diagnosis.proposals.back().words);
+  }
+  diagnosis.confounding = confounding_from(json.at("confounding"));
+  for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
+  diagnosis.model_changes = list_from(json.at("model_changes"));
+  read_noise(json.at("noise"), diagnosis);
+  diagnosis.removed_readings = json.at("removed_readings").get<std::size_t>();
+  diagnosis.ranking = list_from(json.at("ranking"));
+  diagnosis.families = json.at("families").get<std::size_t>();
+  diagnosis.generic_tests = json.at("generic_tests").get<std::size_t>();
+  for (const Json& each : json.at("detectable")) diagnosis.detectable.push_back(detectable_from(each));
+  return diagnosis;
+}
+
+}  // namespace
+
+Diagnosis diagnosis_from_json(const std::string& text, const std::string& file) {
+  const std::string remedy = "give a folder that volcal diagnose wrote, or run the diagnosis again";
+  try {
+    return diagnosis_from(Json::parse(text));
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    const auto line = 1 + std::count(text.begin(), end, '\n');
+    throw InputError({file, static_cast<int>(line)}, "the file is no complete JSON", remedy);
+  } catch (const std::exception& error) {
+    throw InputError({file, 0}, "the diagnosis cannot be used: " + printable(error.what()), remedy);
+  }
+}
+
+Diagnosis read_diagnosis(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool folder = fs::is_directory(path, error);
+  const std::string file = folder ? (fs::path(path) / "diagnosis.json").string() : path;
+  if (folder && !fs::exists(file, error)) {
+    throw InputError({path, 0}, "the folder holds no diagnosis.json",
+                     "give a folder that volcal diagnose -o wrote");
+  }
+  return diagnosis_from_json(read_text_file(file), file);
+}
+
+}  // namespace volcal

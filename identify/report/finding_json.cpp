@@ -1,0 +1,38 @@
+#include "volcal/identify/report/finding_json.h"
+
+#include "volcal/identify/report/numbers.h"
+
+namespace volcal::report {
+namespace {
+
+constexpr double kU95 = 1.96;
+
+}  // namespace
+
+Json finding_json(const EffectFinding& effect) {
+  Json amplitudes = Json::array();
+  for (const AmplitudeFigure& each : effect.amplitudes) {
+    amplitudes.push_back({{"label", each.label},
+                          {"value", rounded(each.value / each.si_per_unit, 4)},
+                          {"U95", rounded(kU95 * each.u / each.si_per_unit, 3)},
+                          {"mdb", rounded(each.mdb / each.si_per_unit, 3)},
+                          {"unit", shown_unit(each.unit)}});
+  }
+  return {{"label", effect.label},
+          {"kind", effect.name.kind},
+          {"driver", effect.name.driver},
+          {"shape", effect.shape_text.empty() ? effect.name.shape : effect.shape_text},
+          {"log10_p", rounded(effect.log10_p, 4)},
+          {"visible_fraction", rounded(effect.visible_fraction, 3)},
+          {"resolution", effect.resolution},
+          {"amplitudes", std::move(amplitudes)}};
+}
+
+Json binned_json(const BinnedMean& means, double centre_factor, double value_factor) {
+  return {{"centre", rounded_array(means.centre, centre_factor, 5)},
+          {"mean", rounded_array(means.mean, value_factor, 4)},
+          {"noise", rounded_array(means.noise, value_factor, 3)},
+          {"count", means.count}};
+}
+
+}  // namespace volcal::report

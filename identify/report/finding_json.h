@@ -1,0 +1,13 @@
+#pragma once
+/// An effect of a diagnosis as sections of the report show it.
+
+#include "volcal/identify/report/page.h"
+
+namespace volcal::report {
+
+/// label, kind, shape, log10_p, visible_fraction, resolution; amplitudes with value, U95, mdb in `unit`.
+Json finding_json(const EffectFinding& effect);
+/// centre x factor, mean and noise in units of `value_unit`, count.
+Json binned_json(const BinnedMean& means, double centre_factor, double value_factor);
+
+}  // namespace volcal::report

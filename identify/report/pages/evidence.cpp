@@ -1,0 +1,31 @@
+/// Ranked evidence at the model reached, with the threshold, and what was added on the way.
+
+#include <algorithm>
+
+#include "volcal/identify/report/finding_json.h"
+#include "volcal/identify/report/numbers.h"
+
+namespace volcal::report {
+namespace {
+
+constexpr std::size_t kShown = 25;
+
+Json list(const std::vector<EffectFinding>& effects) {
+  Json json = Json::array();
+  for (std::size_t i = 0; i < std::min(kShown, effects.size()); ++i) json.push_back(finding_json(effects[i]));
+  return json;
+}
+
+}  // namespace
+
+Json evidence_page(const DiagnosisInput& input) {
+  const Diagnosis& diagnosis = input.diagnosis;
+  std::vector<EffectFinding> added = diagnosis.effects;
+  added.insert(added.end(), diagnosis.model_changes.begin(), diagnosis.model_changes.end());
+  return {{"threshold", rounded(log10_family_risk(), 4)},
+          {"families", diagnosis.families},
+          {"added", list(added)},
+          {"ranking", list(diagnosis.ranking)}};
+}
+
+}  // namespace volcal::report

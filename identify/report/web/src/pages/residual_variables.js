@@ -1,0 +1,132 @@
+import { choice, count, el, fixed, note } from '../dom.js';
+import { addPlot, layout2d } from '../plot.js';
+import { color, series, transparent } from '../theme.js';
+
+/** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
+const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
+
+const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', Y: 'along Y', Z: 'along Z' };
+
+/** Mean square of the means in units of what noise gives them. */
+const deviation = (means) => (means && means.mean.length > 0
+  ? means.mean.reduce((sum, value, k) => sum + (value / Math.max(means.noise[k], 1e-12)) ** 2, 0) / means.mean.length : 0);
+
+class VariableView {
+  constructor(data) {
+    this.data = data;
+    this.model = data.two_models ? 'both' : 'given';
+    this.kinds = Object.keys(kKinds).filter((kind) => data.variables.some((variable) => variable[kind]));
+    let strongest = -1;
+    for (const variable of data.variables) {
+      for (const kind of this.kinds) {
+        const strength = deviation(variable[kind]?.given);
+        if (strength > strongest) [strongest, this.variable, this.kind] = [strength, variable, kind];
+      }
+    }
+  }
+
+  unit() { return this.kind === 'angle' ? 'µrad' : 'µm'; }
+
+  rows() {
+    const wanted = this.kind === 'angle' ? 1 : 0;
+    return [...this.data.records.angle.keys()].filter((i) => this.data.records.angle[i] === wanted);
+  }
+
+  /** Twice the root mean square of the noise of the drawn readings. */
+  band() {
+    const { noise } = this.data.records;
+    const rows = this.rows();
+    return 2 * Math.sqrt(rows.reduce((sum, i) => sum + noise[i] ** 2, 0) / Math.max(1, rows.length));
+  }
+
+  hover(i) {
+    const { records, setups } = this.data;
+    return `<b>${setups[records.setup[i]]}</b>, line ${records.file_line[i]}${records.held_out[i] ? ', held out' : ''}<br>given ${fixed(records.given[i], 2)}, reached ${fixed(records.reached[i], 2)}, noise ${fixed(records.noise[i], 2)} ${this.unit()}`;
+  }
+}
+
+const shades = { given: () => color('bad'), reached: () => color('good') };
+const names = { given: 'given model', reached: 'model reached' };
+
+function points(view, model) {
+  const rows = view.rows();
+  const spread = view.variable.categories.length > 0 || view.variable.name.startsWith('dir_') ? 0.3 : 0;
+  return {
+    x: rows.map((i) => view.variable.x[i] + spread * jitter(i)), y: rows.map((i) => view.data.records[model][i]), text: rows.map((i) => view.hover(i)),
+    type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.35, color: series(0) }, showlegend: false, hovertemplate: '%{text}<extra></extra>',
+  };
+}
+
+function means(view, model) {
+  const mean = view.variable[view.kind]?.[model];
+  if (!mean) return [];
+  return [{
+    x: mean.centre, y: mean.mean, text: mean.count, type: 'scatter', mode: view.variable.categories.length > 0 ? 'markers' : 'lines+markers', name: `mean, ${names[model]}`,
+    error_y: { type: 'data', array: mean.noise.map((u) => 2 * u), color: shades[model](), thickness: 1.2, width: 0 },
+    line: { color: shades[model](), width: 1.8 }, marker: { size: 6, color: shades[model]() }, hovertemplate: `${names[model]}: mean %{y:.3f} ± %{error_y.array:.3f} ${view.unit()} of %{text} readings<extra></extra>`,
+  }];
+}
+
+function axisX(variable) {
+  const title = `${variable.title}${variable.unit ? ` [${variable.unit}]` : ''}`;
+  if (variable.categories.length === 0) return { title, zeroline: false };
+  const step = Math.ceil(variable.categories.length / 50);
+  const ticks = variable.categories.map((_, k) => k).filter((k) => k % step === 0);
+  return {
+    title, tickvals: ticks, ticktext: ticks.map((k) => variable.categories[k]), zeroline: false, showgrid: false,
+    tickangle: variable.categories.length > 12 ? -60 : 0, range: [-0.6, variable.categories.length - 0.4],
+  };
+}
+
+const modelsOf = (view) => (view.model === 'both' ? ['given', 'reached'] : [view.model]);
+
+/** Every reading with the band of its noise. */
+function readingsPlot(view) {
+  const band = view.band();
+  const model = view.model === 'both' ? 'reached' : view.model;
+  return {
+    data: [points(view, model)],
+    layout: layout2d({
+      height: 340, x: axisX(view.variable), y: { title: `residual, ${names[model]} [${view.unit()}]`, range: [-2.2 * band, 2.2 * band] }, hovermode: 'closest',
+      shapes: [{ type: 'rect', xref: 'paper', x0: 0, x1: 1, y0: -band, y1: band, fillcolor: transparent(color('muted'), 0.13), line: { width: 0 }, layer: 'below' }],
+    }),
+  };
+}
+
+/** Means alone, on the scale of what they show. */
+function meansPlot(view) {
+  const data = modelsOf(view).flatMap((model) => means(view, model));
+  return {
+    data,
+    layout: layout2d({
+      height: 340, margin: { t: 30 }, showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } },
+      x: axisX(view.variable), y: { title: `${view.kind.length === 1 ? `displacement along ${view.kind}` : 'mean residual'} [${view.unit()}]`, rangemode: 'tozero' }, hovermode: 'closest',
+    }),
+  };
+}
+
+export function renderResidualVariables(body, data) {
+  if (data.variables.length === 0 || data.drawn === 0) {
+    body.append(note('Nothing recorded varies in these readings.'));
+    return;
+  }
+  const view = new VariableView(data);
+  const redraws = [];
+  const redraw = () => redraws.forEach((again) => again());
+  const menu = el('select', { 'aria-label': 'Variable', onchange: (event) => { view.variable = data.variables[Number(event.target.value)]; redraw(); } },
+    data.variables.map((variable, k) => el('option', { value: k, selected: variable === view.variable }, variable.title)));
+  const controls = el('div', { class: 'controls' }, [el('label', { class: 'menu' }, [el('span', { class: 'muted' }, 'Against'), menu])]);
+  if (data.two_models) {
+    controls.append(choice('Model', [['both', 'both'], ['given', 'given'], ['reached', 'reached']], (value) => { view.model = value; redraw(); }));
+  }
+  const order = [view.kind, ...view.kinds.filter((kind) => kind !== view.kind)];
+  controls.append(choice('Means of', order.map((kind) => [kind, kKinds[kind]]), (value) => { view.kind = value; redraw(); }));
+  body.append(
+    note('Reading minus prediction. Left: means in bins, of the readings or of the displacement of the functional point that they ask for (beams from several sides feel one with different signs, so that the mean of lengths may hide it), with bars of ± 2 standard deviations that noise alone would give them, its wander and line offsets counted. A mean that leaves zero by more than its bar shows what the model lacks. Right: readings and the band of ± 2 standard deviations of their noise.',
+      data.drawn < data.total ? ` ${count(data.drawn)} of ${count(data.total)} readings are drawn, an even choice; means use all.` : ''),
+    controls,
+  );
+  const nodes = [el('div', { class: 'plot' }), el('div', { class: 'plot' })];
+  body.append(el('div', { class: 'pair' }, nodes.map((node) => el('figure', {}, node))));
+  redraws.push(addPlot(nodes[0], () => meansPlot(view)), addPlot(nodes[1], () => readingsPlot(view)));
+}

@@ -1,0 +1,134 @@
+import { el, fixed, longTable, note, significant, table } from '../dom.js';
+import { addPlot, layout2d } from '../plot.js';
+import { color, series, transparent } from '../theme.js';
+
+const stepName = (step) => (step.added === '' ? 'as given' : `+ ${step.added}`);
+
+/** Names of the steps under the plot, broken where they are long. */
+const stepAxis = (ladder) => ({
+  title: 'model', tickvals: ladder.map((_, k) => k), ticktext: ladder.map((step) => broken(stepName(step))), zeroline: false, showgrid: false, range: [-0.6, Math.max(0.6, ladder.length - 0.4)],
+});
+
+function broken(text) {
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    if (lines.at(-1).length + word.length > 16 && lines.at(-1) !== '') lines.push('');
+    lines[lines.length - 1] += (lines.at(-1) === '' ? '' : ' ') + word;
+  }
+  return lines.join('<br>');
+}
+
+/** Systematic error above the noise floor after every step, with its interval, and what each step took away. */
+function waterfall(ladder) {
+  const x = ladder.map((_, k) => k);
+  const high = ladder.map((step) => step.systematic_high_um - step.systematic_um);
+  const low = ladder.map((step) => step.systematic_um - step.systematic_low_um);
+  const connectors = ladder.slice(1).map((step, k) => ({
+    type: 'line', x0: k, x1: k + 1, y0: ladder[k].systematic_um, y1: ladder[k].systematic_um, line: { color: color('muted'), width: 1, dash: 'dot' },
+  }));
+  const drops = ladder.slice(1).map((step, k) => [k + 1, ladder[k].systematic_um, ladder[k].systematic_um - step.systematic_um])
+    .filter(([, , drop]) => drop > 0)
+    .map(([x1, y, drop]) => ({ x: x1 + 0.26, y, xanchor: 'left', yanchor: 'top', showarrow: false, font: { size: 11, color: color('good') }, text: `−${significant(drop, 2)} µm` }));
+  const top = 1.15 * Math.max(...ladder.map((step) => step.systematic_high_um));
+  const bars = [
+    ...ladder.slice(1).map((step, k) => ({ at: k + 1, from: step.systematic_um, to: Math.max(step.systematic_um, ladder[k].systematic_um), fill: transparent(color('good'), 0.15) })),
+    ...ladder.map((step, k) => ({ at: k, from: 0, to: step.systematic_um, fill: series(0) })),
+  ].map(({ at, from, to, fill }) => ({ type: 'rect', x0: at - 0.25, x1: at + 0.25, y0: from, y1: to, fillcolor: fill, line: { width: 0 }, layer: 'between' }));
+  return {
+    data: [{
+      x, y: ladder.map((step) => step.systematic_um), type: 'scatter', mode: 'markers', marker: { size: 7, color: color('text') },
+      error_y: { type: 'data', symmetric: false, array: high, arrayminus: low, color: color('text'), thickness: 1.4, width: 6 },
+      text: ladder.map((step) => `${stepName(step)}<br>systematic ${significant(step.systematic_um)} µm, 95 %: ${significant(step.systematic_low_um, 2)} … ${significant(step.systematic_high_um, 2)} µm`),
+      hovertemplate: '%{text}<extra></extra>',
+    }],
+    layout: layout2d({
+      height: 330, margin: { r: 52 }, x: stepAxis(ladder), y: { title: 'systematic error on held-out lines [µm]', range: [0, top > 0 ? top : 1] },
+      shapes: [...bars, ...connectors], annotations: drops, hovermode: 'closest',
+    }),
+  };
+}
+
+/** RMS of held-out and fitted readings against the noise floor. */
+function rmsPlot(ladder) {
+  const x = ladder.map((_, k) => k);
+  const line = (key, name, shade, symbol) => ({
+    x, y: ladder.map((step) => step[key]), type: 'scatter', mode: 'lines+markers', name, line: { color: shade, width: 1.6 }, marker: { size: 8, symbol, color: shade },
+    text: ladder.map(stepName), hovertemplate: `%{text}<br>${name} %{y:.4g} µm<extra></extra>`,
+  });
+  const floor = { ...line('noise_floor_um', 'noise floor', color('muted'), 'line-ew-open'), fill: 'tozeroy', fillcolor: transparent(color('muted'), 0.15) };
+  const all = ladder.flatMap((step) => [step.rms_heldout_um, step.rms_fit_um, step.noise_floor_um]);
+  return {
+    data: [floor, line('rms_heldout_um', 'held-out lines', color('bad'), 'circle'), line('rms_fit_um', 'fitted readings', series(0), 'square')],
+    layout: layout2d({
+      height: 330, showlegend: true, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, margin: { t: 34 },
+      x: stepAxis(ladder),
+      y: { title: 'RMS of the residuals [µm]', range: [0.85 * Math.min(...all), 1.05 * Math.max(...all)] },
+    }),
+  };
+}
+
+const amplitudeText = (amplitude) => `${significant(amplitude.value)} ± ${significant(amplitude.U95, 2)} ${amplitude.unit}`;
+
+const missingItem = (effect) => el('div', { class: 'found' }, [
+  el('strong', {}, effect.resolution ? `${effect.label}: the function needs more knots` : effect.label),
+  effect.amplitudes.length > 0 ? el('span', { class: 'amount' }, effect.amplitudes.map((amplitude) => amplitudeText(amplitude)).join('; ')) : null,
+  el('div', { class: 'muted' }, `${effect.kind}, ${effect.shape} in ${effect.driver}; ${effect.how}.`),
+]);
+
+const ladderTable = (ladder) => table([
+  { name: 'Model', align: 'left', cell: (row) => row.model },
+  { name: 'Added', align: 'left', cell: (row) => (row.added === '' ? 'as given' : row.added) },
+  { name: 'RMS fitted', unit: 'µm', cell: (row) => significant(row.rms_fit_um, 4) },
+  { name: 'RMS held out', unit: 'µm', cell: (row) => significant(row.rms_heldout_um, 4) },
+  { name: 'Noise floor', unit: 'µm', cell: (row) => significant(row.noise_floor_um, 4) },
+  { name: 'Systematic', unit: 'µm', cell: (row) => significant(row.systematic_um) },
+  { name: '95 % interval', unit: 'µm', cell: (row) => `${significant(row.systematic_low_um, 2)} … ${significant(row.systematic_high_um, 2)}` },
+  { name: 'χ²/dof', cell: (row) => fixed(row.reduced_chi2, 3) },
+  { name: 'Log-likelihood gain', unit: 'held out', cell: (row) => fixed(row.heldout_loglik_gain, 1) },
+], ladder);
+
+const belowTable = (groups) => longTable([
+  { name: 'Kind', align: 'left', cell: (row) => row.kind },
+  { name: 'Effects', cell: (row) => row.effects },
+  { name: 'Not visible', cell: (row) => row.not_visible },
+  { name: 'Smallest MDB', cell: (row) => significant(row.smallest, 2) },
+  { name: 'Largest MDB', cell: (row) => significant(row.largest, 2) },
+  { name: 'Unit', align: 'left', cell: (row) => row.unit },
+  { name: 'found first', align: 'left', cell: (row) => row.smallest_label ?? '–' },
+  { name: 'found last', align: 'left', cell: (row) => row.largest_label ?? '–' },
+], groups);
+
+export function renderStory(body, data) {
+  body.append(el('div', { class: `status ${data.level}`, 'data-verdict': data.verdict }, [
+    el('strong', {}, data.headline), ...data.words.map((text) => el('p', {}, text)),
+  ]));
+  body.append(el('h3', {}, 'Before'), ...data.before.map((text) => el('p', {}, text)));
+  body.append(el('h3', {}, 'What was missing, and how we know'));
+  body.append(...(data.missing.length > 0 ? data.missing.map(missingItem) : [el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and told apart from the others.`)]));
+  if (data.one_of.length > 0) {
+    body.append(el('p', {}, 'These readings do not tell the following apart:'), ...data.one_of.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));
+  }
+  body.append(el('h3', {}, 'After'), ...data.after.map((text) => el('p', {}, text)));
+  const whole = data.ladder.filter((step) => step.rms_heldout_um !== null);
+  if (whole.length > 0) {
+    const plots = [el('div', { class: 'plot' }), el('div', { class: 'plot' })];
+    body.append(el('div', { class: 'pair' }, [
+      el('figure', {}, [el('figcaption', {}, 'What is above the noise floor, step by step'), plots[0]]),
+      el('figure', {}, [el('figcaption', {}, 'RMS of the residuals, noise included'), plots[1]]),
+    ]));
+    addPlot(plots[0], () => waterfall(whole));
+    addPlot(plots[1], () => rmsPlot(whole));
+  }
+  body.append(
+    ladderTable(data.ladder),
+    note('Held-out lines chose nothing: every fifth line of each setup. Noise floor: what the noise model and the uncertainty of the parameters make of these lines. Systematic: √(mean square − floor²), with 95 % interval.'),
+  );
+  if (data.next_measurement.length > 0) {
+    body.append(el('h3', {}, 'What to measure next'), el('ul', {}, data.next_measurement.map((text) => el('li', {}, text))));
+  }
+  body.append(
+    el('h3', {}, 'What is still below the detection limit'),
+    note('MDB, the smallest detectable amplitude: an effect of this size is found in four campaigns of five. Anything smaller may be there. Every effect is in the table “Smallest detectable effects”.'),
+    belowTable(data.below),
+  );
+}

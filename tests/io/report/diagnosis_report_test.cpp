@@ -1,0 +1,188 @@
+// Sections of a diagnosis' report: numbers in their JSON against numbers chosen by hand.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/support/hand_made_diagnosis.h"
+#include "volcal/identify/report/page.h"
+
+namespace volcal {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// Two setups; figures of two drawn readings.
+class DiagnosisReport : public ::testing::Test {
+ protected:
+  DiagnosisReport() {
+    campaign_.machine.name = "VMC <1>";
+    campaign_.setups.resize(2);
+    campaign_.setups[0].name = "S1";
+    campaign_.setups[1].name = "S2";
+    DiagnosisFigures& figures = diagnosis_.figures;
+    figures.leading = {.label = "reversal EXX",
+                       .unit = "um",
+                       .si_per_unit = 1e-6,
+                       .accepted = true,
+                       .slope = 4e-6,
+                       .u = 0.1e-6,
+                       .driver = {-2e6, 2e6},
+                       .residual = {-8.5, 7.5},
+                       .mean = {{-2e6, 2e6}, {-8.0, 8.0}, {0.5, 0.25}, {4, 16}}};
+    DrawnObservation first;
+    first.setup = 1;
+    first.source_line = 17;
+    first.noise = 0.5e-6;
+    first.given = 2e-6;
+    first.reached = -1e-6;
+    first.point_w = {0.1, 0.2, 0.3};
+    first.direction_w = {0.0, 0.5, 0.0};
+    DrawnObservation second = first;
+    second.direction_w.setZero();
+    second.held_out = true;
+    figures.observations = {first, second};
+    figures.observation_count = 5000;
+    VariableFigure time{.name = "time", .categories = {}, .drawn = {60.0, 120.0}, .given = {}, .reached = {}};
+    time.given[0] = {{90.0}, {1.5e-6}, {0.25e-6}, {2}};
+    time.reached[0] = {{90.0}, {0.5e-6}, {0.25e-6}, {2}};
+    figures.variables = {time};
+    figures.vectors = {{{0.5, 0.25, 0.125}, {1e-6, 2e-6, 2e-6}, {0.0, 0.0, 1e-6}, 0.3e-6, 40}};
+    figures.generic.variables = {"x", "time"};
+    for (int d = 0; d < 4; ++d) {
+      figures.generic.given.emplace_back(Eigen::MatrixXd::Zero(2, 2));
+      figures.generic.reached.emplace_back(Eigen::MatrixXd::Zero(2, 2));
+    }
+    figures.generic.given[2](1, 0) = -6.5;
+    Autocorrelation memory;
+    memory.lag = {1, 2};
+    memory.gap = {4.0, 8.0};
+    memory.pairs = {400, 100};
+    memory.residual = {0.5, 0.25};
+    memory.expected = {0.5, 0.375};
+    memory.whitened = {0.01, -0.02};
+    figures.autocorrelation = {memory};
+    document_ = json::parse(report_json(diagnosis_, campaign_, {.date = "2024-05-17"}));
+  }
+
+  json page(const std::string& kind) const {
+    for (const json& each : document_.at("pages")) {
+      if (each.at("kind") == kind) return each.at("data");
+    }
+    ADD_FAILURE() << "no page " << kind;
+    return {};
+  }
+
+  Diagnosis diagnosis_ = testing::hand_made_diagnosis();
+  Campaign campaign_;
+  json document_;
+};
+
+TEST_F(DiagnosisReport, EverySectionIsInTheDocumentAndHasARenderer) {
+  std::ifstream file(std::filesystem::path(VOLCAL_SOURCE_DIR) / "identify/report/web/src/pages.js");
+  std::ostringstream renderers;
+  renderers << file.rdbuf();
+  std::set<std::string> kinds;
+  for (const report::DiagnosisPage& section : report::diagnosis_pages()) {
+    const std::string kind(section.kind);
+    EXPECT_TRUE(kinds.insert(kind).second) << kind << " is registered twice";
+    EXPECT_FALSE(page(kind).empty()) << kind;
+    EXPECT_THAT(renderers.str(), HasSubstr("\n  " + kind + ": render"));
+  }
+  EXPECT_EQ(document_.at("pages").size(), kinds.size());
+  EXPECT_EQ(document_.at("title"), "VMC <1>");
+}
+
+TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
+  const json story = page("story");
+  EXPECT_EQ(story.at("level"), "warning");
+  const std::string before = story.at("before").at(0);
+  EXPECT_THAT(before, HasSubstr("2.5 µm RMS"));
+  EXPECT_THAT(before, HasSubstr("1.5 µm (95 %: 1.2 to 1.8 µm)"));
+  const json& missing = story.at("missing").at(0);
+  EXPECT_EQ(missing.at("label"), "reversal EXX");
+  EXPECT_EQ(missing.at("amplitudes").at(0).at("value"), 4.0);
+  EXPECT_NEAR(missing.at("amplitudes").at(0).at("U95").get<double>(), 0.196, 1e-9);
+  EXPECT_THAT(missing.at("how").get<std::string>(), HasSubstr("log-likelihood of the held-out lines +33.5"));
+  EXPECT_THAT(story.at("after").at(0).get<std::string>(), HasSubstr("falls from 1.5 µm to 0 µm"));
+  EXPECT_THAT(story.at("after").at(1).get<std::string>(), HasSubstr("x and time, along Z, about 0.3 µm"));
+  ASSERT_EQ(story.at("ladder").size(), 2U);
+  EXPECT_EQ(story.at("ladder").at(1).at("systematic_high_um"), 0.5);
+  const json& below = story.at("below").at(0);
+  EXPECT_EQ(below.at("effects"), 3);
+  EXPECT_EQ(below.at("not_visible"), 1);
+  EXPECT_EQ(below.at("smallest"), 0.5);
+  EXPECT_EQ(below.at("largest"), 0.75);
+}
+
+TEST_F(DiagnosisReport, EvidenceHasItsThreshold) {
+  const json evidence = page("evidence");
+  EXPECT_NEAR(evidence.at("threshold").get<double>(), -2.301, 1e-3);  // 0.5 %
+  EXPECT_EQ(evidence.at("added").size(), 1U);
+  EXPECT_EQ(evidence.at("ranking").size(), 3U);
+  EXPECT_EQ(evidence.at("ranking").at(0).at("visible_fraction"), 0.75);
+}
+
+TEST_F(DiagnosisReport, PlotsAreInEdgeUnits) {
+  const json leading = page("added_variable");
+  EXPECT_EQ(leading.at("amplitude"), 4.0);
+  EXPECT_EQ(leading.at("driver"), (json{-2.0, 2.0}));
+  EXPECT_EQ(leading.at("residual"), (json{-8.5, 7.5}));
+  EXPECT_EQ(leading.at("mean").at("count"), (json{4, 16}));
+  const json against = page("residual_variables");
+  EXPECT_EQ(against.at("total"), 5000);
+  EXPECT_EQ(against.at("variables").at(0).at("unit"), "min");
+  EXPECT_EQ(against.at("variables").at(0).at("x"), (json{1.0, 2.0}));
+  EXPECT_EQ(against.at("variables").at(0).at("length").at("given").at("mean").at(0), 1.5);
+  EXPECT_EQ(against.at("variables").at(0).at("length").at("reached").at("noise").at(0), 0.25);
+  EXPECT_FALSE(against.at("variables").at(0).contains("angle"));
+  EXPECT_EQ(against.at("records").at("held_out"), (json{0, 1}));
+  EXPECT_EQ(against.at("records").at("reached").at(0), -1.0);
+}
+
+/// A reading that feels half of a displacement along Y asks for twice its residual; one that feels none is
+/// not drawn.
+TEST_F(DiagnosisReport, VectorsPointAlongWhatReadingsFeel) {
+  const json vectors = page("residual_vectors");
+  ASSERT_EQ(vectors.at("single").size(), 1U);
+  EXPECT_EQ(vectors.at("single").at(0).at("given_um"), (json{0, 4.0, 0}));
+  EXPECT_EQ(vectors.at("single").at(0).at("point_mm"), (json{100.0, 200.0, 300.0}));
+  EXPECT_EQ(vectors.at("means").at(0).at("given_um"), (json{1.0, 2.0, 2.0}));
+  EXPECT_EQ(vectors.at("means").at(0).at("readings"), 40);
+}
+
+TEST_F(DiagnosisReport, MapMemoryMdbAndNoise) {
+  const json map = page("generic_map");
+  EXPECT_EQ(map.at("directions").at(2).at("name"), "Z");
+  EXPECT_EQ(map.at("directions").at(2).at("given"), (json{{0}, {-6.5, 0}}));
+  const json memory = page("autocorrelation").at("instruments").at(0);
+  EXPECT_EQ(memory.at("instrument"), "laser-tracer");
+  EXPECT_EQ(memory.at("band"), (json{0.1, 0.2}));
+  EXPECT_EQ(memory.at("whitened").at(1), -0.02);
+  const json detectable = page("detectable");
+  EXPECT_EQ(detectable.at("not_visible"), 1);
+  EXPECT_EQ(detectable.at("rows").at(1).at("mdb"), 0.75);
+  EXPECT_EQ(detectable.at("rows").at(1).at("volumetric_um"), 0.375);
+  EXPECT_TRUE(detectable.at("rows").at(2).at("mdb").is_null());
+  EXPECT_FALSE(detectable.at("rows").at(2).at("visible").get<bool>());
+  const json noise = page("noise_model");
+  EXPECT_EQ(noise.at("rows").at(1).at("value"), 0.5);
+  EXPECT_EQ(noise.at("rows").at(1).at("unit"), "µm or µrad");
+  EXPECT_EQ(noise.at("removed_readings"), 3);
+}
+
+TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const std::string page = report_html(diagnosis_, campaign_);
+  EXPECT_THAT(page, HasSubstr("VMC &lt;1&gt; – volcal diagnosis"));
+  EXPECT_THAT(page, HasSubstr("VMC \\u003c1>"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,119 @@
+// diagnosis.json: the keys that programs read, and back.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/hand_made_diagnosis.h"
+#include "tests/support/scratch_folder.h"
+#include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/report/diagnosis_text.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+json written() { return json::parse(diagnosis_json(testing::hand_made_diagnosis())); }
+
+TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
+  const json document = written();
+  EXPECT_EQ(document.at("verdict"), "NAMED_MORE_REMAINS");
+  const json& effect = document.at("effects").at(0);
+  EXPECT_EQ(effect.at("kind"), "reversal");
+  EXPECT_EQ(effect.at("target"), "EXX");
+  EXPECT_EQ(effect.at("driver"), "dir_x");
+  EXPECT_EQ(effect.at("shape"), "step");
+  EXPECT_NEAR(effect.at("amplitude").get<double>(), 4.0, 1e-12);
+  EXPECT_EQ(effect.at("unit"), "um");
+  EXPECT_NEAR(effect.at("u").get<double>(), 0.1, 1e-12);
+  EXPECT_NEAR(effect.at("mdb").get<double>(), 0.5, 1e-12);
+  EXPECT_EQ(effect.at("log10_p"), -12.5);
+  EXPECT_EQ(effect.at("visible_fraction"), 0.75);
+  EXPECT_EQ(document.at("one_of").at(0).at("target"), "EYY");
+  const json& unknown = document.at("unknown").at(0);
+  EXPECT_EQ(unknown.at("variables"), (json{"x", "time"}));
+  EXPECT_EQ(unknown.at("direction"), "Z");
+  EXPECT_NEAR(unknown.at("rms_um").get<double>(), 0.3, 1e-12);
+  EXPECT_TRUE(document.at("not_visible").at(0).at("mdb").is_null());
+  EXPECT_EQ(document.at("next_measurement").size(), 1U);
+  const json& step = document.at("ladder").at(1);
+  EXPECT_EQ(step.at("model"), "1");
+  EXPECT_EQ(step.at("added"), "reversal EXX");
+  for (const auto& [key, value] : std::map<std::string, double>{{"rms_fit_um", 2.0},
+                                                                {"rms_heldout_um", 2.0},
+                                                                {"reduced_chi2", 1.5},
+                                                                {"noise_floor_um", 2.0},
+                                                                {"systematic_um", 0.0},
+                                                                {"systematic_high_um", 0.5},
+                                                                {"heldout_loglik_gain", 33.5}}) {
+    EXPECT_NEAR(step.at(key).get<double>(), value, 1e-12) << key;
+  }
+  EXPECT_EQ(document.at("model_changes"), json::array());
+  EXPECT_EQ(document.at("noise").at(1).at("instrument"), "laser-tracer");
+  EXPECT_EQ(document.at("removed_readings"), 3);
+  EXPECT_NEAR(document.at("detectable").at(1).at("volumetric_um").get<double>(), 0.375, 1e-12);
+  EXPECT_TRUE(document.at("detectable").at(3).at("volumetric_um").is_null());
+}
+
+/// Same document again, numbers to rounding.
+void expect_same(const json& a, const json& b, const std::string& place) {
+  if (a.is_number_float() && b.is_number()) {
+    EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-14 * (1.0 + std::abs(a.get<double>()))) << place;
+    return;
+  }
+  ASSERT_EQ(a.type(), b.type()) << place;
+  if (!a.is_structured()) {
+    EXPECT_EQ(a, b) << place;
+    return;
+  }
+  ASSERT_EQ(a.size(), b.size()) << place;
+  for (const auto& [key, value] : a.items()) {
+    const json& other = b.is_array() ? b.at(std::stoul(key)) : b.at(key);
+    expect_same(value, other, place + "/" + key);
+  }
+}
+
+TEST(DiagnosisJson, RoundTrips) {
+  const std::string text = diagnosis_json(testing::hand_made_diagnosis());
+  const Diagnosis again = diagnosis_from_json(text, "diagnosis.json");
+  expect_same(json::parse(text), json::parse(diagnosis_json(again)), "");
+  EXPECT_EQ(again.effects[0].spec.options.number("amplitude"), 4e-6);
+  EXPECT_EQ(again.effects[0].spec.options.text("symbol"), "EXX");
+  EXPECT_TRUE(again.ranking[1].resolution);
+  EXPECT_EQ(diagnosis_text(again), diagnosis_text(testing::hand_made_diagnosis()));
+}
+
+TEST(DiagnosisJson, UnitsWithDenominatorsComeBack) {
+  Diagnosis diagnosis = testing::hand_made_diagnosis();
+  diagnosis.effects[0].amplitudes[0] = {"expansion X", 2.5e-6, 1e-7, 2e-7, "um/m/K", 1e-6};
+  diagnosis.one_of[0].amplitudes[0] = {"drift", 1e-6 / 3600.0, 1e-11, 2e-11, "urad/h", 1e-6 / 3600.0};
+  const Diagnosis again = diagnosis_from_json(diagnosis_json(diagnosis), "d");
+  EXPECT_NEAR(again.effects[0].amplitudes[0].value, 2.5e-6, 1e-18);
+  EXPECT_NEAR(again.one_of[0].amplitudes[0].si_per_unit, 1e-6 / 3600.0, 1e-22);
+}
+
+TEST(DiagnosisJson, SaysWhatIsWrongWithAFile) {
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      diagnosis_from_json(text, "old.json");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(message("{\"format\": "), HasSubstr("no complete JSON"));
+  EXPECT_THAT(message("{\"format\": \"volcal-result-1\"}"), HasSubstr("volcal-result-1"));
+  json document = written();
+  document["verdict"] = "PERHAPS";
+  EXPECT_THAT(message(document.dump()), HasSubstr("PERHAPS"));
+  const testing::ScratchFolder folder;
+  EXPECT_THROW(read_diagnosis(folder.path().string()), InputError);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,90 @@
+#pragma once
+/// A diagnosis with numbers chosen by hand: a reversal of 4 um found, a coupling that might be, one effect
+/// that is not visible.
+
+#include <cmath>
+
+#include "volcal/identify/criticism/diagnosis.h"
+
+namespace volcal::testing {
+
+inline EffectFinding found_effect(const std::string& kind, const std::string& symbol, double value) {
+  EffectFinding effect;
+  effect.spec.kind = kind;
+  effect.spec.options.set("symbol", symbol);
+  effect.spec.options.set("amplitude", value);
+  effect.label = kind + " " + symbol;
+  effect.amplitudes = {{effect.label, value, 0.1e-6, 0.5e-6, "um", 1e-6}};
+  effect.log10_p = -12.5;
+  effect.lm = 70.25;
+  effect.dof = 1;
+  effect.gain = 60.0;
+  effect.visible_fraction = 0.75;
+  return effect;
+}
+
+inline Diagnosis hand_made_diagnosis() {
+  Diagnosis diagnosis;
+  diagnosis.verdict = Verdict::NamedMoreRemains;
+  diagnosis.words = {"The missing effect is: reversal EXX"};
+  EffectFinding reversal = found_effect("reversal", "EXX", 4e-6);
+  reversal.name = {"reversal", "EXX", "dir_x", "step"};
+  EffectFinding other = found_effect("reversal", "EYY", 1e-6);
+  other.name = {"reversal", "EYY", "dir_y", "step"};
+  EffectFinding third = found_effect("reversal", "EZZ", 0.25e-6);
+  third.name = {"reversal", "EZZ", "dir_z", "step"};
+  third.visible_fraction = 0.01;
+  third.amplitudes[0].mdb = std::nan("");
+  EffectFinding finer;
+  finer.name = {"resolution", "EYX", "x", "finer"};
+  finer.label = "EYX finer";
+  finer.resolution = true;
+  finer.log10_p = -3.0;
+  finer.dof = 8;
+  diagnosis.effects = {reversal};
+  diagnosis.one_of = {other};
+  diagnosis.ranking = {other, finer, third};
+  diagnosis.not_visible = {third};
+  diagnosis.unknown = {{{"x", "time"}, "Z", 0.3e-6, -6.5}};
+  diagnosis.next_measurement = {"visit station P1 again after two hours"};
+  LadderStep before;
+  before.model = "0";
+  before.rms_fit = 2e-6;
+  before.rms_heldout = 2.5e-6;
+  before.reduced_chi2 = 1.5;
+  before.noise_floor = 2e-6;
+  before.systematic = 1.5e-6;
+  before.systematic_low = 1.25e-6;
+  before.systematic_high = 1.75e-6;
+  LadderStep after = before;
+  after.model = "1";
+  after.added = "reversal EXX";
+  after.rms_heldout = 2e-6;
+  after.systematic = 0.0;
+  after.systematic_low = 0.0;
+  after.systematic_high = 0.5e-6;
+  after.heldout_loglik_gain = 33.5;
+  diagnosis.ladder = {before, after};
+  diagnosis.detectable = {{reversal.name, reversal.label, "", "um", 1e-6, 0.75, true, 0.5e-6, 0.25e-6},
+                          {other.name, other.label, "", "um", 1e-6, 0.5, true, 0.75e-6, 0.375e-6},
+                          {third.name, third.label, "", "um", 1e-6, 0.01, false, std::nan(""), std::nan("")},
+                          {{"length-scale", "readings", "length", "linear"},
+                           "length scale",
+                           "",
+                           "ppm",
+                           1e-6,
+                           0.9,
+                           true,
+                           0.2e-6,
+                           std::nan("")}};
+  diagnosis.noise = {{0, "white", "1", 1.25, 1.125, 1.375, std::nan(""), ""},
+                     {0, "wander", "m or rad", 0.5e-6, 0.25e-6, 0.75e-6, 40.0, ""},
+                     {1, "line", "m or rad", 0.0, 0.0, 0.0, 0.5, "off: not supported"}};
+  diagnosis.noise_instruments = {"laser-tracer", "ball-bar"};
+  diagnosis.removed_readings = 3;
+  diagnosis.families = 120;
+  diagnosis.generic_tests = 400;
+  return diagnosis;
+}
+
+}  // namespace volcal::testing

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <tuple>
 #include <utility>
 
@@ -22,7 +23,7 @@ constexpr double kToldApart = 6.0;       // of the extended BIC
 constexpr double kWorthRefining = 40.0;  // the same, below the leading one
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;    // of LM: what fits as well is a rival, however many its parameters
-constexpr double kLessProbable = 1.0;      // log10 p, family-wise
+constexpr double kLessProbable = 0.1;      // share of log10 p, family-wise; components cost probability
 constexpr double kWorthSecondLook = -3.0;  // log10 p of a family for itself
 constexpr std::size_t kMostSecondLooks = 3;
 constexpr int kMostChanges = 4;
@@ -31,6 +32,16 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
   all.conservativeResize(more.rows(), before + more.cols());
   all.rightCols(more.cols()) = more;
+}
+
+/// Variables of the generic scan that an effect depends on: "T_column", "dir_x", "tool side_x", "time" and
+/// "z".
+std::vector<std::string> drivers_of(const EffectName& name) {
+  std::vector<std::string> drivers;
+  if (name.driver.starts_with("tool ")) return {name.driver};
+  std::istringstream words(name.driver);
+  for (std::string word; words >> word;) drivers.push_back(word);
+  return drivers;
 }
 
 bool near(const FamilyTest& own, const FamilyTest& other) {
@@ -51,9 +62,18 @@ EffectSearch::EffectSearch(const LinearModel& model, const std::vector<bool>& he
 void EffectSearch::run() {
   start();
   climb();
-  for (int change = 0; change < kMostChanges && reconsider(); ++change) climb();
+  settle([this] { climb(); });
   give_up();
   restate_ladder();
+}
+
+/// Until every added effect stands against its rivals.
+void EffectSearch::settle(const std::function<void()>& after_a_change) {
+  for (int change = 0; change < kMostChanges; ++change) {
+    if (!reconsider(true)) return;
+    after_a_change();
+  }
+  reconsider(false);
 }
 
 void EffectSearch::start() {
@@ -160,7 +180,9 @@ bool EffectSearch::add_leading() {
 std::optional<FamilyTest> EffectSearch::hidden_in_noise() const {
   std::vector<const FamilyTest*> near;
   for (const FamilyTest& test : tests_) {
-    if (!is_added(test.family) && test.log10_p < kWorthSecondLook) near.push_back(&test);
+    const bool out =
+        is_added(test.family) || given_up_.contains(test.family) || dropped_.contains(test.family);
+    if (!out && test.log10_p < kWorthSecondLook) near.push_back(&test);
   }
   std::ranges::sort(near, std::greater{}, &FamilyTest::gain);
   if (near.size() > kMostSecondLooks) near.resize(kMostSecondLooks);
@@ -240,20 +262,21 @@ void EffectSearch::restate_ladder() {
 
 /// Each added effect against all others, now that the rest is in the model: true when one was exchanged or
 /// left, and the climb goes on from there.
-bool EffectSearch::reconsider() {
+bool EffectSearch::reconsider(bool may_change) {
   std::vector<FamilyTest> kept;
   for (const AddedEffect& effect : added_) kept.push_back(effect.test);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
     std::vector<FamilyTest> tests = refined_tests(*projector_under(noise_, i));
     const FamilyTest& own = tests[kept[i].family];
-    if (family_wise_log10_p(own) > kLog10FamilyRisk) {
+    if (may_change && family_wise_log10_p(own) > kLog10FamilyRisk) {
+      dropped_.insert(own.family);
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
       add_again(kept);
       return true;
     }
     const FamilyTest* best = leading(tests, kept[i].family);
-    if (best != nullptr && best->gain > own.gain + kToldApart) {
+    if (may_change && best != nullptr && best->gain > own.gain + kToldApart) {
       kept[i] = *best;
       add_again(kept);
       return true;
@@ -268,8 +291,19 @@ bool EffectSearch::reconsider() {
   return false;
 }
 
+/// Its own driver moves what an effect leaves: it has another shape, or is another effect.
+bool EffectSearch::still_moves(const std::vector<std::string>& drivers) const {
+  return std::ranges::any_of(generic_, [&](const GenericTest& test) {
+    return family_wise_log10_p(test) < kLog10GenericRisk &&
+           std::ranges::any_of(test.variables, [&](const std::string& variable) {
+             return std::ranges::find(drivers, variable) != drivers.end();
+           });
+  });
+}
+
 /// Powers of one driver that are needed together stand for a function of it that the catalogue does not hold,
-/// and a name that is less certain than what it leaves unexplained is none.
+/// and a name that is less certain than what it leaves unexplained, or leaves its own driver at work, is
+/// none.
 void EffectSearch::find_no_names() {
   double remains = 0.0;
   for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
@@ -277,9 +311,8 @@ void EffectSearch::find_no_names() {
   for (const AddedEffect& effect : added_) {
     const EffectName name = families_[effect.test.family].name();
     by_driver[{name.kind, name.target, name.driver}].push_back(effect.test.family);
-    if (remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test)) {
-      given_up_.insert(effect.test.family);
-    }
+    const bool less_certain = remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test);
+    if (less_certain || still_moves(drivers_of(name))) given_up_.insert(effect.test.family);
   }
   for (const auto& [key, members] : by_driver) {
     if (members.size() > 1) given_up_.insert(members.begin(), members.end());
@@ -294,8 +327,7 @@ void EffectSearch::give_up() {
     if (!given_up_.contains(effect.test.family)) kept.push_back(effect.test);
   }
   add_again(kept);
-  for (int change = 0; change < kMostChanges && reconsider(); ++change) {
-  }
+  settle([] {});
   test();
 }
 
@@ -314,7 +346,7 @@ const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
                                         std::optional<std::size_t> but) const {
   const FamilyTest* best = nullptr;
   for (const FamilyTest& test : tests) {
-    if (test.score.dof == 0 || given_up_.contains(test.family)) continue;
+    if (test.score.dof == 0 || given_up_.contains(test.family) || dropped_.contains(test.family)) continue;
     if (is_added(test.family) && test.family != but) continue;
     if (best == nullptr || test.gain > best->gain) best = &test;
   }
@@ -326,7 +358,7 @@ const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
 bool EffectSearch::generic_does_better(const FamilyTest& best) const {
   return std::ranges::any_of(generic_, [&](const GenericTest& test) {
     if (!test.kernel && test.gain > best.gain + kToldApart) return true;
-    return family_wise_log10_p(test) < family_wise_log10_p(best) - kLessProbable;
+    return family_wise_log10_p(test) < (1.0 + kLessProbable) * family_wise_log10_p(best) - 1.0;
   });
 }
 

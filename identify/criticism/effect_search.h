@@ -76,7 +76,9 @@ class EffectSearch {
   void add(const FamilyTest& test);
   void add_step(const std::string& added);
   void restate_ladder();
-  bool reconsider();
+  void settle(const std::function<void()>& after_a_change);
+  bool reconsider(bool may_change);
+  bool still_moves(const std::vector<std::string>& drivers) const;
   void find_no_names();
   void give_up();
   void add_again(const std::vector<FamilyTest>& tests);
@@ -96,7 +98,8 @@ class EffectSearch {
   std::vector<GenericTest> generic_;
   std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
-  std::set<std::size_t> given_up_;
+  std::set<std::size_t> given_up_;  ///< no names
+  std::set<std::size_t> dropped_;   ///< not significant beside the others
   std::vector<LadderStep> ladder_;
   std::optional<double> heldout_loglik_;
   double log10_families_ = 0.0;

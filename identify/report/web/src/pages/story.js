@@ -121,7 +121,7 @@ export function renderStory(body, data) {
   }
   body.append(
     ladderTable(data.ladder),
-    note('Held-out lines chose nothing: every fifth line of each setup. Noise floor: what the noise model and the uncertainty of the parameters make of these lines. Systematic: √(mean square − floor²), with 95 % interval.'),
+    note('Held-out lines chose nothing: every tenth line of each setup. Noise floor: what the noise model and the uncertainty of the parameters make of these lines. Systematic: √(mean square − floor²), with 95 % interval.'),
   );
   if (data.next_measurement.length > 0) {
     body.append(el('h3', {}, 'What to measure next'), el('ul', {}, data.next_measurement.map((text) => el('li', {}, text))));

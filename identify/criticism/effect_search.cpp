@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <tuple>
 #include <utility>
 
@@ -34,16 +33,6 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   all.rightCols(more.cols()) = more;
 }
 
-/// Variables of the generic scan that an effect depends on: "T_column", "dir_x", "tool side_x", "time" and
-/// "z".
-std::vector<std::string> drivers_of(const EffectName& name) {
-  std::vector<std::string> drivers;
-  if (name.driver.starts_with("tool ")) return {name.driver};
-  std::istringstream words(name.driver);
-  for (std::string word; words >> word;) drivers.push_back(word);
-  return drivers;
-}
-
 bool near(const FamilyTest& own, const FamilyTest& other) {
   return own.gain - other.gain < kToldApart || own.score.lm - other.score.lm < kSameLikelihood;
 }
@@ -64,6 +53,7 @@ void EffectSearch::run() {
   climb();
   settle([this] { climb(); });
   give_up();
+  if (!options_.climb) keep_one_step();
   restate_ladder();
 }
 
@@ -155,9 +145,7 @@ void EffectSearch::climb() {
       first_tests_ = tests_;
       first_generic_ = generic_;
     }
-    const bool enough =
-        static_cast<int>(added_.size()) >= options_.most || (!options_.climb && !added_.empty());
-    if (enough || !add_leading()) return;
+    if (static_cast<int>(added_.size()) >= options_.most || !add_leading()) return;
   }
 }
 
@@ -312,7 +300,7 @@ void EffectSearch::find_no_names() {
     const EffectName name = families_[effect.test.family].name();
     by_driver[{name.kind, name.target, name.driver}].push_back(effect.test.family);
     const bool less_certain = remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test);
-    if (less_certain || still_moves(drivers_of(name))) given_up_.insert(effect.test.family);
+    if (less_certain || still_moves(scan_variables_of(name))) given_up_.insert(effect.test.family);
   }
   for (const auto& [key, members] : by_driver) {
     if (members.size() > 1) given_up_.insert(members.begin(), members.end());
@@ -328,6 +316,22 @@ void EffectSearch::give_up() {
   }
   add_again(kept);
   settle([] {});
+  test();
+}
+
+/// The first effect, and the changes of the model before it.
+void EffectSearch::keep_one_step() {
+  const auto is_effect = [this](const AddedEffect& each) {
+    return families_[each.test.family].effect != nullptr;
+  };
+  const auto first = std::ranges::find_if(added_, is_effect);
+  if (first == added_.end() || first + 1 == added_.end()) return;
+  more_is_known_ = std::any_of(first + 1, added_.end(), is_effect);
+  const std::vector<AddedEffect> before(added_.begin(), first + 1);
+  std::vector<FamilyTest> kept;
+  for (const AddedEffect& effect : before) kept.push_back(effect.test);
+  add_again(kept);
+  for (std::size_t i = 0; i < before.size(); ++i) added_[i].rivals = before[i].rivals;
   test();
 }
 

@@ -2,7 +2,8 @@
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
 /// and no generic test does better; then every added one must stand against all others again. Several powers
 /// of one driver on one target are no name, nor is what explains less than it leaves: such are left out
-/// again.
+/// again. A search for one step climbs as well, so that what it names stands beside all the rest, and then
+/// keeps the first.
 
 #include <functional>
 #include <memory>
@@ -21,7 +22,7 @@ namespace volcal {
 struct SearchOptions {
   int threads = 1;    ///< at least 1
   int most = 8;       ///< effects added
-  bool climb = true;  ///< false: one effect
+  bool climb = true;  ///< false: in the end one effect is kept
   std::vector<std::string> leave_out;
   std::function<void(const std::string& stage, double done)> progress;
 };
@@ -55,6 +56,11 @@ class EffectSearch {
   /// With intervals, from all readings.
   NoiseEstimate noise_with_uncertainty() const;
 
+  /// Effects found after the one that was kept.
+  bool more_is_known() const { return more_is_known_; }
+  /// Families that stood out and are no names.
+  const std::set<std::size_t>& given_up() const { return given_up_; }
+
   bool is_added(std::size_t family) const;
   double family_wise_log10_p(const FamilyTest& test) const;
   double family_wise_log10_p(const GenericTest& test) const;
@@ -81,6 +87,7 @@ class EffectSearch {
   bool still_moves(const std::vector<std::string>& drivers) const;
   void find_no_names();
   void give_up();
+  void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
   bool generic_does_better(const FamilyTest& best) const;
@@ -100,6 +107,7 @@ class EffectSearch {
   std::vector<AddedEffect> added_;
   std::set<std::size_t> given_up_;  ///< no names
   std::set<std::size_t> dropped_;   ///< not significant beside the others
+  bool more_is_known_ = false;
   std::vector<LadderStep> ladder_;
   std::optional<double> heldout_loglik_;
   double log10_families_ = 0.0;

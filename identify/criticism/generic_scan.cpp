@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 #include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/score_test.h"
@@ -285,6 +286,17 @@ std::vector<ScanVariable> scan_variables(const LinearModel& model) {
       return station_of(setup) == station ? 1.0 : 0.0;
     });
   }
+  return variables;
+}
+
+std::vector<std::string> scan_variables_of(const EffectName& name) {
+  std::vector<std::string> variables;
+  for (const std::string& text : {name.target, name.driver}) {
+    if (text.starts_with("tool ") || text.starts_with("station ")) variables.push_back(text);
+  }
+  if (name.driver.starts_with("tool")) return variables;
+  std::istringstream words(name.driver);
+  for (std::string word; words >> word;) variables.push_back(word);
   return variables;
 }
 

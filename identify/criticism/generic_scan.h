@@ -23,6 +23,10 @@ struct ScanVariable {
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
 
+/// Names of the variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its driver, "tool
+/// side_x" of either, "station P1" of its target.
+std::vector<std::string> scan_variables_of(const EffectName& name);
+
 inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
 
 struct GenericTest {

@@ -40,10 +40,14 @@ class Proposer {
 
   void run() {
     const std::vector<PlannedHypothesis> asked = asked_hypotheses();
-    const std::vector<PlannedHypothesis> alternatives = of_findings(diagnosis_.one_of);
+    std::vector<std::vector<PlannedHypothesis>> alternatives;
+    for (const auto* set : sets_of_alternatives(diagnosis_)) {
+      alternatives.push_back(of_findings(*set));
+      if (alternatives.back().size() < 2) alternatives.pop_back();
+    }
     std::vector<PlannedHypothesis> invisible;
     if (diagnosis_.verdict == Verdict::NotVisible) invisible = invisible_hypotheses();
-    if (asked.empty() && alternatives.size() < 2 && invisible.empty()) return;
+    if (asked.empty() && alternatives.empty() && invisible.empty()) return;
 
     const MenuContext context{state_.model.campaign(), state_.model.model().chain(), options_.readings};
     const ImaginedCampaign imagined(state_.model.campaign(), state_.result, state_.model.instruments(),
@@ -53,9 +57,8 @@ class Proposer {
       separate(planner, imagined, asked, all_pairs(asked.size()));
       make_visible(planner, imagined, asked);
     }
-    if (alternatives.size() > 1) {
-      separate(plan(alternatives, imagined), imagined, alternatives, with_leading(alternatives.size()));
-    }
+    for (const auto& set : alternatives)
+      separate(plan(set, imagined), imagined, set, with_leading(set.size()));
     if (!invisible.empty()) make_visible(plan(invisible, imagined), imagined, invisible);
   }
 
@@ -126,7 +129,9 @@ class Proposer {
 
   /// As it was found when it is significant, else where it is hardest to see.
   PlannedHypothesis asked(std::size_t family) const {
-    for (const auto* list : {&diagnosis_.effects, &diagnosis_.one_of}) {
+    std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis_);
+    lists.push_back(&diagnosis_.effects);
+    for (const auto* list : lists) {
       for (const EffectFinding& finding : *list) {
         if (finding.name == state_.families[family].name()) return of_findings({finding}).front();
       }

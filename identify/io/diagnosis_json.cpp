@@ -173,7 +173,9 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                {"verdict", to_string(diagnosis.verdict)},
                {"words", diagnosis.words},
                {"effects", list_json(diagnosis.effects)},
-               {"one_of", list_json(diagnosis.one_of)}};
+               {"one_of", list_json(diagnosis.one_of)},
+               {"further_one_of", Json::array()}};
+  for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["not_visible"] = list_json(diagnosis.not_visible);

@@ -181,6 +181,7 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.words = json.at("words").get<std::vector<std::string>>();
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
+  for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
                                  text(each, "direction"), micro(each, "rms_um"), number(each, "log10_p")});

@@ -167,7 +167,10 @@ std::string detectable_table(const Diagnosis& diagnosis) {
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
   std::vector<EffectFinding> all;
-  for (const auto* list : {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking}) {
+  std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis);
+  lists.insert(lists.begin(), &diagnosis.effects);
+  lists.push_back(&diagnosis.ranking);
+  for (const auto* list : lists) {
     for (const EffectFinding& effect : *list) {
       const bool known = std::ranges::find(all, effect.name, &EffectFinding::name) != all.end();
       if (!known && !effect.resolution) all.push_back(effect);
@@ -183,8 +186,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
-  if (!diagnosis.one_of.empty())
-    text += "\n" + evidence_table(diagnosis.one_of, ranked, "Not told apart", diagnosis.one_of.size());
+  for (const auto* set : sets_of_alternatives(diagnosis))
+    text += "\n" + evidence_table(*set, ranked, "Not told apart", set->size());
   if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
   text += confounding_table(diagnosis.confounding);

@@ -43,6 +43,7 @@ inline Diagnosis hand_made_diagnosis() {
   finer.dof = 8;
   diagnosis.effects = {reversal};
   diagnosis.one_of = {other};
+  diagnosis.further_one_of = {{third, other}};
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
   diagnosis.unknown = {{{"x", "time"}, "Z", 0.3e-6, -6.5}};

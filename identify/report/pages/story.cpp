@@ -161,7 +161,11 @@ Json story_page(const DiagnosisInput& input) {
   Json ladder = Json::array();
   for (const LadderStep& step : diagnosis.ladder) ladder.push_back(step_json(step));
   Json one_of = Json::array();
-  for (const EffectFinding& effect : diagnosis.one_of) one_of.push_back(finding_json(effect));
+  for (const auto* set : sets_of_alternatives(diagnosis)) {
+    Json alternatives = Json::array();
+    for (const EffectFinding& effect : *set) alternatives.push_back(finding_json(effect));
+    one_of.push_back(std::move(alternatives));
+  }
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
           {"headline", headline(diagnosis.verdict)},

@@ -35,6 +35,8 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(effect.at("log10_p"), -12.5);
   EXPECT_EQ(effect.at("visible_fraction"), 0.75);
   EXPECT_EQ(document.at("one_of").at(0).at("target"), "EYY");
+  EXPECT_EQ(document.at("further_one_of").at(0).at(0).at("target"), "EZZ");
+  EXPECT_EQ(document.at("further_one_of").at(0).at(1).at("target"), "EYY");
   const json& unknown = document.at("unknown").at(0);
   EXPECT_EQ(unknown.at("variables"), (json{"x", "time"}));
   EXPECT_EQ(unknown.at("direction"), "Z");

@@ -105,8 +105,8 @@ export function renderStory(body, data) {
   body.append(el('h3', {}, 'Before'), ...data.before.map((text) => el('p', {}, text)));
   body.append(el('h3', {}, 'What was missing, and how we know'));
   body.append(...(data.missing.length > 0 ? data.missing.map(missingItem) : [el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and told apart from the others.`)]));
-  if (data.one_of.length > 0) {
-    body.append(el('p', {}, 'These readings do not tell the following apart:'), ...data.one_of.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));
+  for (const set of data.one_of) {
+    body.append(el('p', {}, 'These readings do not tell the following apart:'), ...set.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));
   }
   body.append(el('h3', {}, 'After'), ...data.after.map((text) => el('p', {}, text)));
   const whole = data.ladder.filter((step) => step.rms_heldout_um !== null);

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <set>
 
-#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/score_test.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/quadratic_form.h"
 #include "volcal/model/effects/effect_keys.h"

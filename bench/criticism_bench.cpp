@@ -21,8 +21,8 @@
 
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
-#include "volcal/identify/criticism/noise_estimate.h"
-#include "volcal/identify/criticism/parallel.h"
+#include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"

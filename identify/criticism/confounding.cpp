@@ -6,8 +6,8 @@
 #include <map>
 
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/separation.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/effects/registry.h"
 

@@ -15,7 +15,7 @@
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/criticism/ladder.h"
-#include "volcal/identify/criticism/noise_estimate.h"
+#include "volcal/identify/noise/noise_estimate.h"
 
 namespace volcal {
 

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "volcal/identify/criticism/left_out.h"
-#include "volcal/identify/criticism/parallel.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/effects/registry.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/noise_model.h"
 #include "volcal/identify/criticism/projector.h"
+#include "volcal/identify/noise/noise_model.h"
 
 namespace volcal {
 

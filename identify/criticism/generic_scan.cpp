@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "volcal/identify/criticism/parallel.h"
 #include "volcal/identify/criticism/score_test.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/quadratic_form.h"
 #include "volcal/model/effects/effect_keys.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/menu/menu.h"
-#include "volcal/identify/criticism/noise_model.h"
+#include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/solve/datum.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/observation/measurement_model.h"

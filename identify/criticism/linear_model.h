@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/noise_model.h"
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/noise_model.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/observation/measurement_model.h"
 

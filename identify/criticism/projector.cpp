@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "volcal/identify/criticism/parallel.h"
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
 

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/criticism/noise_model.h"
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/noise_model.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 
 namespace volcal {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/model/description/errors.h"

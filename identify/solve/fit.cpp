@@ -7,7 +7,7 @@
 #include <sstream>
 #include <thread>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/resolution.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 

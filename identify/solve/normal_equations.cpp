@@ -8,7 +8,7 @@
 #include <numeric>
 #include <thread>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/normal_tile.h"
 
 namespace volcal {

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/resolution.h"
 
 namespace volcal {

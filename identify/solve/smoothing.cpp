@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {

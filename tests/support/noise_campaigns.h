@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 
 namespace volcal::test {
 

@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/bounded_minimum.h"
+#include "volcal/identify/numeric/bounded_minimum.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/noise_estimate.h"
+#include "volcal/identify/noise/noise_estimate.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/support/noise_campaigns.h"
-#include "volcal/identify/criticism/bounded_minimum.h"
+#include "volcal/identify/numeric/bounded_minimum.h"
 
 namespace volcal {
 namespace {

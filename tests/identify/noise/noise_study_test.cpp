@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/support/noise_campaigns.h"
-#include "volcal/identify/criticism/noise_estimate.h"
+#include "volcal/identify/noise/noise_estimate.h"
 
 namespace volcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {

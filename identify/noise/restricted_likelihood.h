@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "volcal/identify/criticism/noise_model.h"
+#include "volcal/identify/noise/noise_model.h"
 
 namespace volcal {
 

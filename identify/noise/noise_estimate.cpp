@@ -1,12 +1,12 @@
-#include "volcal/identify/criticism/noise_estimate.h"
+#include "volcal/identify/noise/noise_estimate.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "volcal/identify/criticism/noise_search.h"
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/noise/noise_search.h"
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {

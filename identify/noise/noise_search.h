@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "volcal/identify/criticism/bounded_minimum.h"
-#include "volcal/identify/criticism/noise_estimate.h"
+#include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/identify/numeric/bounded_minimum.h"
 
 namespace volcal {
 

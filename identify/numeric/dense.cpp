@@ -1,4 +1,4 @@
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
 
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 
 #include <gtest/gtest.h>
 

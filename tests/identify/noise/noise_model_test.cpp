@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/noise_model.h"
+#include "volcal/identify/noise/noise_model.h"
 
 #include <gtest/gtest.h>
 

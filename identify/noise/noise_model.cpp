@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/noise_model.h"
+#include "volcal/identify/noise/noise_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "volcal/identify/criticism/parallel.h"
-#include "volcal/identify/solve/dense.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
 namespace {

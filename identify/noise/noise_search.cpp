@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/noise_search.h"
+#include "volcal/identify/noise/noise_search.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

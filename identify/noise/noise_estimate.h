@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/restricted_likelihood.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
 
 namespace volcal {
 

@@ -266,7 +266,7 @@ class Diagnostician {
 
   /// What stood out under names that are none, and no generic test sees for itself.
   void collect_given_up() {
-    for (const std::size_t family : search_.given_up()) {
+    for (const auto& [family, reason] : search_.given_up()) {
       const FamilyTest& test = search_.tests()[family];
       if (search_.is_added(family) || search_.family_wise_log10_p(test) > kLog10FamilyRisk) continue;
       const EffectName name = families_[family].name();
@@ -338,6 +338,9 @@ class Diagnostician {
       words.emplace_back(
           "Nothing is above the noise; what would have been found is in the table of smallest detectable "
           "amplitudes.");
+    }
+    for (const auto& [family, reason] : search_.given_up()) {
+      words.push_back("Not named " + families_[family].label() + ": " + reason + ".");
     }
     for (const EffectFinding& change : diagnosis_.model_changes) {
       words.push_back("The error function " + change.name.target + " needs more knots.");

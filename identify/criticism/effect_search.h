@@ -1,11 +1,12 @@
 #pragma once
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
 /// and no generic test does better; then every added one must stand against all others again. Several powers
-/// of one driver on one target are no name, nor is what explains less than it leaves: such are left out
-/// again. A search for one step climbs as well, so that what it names stands beside all the rest, and then
-/// keeps the first.
+/// of one driver on one target are no name, nor is what explains less than it leaves or what varies
+/// (constancy_test.h): such are left out again. A search for one step climbs as well, so that what it names
+/// stands beside all the rest, and then keeps the first.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -58,8 +59,8 @@ class EffectSearch {
 
   /// Effects found after the one that was kept.
   bool more_is_known() const { return more_is_known_; }
-  /// Families that stood out and are no names.
-  const std::set<std::size_t>& given_up() const { return given_up_; }
+  /// Families that stood out and are no names, and why.
+  const std::map<std::size_t, std::string>& given_up() const { return given_up_; }
 
   bool is_added(std::size_t family) const;
   double family_wise_log10_p(const FamilyTest& test) const;
@@ -85,6 +86,8 @@ class EffectSearch {
   void settle(const std::function<void()>& after_a_change);
   bool reconsider(bool may_change);
   bool still_moves(const std::vector<std::string>& drivers) const;
+  std::string why_no_name(std::size_t added) const;
+  Eigen::Index first_column(std::size_t added) const;
   void find_no_names();
   void give_up();
   void keep_one_step();
@@ -105,8 +108,8 @@ class EffectSearch {
   std::vector<GenericTest> generic_;
   std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
-  std::set<std::size_t> given_up_;  ///< no names
-  std::set<std::size_t> dropped_;   ///< not significant beside the others
+  std::map<std::size_t, std::string> given_up_;  ///< no names; reason
+  std::set<std::size_t> dropped_;                ///< not significant beside the others
   bool more_is_known_ = false;
   std::vector<LadderStep> ladder_;
   std::optional<double> heldout_loglik_;
@@ -117,5 +120,7 @@ class EffectSearch {
 /// Family-wise risks of naming an effect, and of the generic scans (polynomials and kernels each).
 extern const double kLog10FamilyRisk;
 extern const double kLog10GenericRisk;
+/// Risk that a right name is refused because its amplitude seems to vary.
+extern const double kLog10ConstancyRisk;
 
 }  // namespace volcal

@@ -123,6 +123,8 @@ MeasurementProposal proposal_from(const Json& json) {
   proposal.makes_visible = names_from(json.at("makes_visible"));
   proposal.readings = json.at("readings").get<std::size_t>();
   proposal.separation = number(json, "separation");
+  proposal.reached = number(json, "separation_reached");
+  proposal.plain = number(json, "separation_plain");
   proposal.gain = gain_from(json, "gain");
   proposal.plain_gain = gain_from(json, "plain_gain");
   proposal.words = text(json, "words");

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
@@ -46,7 +46,7 @@ std::string mib_text(const AmplitudeFigure& figure) {
   return std::isinf(figure.mib) ? "never" : edge(figure.mib, figure.si_per_unit, 2);
 }
 
-/// The nearest pairs of the confounding matrix.
+/// Rivals in the confounding matrix, those of the leading effects first.
 std::string confounding_table(const Confounding& confounding) {
   struct Pair {
     double cosine;
@@ -60,7 +60,7 @@ std::string confounding_table(const Confounding& confounding) {
     }
   }
   if (pairs.empty()) return {};
-  std::ranges::stable_sort(pairs, std::greater{}, &Pair::cosine);
+  std::ranges::stable_sort(pairs, {}, [](const Pair& pair) { return std::pair(pair.first, -pair.cosine); });
   TextTable table({{"cosine"}, {"effect", Align::Left}, {"and", Align::Left}},
                   "Hardly told apart (after projection off the model)");
   for (std::size_t i = 0; i < std::min(kRanked, pairs.size()); ++i) {

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <numeric>
 
-#include "volcal/identify/criticism/parallel.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/threads.h"

@@ -8,7 +8,7 @@
 
 #include "volcal/identify/cli/studies/criticism_campaign.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
-#include "volcal/identify/criticism/parallel.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 

@@ -12,7 +12,7 @@
 namespace volcal::cli {
 
 /// Full names (kind:target:driver:shape) of all that a diagnosis of the campaign against the model tests.
-std::vector<std::string> testable_effects(const Campaign& campaign, const ModelSpec& model);
+std::vector<std::string> testable_effects(const Campaign& campaign, const ModelSpec& spec);
 
 /// `testable`: of a campaign; empty when none is given.
 std::string effect_list_text(const std::vector<std::string>& testable);

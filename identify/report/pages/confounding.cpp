@@ -65,7 +65,7 @@ Json triangle(const Eigen::MatrixXd& cosine) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < cosine.rows(); ++i) {
     Json row = Json::array();
-    for (Eigen::Index k = 0; k < i; ++k) row.push_back(rounded(cosine(i, k), 4));
+    for (Eigen::Index k = 0; k < i; ++k) row.push_back(rounded(cosine(i, k), 6));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -1,5 +1,5 @@
 import { choice, el, fixed, note, table } from '../dom.js';
-import { addPlot, commonLayout } from '../plot.js';
+import { addPlot, commonLayout, sceneHeight } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
@@ -119,7 +119,7 @@ function ranges(data, tool) {
   });
 }
 
-function sceneLayout(data, tool) {
+function sceneLayout(data, tool, height) {
   const [x, y, z] = ranges(data, tool);
   const axis = (name, range) => ({
     range,
@@ -127,7 +127,7 @@ function sceneLayout(data, tool) {
     zeroline: false, showbackground: false, tickfont: { size: 10 }, nticks: 6, showspikes: false,
   });
   return {
-    height: 520, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: 'rgba(0,0,0,0)',
+    height, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: 'rgba(0,0,0,0)',
     ...commonLayout(),
     legend: { x: 0, y: 0, yanchor: 'bottom', orientation: 'h', bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant' }, uirevision: 'keep',
     scene: { domain: { x: [0, 0.87], y: [0.1, 1] }, aspectmode: 'data', xaxis: axis('x', x), yaxis: axis('y', y), zaxis: axis('z', z), camera: kCamera },
@@ -207,7 +207,7 @@ export function renderVolume(body, data) {
   const ready = [];
   nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({
     data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...stationTraces(data.named_points, k === 0)],
-    layout: sceneLayout(data, view.tool),
+    layout: sceneLayout(data, view.tool, sceneHeight(node)),
   }), (drawn) => {
     ready.push(drawn);
     if (ready.length === 2) coupleCameras(nodes);

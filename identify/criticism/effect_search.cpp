@@ -16,7 +16,7 @@ namespace volcal {
 
 const double kLog10FamilyRisk = std::log10(0.005);
 const double kLog10GenericRisk = std::log10(0.002);
-const double kLog10ConstancyRisk = std::log10(0.002);
+const double kLog10ConstancyRisk = std::log10(0.01);
 
 namespace {
 

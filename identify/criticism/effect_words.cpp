@@ -77,6 +77,8 @@ constexpr auto kScanWords = std::to_array<EffectWord>({
     {"time", "time since the first reading of the campaign"},
     {"T_CHANNEL", "temperature of a channel"},
     {"length", "length that is measured"},
+    {"elevation", "angle of the beam above the horizontal, at the nominal station"},
+    {"run", "number of the run"},
     {"feed", "feed rate"},
     {"tool TOOL", "whether this tool is carried"},
     {"station STATION", "whether the reading was taken from this station"},

@@ -245,6 +245,15 @@ std::vector<ScanVariable> scan_variables(const LinearModel& model) {
   add("length", [&model](const Setup&, std::size_t setup, std::size_t row) {
     return model.views()[setup].length[static_cast<Eigen::Index>(row)];
   });
+  add("elevation", [&model](const Setup& setup, std::size_t of, std::size_t row) {
+    const auto station = setup.options.vector("station");
+    if (!station) return 0.0;
+    const Eigen::Vector3d beam = model.views()[of].nominal_point_w[row] - *station;
+    return std::atan2(beam.z(), beam.head<2>().norm());
+  });
+  add("run", [](const Setup& setup, std::size_t, std::size_t row) {
+    return setup.readings.run.empty() ? 0.0 : static_cast<double>(setup.readings.run[row]);
+  });
   add("feed", [](const Setup& setup, std::size_t, std::size_t row) {
     return setup.readings.feed.empty() ? 0.0 : setup.readings.feed[row];
   });

@@ -56,7 +56,7 @@ class Constancy : public ::testing::Test {
 
 TEST_F(Constancy, KeepsItsProbability) {
   std::mt19937_64 random(5);
-  constexpr int kDraws = 120;
+  constexpr int kDraws = 60;
   int below_fifth = 0;
   for (int draw = 0; draw < kDraws; ++draw)
     below_fifth += test(drawn(random)).log10_p < std::log10(0.2) ? 1 : 0;

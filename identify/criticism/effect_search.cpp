@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kToldApart = 6.0;       // of the extended BIC
 constexpr double kWorthRefining = 40.0;  // the same, below the leading one
+constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, before its shape is refined
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;    // of LM: what fits as well is a rival, however many its parameters
 constexpr double kLessProbable = 0.1;      // share of log10 p, family-wise; components cost probability
@@ -131,7 +132,8 @@ std::vector<FamilyTest> EffectSearch::refined_tests(const Projector& projector) 
   double best = 0.0;
   for (const FamilyTest& test : tests) best = std::max(best, test.gain);
   for (FamilyTest& test : tests) {
-    if (test.gain > best - kWorthRefining) refine_shape(model_, families_[test.family], projector, test);
+    if (test.gain > best - kWorthRefining && test.log10_p < kNotByChance)
+      refine_shape(model_, families_[test.family], projector, test);
   }
   return tests;
 }

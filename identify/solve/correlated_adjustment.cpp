@@ -15,6 +15,7 @@ constexpr double kSpeaks = 1e-2;
 constexpr double kNoPrior = 1e-10;
 constexpr Eigen::Index kBlock = 4096;
 constexpr double kNegligible = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
+constexpr int kRenewals = 4;          // of what the model holds fixed; then it stays, and steps contract
 constexpr int kMostIterations = 12;
 
 InstrumentEquations sum_of(const std::vector<InstrumentEquations>& equations) {
@@ -160,7 +161,7 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
     const Eigen::VectorXd gradient = sums.gradient + total.gradient(z);
     const Eigen::VectorXd step = -(result.covariance * gradient);
     z += step;
-    renew(z);
+    if (result.iterations < kRenewals) renew(z);
     ++result.iterations;
     result.squares = sums.squares + 2.0 * sums.gradient.dot(step) + step.dot(sums.matrix * step);
     result.redundancy = sums.observations - result.covariance.cwiseProduct(sums.matrix).sum();

@@ -63,7 +63,7 @@ struct CorrelatedAdjustment {
 };
 
 /// Minimises from z, which holds the result. Smoothing is renewed in the first `evidence_rounds` iterations;
-/// `renew` is called after every step with the new z, to renew what the model holds fixed.
+/// `renew` is called after the first steps with the new z, to renew what the model holds fixed.
 CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const GaussianPrior& prior,
                                        int evidence_rounds,
                                        const std::function<void(const Eigen::VectorXd& z)>& renew,

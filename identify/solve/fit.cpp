@@ -288,14 +288,16 @@ class Identification {
       expand();
     };
     correlated_ = adjust_correlated(whitened, base_prior_, evidence_rounds, renew, terms_, z_);
+    parameters_ = datum_->raw(z_);
     result_.iterations += correlated_.iterations;
     result_.final_cost = correlated_.cost;
     converged_ = correlated_.converged;
   }
 
+  /// Where an error is not visible, wide priors decide what it is, and with it what is left for the noise.
   bool models_noise() const {
     return options_.noise == NoisePolicy::Automatic && options_.loss == RobustLoss::None &&
-           options_.variance_components;
+           options_.variance_components && !rank_.deficient;
   }
 
   /// Estimated about the white adjustment and once more about that which follows from it: smoothing chosen

@@ -19,7 +19,7 @@
 namespace volcal {
 
 enum class OutlierPolicy { List, Remove };
-/// White: independent readings. A robust loss and stated sigma that are kept imply it.
+/// White: independent readings; also with a robust loss, kept stated sigma or errors that are not visible.
 enum class NoisePolicy { Automatic, White };
 
 struct FitOptions {

@@ -27,7 +27,8 @@ class FitNoiseProgram : public ::testing::Test {
                                             << "\"\nseed = 5\n"
                                                "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 4]\n"
                                                "noise = { constant_um = 0.25, per_metre_um = 0.3, "
-                                               "repeatability_um = 0.6, wander_um = 1.2, line_um = 0.8 }\n"
+                                               "repeatability_um = 0.6, wander_um = 1.2, "
+                                               "wander_time_s = 60.0, line_um = 0.8 }\n"
                                                "[validation]\npoints = 5\n";
     const auto run = run_program("simulate " + in_scratch("study.toml") + " -o " + in_scratch("campaign"));
     ASSERT_EQ(run.exit_code, 0) << run.errors;
@@ -60,8 +61,9 @@ TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
     if (row.at("term") != "wander") continue;
     wander = true;
     EXPECT_EQ(row.at("instrument"), "laser-tracer");
-    EXPECT_LT(row.at("low").get<double>(), 1.2e-6);
-    EXPECT_GT(row.at("high").get<double>(), 1.2e-6);
+    EXPECT_NEAR(row.at("value").get<double>(), 1.2e-6, 0.4e-6);
+    EXPECT_LT(row.at("low").get<double>(), row.at("value").get<double>());
+    EXPECT_GT(row.at("high").get<double>(), row.at("value").get<double>());
   }
   EXPECT_TRUE(wander);
   // Other commands read the result.

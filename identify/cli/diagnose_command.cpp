@@ -106,6 +106,7 @@ int run(const Arguments& arguments) {
   FitOptions fit_options;
   fit_options.threads = arguments.threads;
   fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;  // the diagnosis estimates it, at every step anew
   fit_options.progress = [&bar](const std::string& stage, double done) {
     bar.update("fit: " + stage, 0.3 * done);
   };

@@ -28,6 +28,7 @@ struct Arguments {
   std::string loss = "none";
   std::string outliers = "list";
   std::string solver = "compressed";
+  std::string noise = "auto";
   int threads = 0;
   bool keep_stated_sigma = false;
   bool first_order = false;
@@ -42,6 +43,7 @@ FitOptions fit_options(const Arguments& arguments) {
                                               : RobustLoss::None;
   options.outliers = arguments.outliers == "remove" ? OutlierPolicy::Remove : OutlierPolicy::List;
   options.solver = arguments.solver == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
+  options.noise = arguments.noise == "white" ? NoisePolicy::White : NoisePolicy::Automatic;
   options.variance_components = !arguments.keep_stated_sigma;
   options.exact_kinematics = !arguments.first_order;
   return options;
@@ -83,9 +85,15 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("--solver", arguments->solver,
                  "compressed normal equations, or one residual block per reading")
       ->check(CLI::IsMember({"compressed", "per-reading"}));
+  app.add_option(
+         "--noise", arguments->noise,
+         "auto: estimate slow wander, offsets of lines and noise in proportion to length, and weight by "
+         "what is supported; white: independent readings")
+      ->check(CLI::IsMember({"auto", "white"}));
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
-  app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma, "do not estimate variance components");
+  app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,
+               "do not estimate variance components nor correlated noise");
   app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");
   app.add_flag("--json", arguments->json, "print result.json on standard output and nothing else");
   return [arguments] { return run(*arguments); };

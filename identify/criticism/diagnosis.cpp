@@ -7,10 +7,10 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
-#include <thread>
 
 #include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -51,10 +51,6 @@ constexpr std::size_t kMostAmplitudesInWords = 3;
 constexpr const char* kKnownMore =
     "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb with "
     "--auto.";
-
-int thread_count(int asked) {
-  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 SearchOptions search_options(const DiagnoseOptions& options) {
   return {.threads = thread_count(options.threads),

@@ -1,11 +1,7 @@
 #include "volcal/identify/criticism/linear_model.h"
 
-#include <algorithm>
 #include <limits>
-#include <map>
-#include <tuple>
-
-#include "volcal/identify/solve/datum.h"
+#include <utility>
 
 namespace volcal {
 
@@ -14,63 +10,29 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
   model_.expand_effects(result.parameters);
   model_.set_second_order_remainder(result.parameters);
   views_ = setup_views(campaign_, model_.binding(), model_.chain());
-  add_observations(result);
-  add_sequences();
+  std::vector<bool> removed;
+  for (const ResidualRecord& record : result.residuals) removed.push_back(record.removed);
+  CampaignNoise noise = campaign_noise(model_, result.adjustment.stated_sigma, removed);
+  observations_ = std::move(noise.places);
+  instruments_ = std::move(noise.instruments);
+  problem_.data = std::move(noise.data);
+  const DatumSpace datum(model_.layout(), campaign_.machine, result.parameters);
+  linearise(model_, datum, result.parameters, observations_, problem_);
+  add_sensitivity(result.parameters);
   problem_.prior_precision = result.adjustment.prior_precision;
   problem_.prior_mean = result.adjustment.prior_mean - result.adjustment.reduced;
 }
 
-void LinearModel::add_observations(const FitResult& result) {
-  const DatumSpace datum(model_.layout(), campaign_.machine, result.parameters);
-  const std::size_t count = result.residuals.size();
-  problem_.jacobian.resize(static_cast<Eigen::Index>(count), datum.size());
-  problem_.residual.resize(static_cast<Eigen::Index>(count));
-  problem_.data.sigma = result.adjustment.stated_sigma;
-  sensitivity_.resize(static_cast<Eigen::Index>(count), kDisturbances);
-  RowJacobian row;
+void LinearModel::add_sensitivity(const Eigen::VectorXd& parameters) {
+  sensitivity_.resize(static_cast<Eigen::Index>(size()), kDisturbances);
   MeasurementModel::DisturbanceRows disturbance;
-  for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-    const Readings& readings = campaign_.setups[setup].readings;
-    parts_.push_back(static_cast<Eigen::Index>(observations_.size()));
-    for (std::size_t i = 0; i < readings.size(); ++i) {
-      model_.linearize(setup, i, result.parameters, row);
-      model_.disturbance_rows(setup, i, result.parameters, disturbance);
-      for (int channel = 0; channel < row.channels; ++channel) {
-        const auto at = static_cast<Eigen::Index>(observations_.size());
-        problem_.jacobian.row(at) = datum.reduce_rows(dense_row(model_.layout(), row, channel).transpose());
-        problem_.residual[at] = readings.value[static_cast<std::size_t>(channel)][i] - row.predicted[channel];
-        problem_.data.length.push_back(views_[setup].length[static_cast<Eigen::Index>(i)]);
-        sensitivity_.row(at) = disturbance.row(channel);
-        if (result.residuals[observations_.size()].removed) {
-          problem_.data.sigma[observations_.size()] = std::numeric_limits<double>::infinity();
-        }
-        observations_.push_back({setup, i, channel});
-      }
-    }
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Observation& place = observations_[i];
+    while (parts_.size() <= place.setup) parts_.push_back(static_cast<Eigen::Index>(i));
+    if (place.channel == 0) model_.disturbance_rows(place.setup, place.row, parameters, disturbance);
+    sensitivity_.row(static_cast<Eigen::Index>(i)) = disturbance.row(place.channel);
   }
-  parts_.push_back(static_cast<Eigen::Index>(observations_.size()));
-}
-
-void LinearModel::add_sequences() {
-  std::map<std::tuple<std::size_t, std::int32_t, int>, std::size_t> place;
-  for (std::size_t i = 0; i < observations_.size(); ++i) {
-    const Observation& observation = observations_[i];
-    const Setup& setup = campaign_.setups[observation.setup];
-    const Readings& readings = setup.readings;
-    const std::int32_t run = readings.run.empty() ? 0 : readings.run[observation.row];
-    const auto [found, is_new] =
-        place.try_emplace({observation.setup, run, observation.channel}, problem_.data.sequences.size());
-    if (is_new) {
-      problem_.data.sequences.emplace_back();
-      const auto known = std::ranges::find(instruments_, setup.instrument);
-      problem_.data.sequences.back().group = static_cast<std::size_t>(known - instruments_.begin());
-      if (known == instruments_.end()) instruments_.push_back(setup.instrument);
-    }
-    NoiseSequence& sequence = problem_.data.sequences[found->second];
-    sequence.observation.push_back(i);
-    if (!readings.time.empty()) sequence.time.push_back(readings.time[observation.row]);
-    if (!readings.line.empty()) sequence.line.push_back(readings.line[observation.row]);
-  }
+  parts_.resize(campaign_.setups.size() + 1, static_cast<Eigen::Index>(size()));
 }
 
 void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
+#include "volcal/identify/solve/campaign_noise.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -19,11 +20,7 @@ class LinearModel {
   /// `result` must come from fit() of this campaign; both must outlive the object.
   LinearModel(const Campaign& campaign, const FitResult& result);
 
-  struct Observation {
-    std::size_t setup = 0;
-    std::size_t row = 0;
-    int channel = 0;
-  };
+  using Observation = ObservationPlace;
 
   const Campaign& campaign() const { return campaign_; }
   const MeasurementModel& model() const { return model_; }
@@ -49,8 +46,7 @@ class LinearModel {
   Eigen::VectorXd direction(int which) const;
 
  private:
-  void add_observations(const FitResult& result);
-  void add_sequences();
+  void add_sensitivity(const Eigen::VectorXd& parameters);
 
   const Campaign& campaign_;
   MeasurementModel model_;

@@ -47,6 +47,26 @@ Json variance_components_json(const FitResult& result) {
   return all;
 }
 
+Json noise_json(const NoiseSummary& noise) {
+  Json rows = Json::array();
+  for (const NoiseRow& row : noise.rows) {
+    rows.push_back({{"instrument", noise.instruments.at(row.instrument)},
+                    {"term", row.term},
+                    {"unit", row.unit},
+                    {"value", number(row.value)},
+                    {"low", number(row.low)},
+                    {"high", number(row.high)},
+                    {"likelihood_ratio", number(row.likelihood_ratio)},
+                    {"remark", row.remark}});
+  }
+  return {{"estimated", noise.estimated},
+          {"more_than_white", noise.more_than_white},
+          {"whitened_chi2", number(noise.chi2)},
+          {"whitened_dof", number(noise.dof)},
+          {"whitened_chi2_per_dof", number(ratio(noise.chi2, noise.dof))},
+          {"terms", rows}};
+}
+
 Json functions_json(const FitResult& result) {
   Json all = Json::array();
   for (const FunctionSummary& function : result.functions) {
@@ -113,6 +133,7 @@ Json head_json(const FitResult& result) {
           {"straightness_reference_line", "least squares, continuous over the travel"},
           {"setups", setups_json(result)},
           {"variance_components", variance_components_json(result)},
+          {"noise", noise_json(result.noise)},
           {"functions", functions_json(result)},
           {"locations", locations_json(result)},
           {"rank", rank_json(result.rank)}};
@@ -132,6 +153,29 @@ FitStatus status_from(const std::string& text) {
     if (to_string(status) == text) return status;
   }
   throw std::invalid_argument("status \"" + printable(text) + "\" is not known");
+}
+
+NoiseSummary noise_from(const Json& json) {
+  NoiseSummary noise;
+  noise.estimated = json.at("estimated").get<bool>();
+  noise.more_than_white = json.at("more_than_white").get<bool>();
+  noise.chi2 = number(json.at("whitened_chi2"));
+  noise.dof = number(json.at("whitened_dof"));
+  for (const Json& row : json.at("terms")) {
+    const auto instrument = row.at("instrument").get<std::string>();
+    const auto known = std::ranges::find(noise.instruments, instrument);
+    const auto place = static_cast<std::size_t>(known - noise.instruments.begin());
+    if (known == noise.instruments.end()) noise.instruments.push_back(instrument);
+    noise.rows.push_back({.instrument = place,
+                          .term = row.at("term").get<std::string>(),
+                          .unit = row.at("unit").get<std::string>(),
+                          .value = number(row.at("value")),
+                          .low = number(row.at("low")),
+                          .high = number(row.at("high")),
+                          .likelihood_ratio = number(row.at("likelihood_ratio")),
+                          .remark = row.at("remark").get<std::string>()});
+  }
+  return noise;
 }
 
 void read_head(const Json& json, FitResult& result) {
@@ -165,6 +209,7 @@ void read_head(const Json& json, FitResult& result) {
                                           .redundancy = number(component.at("redundancy")),
                                           .observations = component.at("observations").get<std::size_t>()});
   }
+  if (json.contains("noise")) result.noise = noise_from(json.at("noise"));
   for (const Json& function : json.at("functions")) {
     result.functions.push_back({.symbol = json_parts::error_symbol(function.at("symbol")),
                                 .intervals = function.at("intervals").get<int>(),

@@ -282,45 +282,74 @@ Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
   return whitened;
 }
 
-void Whitener::add_gram(const Track& track, const Eigen::MatrixXd& rows, Eigen::MatrixXd& sum) const {
-  const Eigen::Index width = rows.rows();
+template <class Fill>
+void Whitener::add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum) {
   std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
   Eigen::MatrixXd tile(width, static_cast<Eigen::Index>(kGramTile));
   Eigen::MatrixXd product(width, width);
   for (std::size_t begin = 0; begin < track.steps.size(); begin += kGramTile) {
     const std::size_t end = std::min(begin + kGramTile, track.steps.size());
-    for (std::size_t i = begin; i < end; ++i) {
-      tile.col(static_cast<Eigen::Index>(i - begin)) =
-          rows.col(static_cast<Eigen::Index>(track.steps[i].observation));
-    }
+    fill(track, begin, end, tile);
     filter(track, begin, end, width, tile.data(), state.data());
     outer_product_upper(tile.data(), static_cast<int>(width), static_cast<int>(end - begin), product);
     sum.triangularView<Eigen::Upper>() += product;
   }
 }
 
-Eigen::MatrixXd Whitener::gram(const Eigen::MatrixXd& rows, int threads) const {
-  require(rows.cols() == static_cast<Eigen::Index>(rows_), "one column per observation");
+template <class Fill>
+Eigen::MatrixXd Whitener::sum_of_grams(const std::vector<const Track*>& tracks, Eigen::Index width,
+                                       const Fill& fill, int threads) {
   use_single_threaded_blas();
-  std::vector<Eigen::MatrixXd> sums;
+  std::size_t observations = 0, in_part = 0;
+  for (const Track* const track : tracks) observations += track->steps.size();
   std::vector<std::vector<const Track*>> parts;
-  std::size_t in_part = 0;
-  for (const Track& track : tracks_) {
-    if (parts.empty() || in_part * kGramParts >= observations_) {
+  for (const Track* const track : tracks) {
+    if (parts.empty() || in_part * kGramParts >= observations) {
       parts.emplace_back();
       in_part = 0;
     }
-    parts.back().push_back(&track);
-    in_part += track.steps.size();
+    parts.back().push_back(track);
+    in_part += track->steps.size();
   }
-  sums.assign(parts.size(), Eigen::MatrixXd::Zero(rows.rows(), rows.rows()));
+  std::vector<Eigen::MatrixXd> sums(parts.size(), Eigen::MatrixXd::Zero(width, width));
   run_parallel(parts.size(), threads, [&](std::size_t part) {
-    for (const Track* const track : parts[part]) add_gram(*track, rows, sums[part]);
+    for (const Track* const track : parts[part]) add_gram(*track, width, fill, sums[part]);
   });
-  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(rows.rows(), rows.rows());
+  Eigen::MatrixXd total = Eigen::MatrixXd::Zero(width, width);
   for (const Eigen::MatrixXd& sum : sums) total += sum;
   symmetrise_from_upper(total);
   return total;
+}
+
+Eigen::MatrixXd Whitener::gram(const Eigen::MatrixXd& rows, int threads) const {
+  require(rows.cols() == static_cast<Eigen::Index>(rows_), "one column per observation");
+  std::vector<const Track*> tracks;
+  for (const Track& track : tracks_) tracks.push_back(&track);
+  const auto copy = [&](const Track& track, std::size_t begin, std::size_t end, Eigen::MatrixXd& tile) {
+    for (std::size_t i = begin; i < end; ++i) {
+      tile.col(static_cast<Eigen::Index>(i - begin)) =
+          rows.col(static_cast<Eigen::Index>(track.steps[i].observation));
+    }
+  };
+  return sum_of_grams(tracks, rows.rows(), copy, threads);
+}
+
+Whitener::GroupGram Whitener::gram_of_group(std::size_t group, Eigen::Index width, const MakeColumns& make,
+                                            int threads) const {
+  GroupGram result;
+  std::vector<const Track*> tracks;
+  for (const Track& track : tracks_) {
+    if (track.group != group) continue;
+    tracks.push_back(&track);
+    result.observations += track.steps.size();
+  }
+  const auto fill = [&](const Track& track, std::size_t begin, std::size_t end, Eigen::MatrixXd& tile) {
+    std::vector<std::size_t> observations;
+    for (std::size_t i = begin; i < end; ++i) observations.push_back(track.steps[i].observation);
+    make(observations, tile.leftCols(static_cast<Eigen::Index>(end - begin)));
+  };
+  result.gram = sum_of_grams(tracks, width, fill, threads);
+  return result;
 }
 
 }  // namespace volcal

@@ -21,6 +21,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -72,6 +73,17 @@ class Whitener {
   /// takes), without storing the whitened matrix.
   Eigen::MatrixXd gram(const Eigen::MatrixXd& rows, int threads) const;
 
+  /// Makes the columns (as those of `rows`) of observations as the filter comes to them; called from several
+  /// threads at once.
+  using MakeColumns =
+      std::function<void(const std::vector<std::size_t>& observations, Eigen::Ref<Eigen::MatrixXd> columns)>;
+  struct GroupGram {
+    Eigen::MatrixXd gram;  ///< width x width, full symmetric
+    std::size_t observations = 0;
+  };
+  /// gram() of one group's observations, with nothing of their number stored.
+  GroupGram gram_of_group(std::size_t group, Eigen::Index width, const MakeColumns& make, int threads) const;
+
   /// log|Sigma| of the observations that are not missing.
   double log_determinant() const { return log_determinant_; }
   /// Not missing.
@@ -117,7 +129,12 @@ class Whitener {
     bool packed;         ///< steps leave one after another; else at their observations
   };
   static void whiten_block(const Track& track, Eigen::Index width, const Place& place);
-  void add_gram(const Track& track, const Eigen::MatrixXd& rows, Eigen::MatrixXd& sum) const;
+  template <class Fill>
+  static void add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum);
+  /// `fill(track, begin, end, tile)` makes the columns of steps.
+  template <class Fill>
+  static Eigen::MatrixXd sum_of_grams(const std::vector<const Track*>& tracks, Eigen::Index width,
+                                      const Fill& fill, int threads);
 
   std::vector<Track> tracks_;
   std::vector<std::size_t> missing_;

@@ -110,6 +110,54 @@ std::string variance_table(const FitResult& result) {
   return text.text();
 }
 
+struct EdgeUnit {
+  double si;
+  std::string name;
+};
+
+EdgeUnit edge_unit(const NoiseRow& row, const std::string& instrument) {
+  const std::string unit = instrument == "angle" ? "urad" : "um";
+  if (row.unit == "m or rad") return {1e-6, unit};
+  if (row.unit == "m/m") return {1e-6, unit + "/m"};
+  return {1.0, row.unit == "1" ? "" : row.unit};
+}
+
+std::string noise_name(const std::string& term) {
+  if (term == "white") return "independent, times the stated sigma";
+  if (term == "wander") return "slow wander";
+  if (term == "tau") return "  its correlation time";
+  if (term == "line") return "offset of a line";
+  return "in proportion to length";
+}
+
+std::string noise_table_text(const NoiseSummary& noise) {
+  if (!noise.estimated) return "Noise: readings taken as independent; nothing else was looked for.\n";
+  if (!noise.more_than_white)
+    return "Noise: independent readings suffice; no slow wander, line offset or part in proportion to length "
+           "is "
+           "supported.\n";
+  TextTable text(
+      {{"instrument", Align::Left},
+       {"term", Align::Left},
+       {"value"},
+       {"95 % interval"},
+       {"unit", Align::Left},
+       {"evidence"}},
+      fmt::format("Noise by restricted maximum likelihood (evidence: 2 x the log likelihood that a "
+                  "term gains); whitened chi2/dof {:.3f}",
+                  noise.chi2 / noise.dof));
+  for (const NoiseRow& row : noise.rows) {
+    if (row.value == 0.0) continue;
+    const std::string& instrument = noise.instruments[row.instrument];
+    const EdgeUnit unit = edge_unit(row, instrument);
+    const bool of_term = std::isfinite(row.likelihood_ratio) && row.term != "tau";
+    text.add_row({instrument, noise_name(row.term), short_number(row.value / unit.si, 3),
+                  short_number(row.low / unit.si, 2) + " .. " + short_number(row.high / unit.si, 2),
+                  unit.name, of_term ? fixed_number(row.likelihood_ratio, 1) : ""});
+  }
+  return text.text();
+}
+
 std::string outliers_table(const FitResult& result) {
   std::vector<const ResidualRecord*> flagged;
   for (const ResidualRecord& record : result.residuals) {
@@ -168,7 +216,7 @@ std::string rank_text(const FitResult& result) {
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result, campaign) + reference_line(result);
   for (const std::string& part : {errors_table(result), setups_table(result), variance_table(result),
-                                  outliers_table(result), notes(result)}) {
+                                  noise_table_text(result.noise), outliers_table(result), notes(result)}) {
     if (!part.empty()) text += "\n" + part;
   }
   return text;

@@ -5,38 +5,21 @@
 #include <cmath>
 #include <map>
 #include <sstream>
-#include <thread>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/solve/smoothing.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/solve/summaries.h"
+#include "volcal/identify/solve/verdict.h"
+#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/units.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal {
-
-std::string_view to_string(FitStatus status) {
-  switch (status) {
-    case FitStatus::Ok:
-      return "ok";
-    case FitStatus::LackOfFit:
-      return "lack_of_fit";
-    case FitStatus::RankDeficient:
-      return "rank_deficient";
-    case FitStatus::NotConverged:
-      return "not_converged";
-  }
-  return "";
-}
-
 namespace {
 
-constexpr double kSignificanceOfLackOfFit = 1e-3;
-constexpr double kSmallestLackOfFit = 1.1;     // sigma0 below this is not worth a warning
 constexpr double kImplausibleResidual = 0.02;  // nominal machine, share of the setup's extent
 constexpr double kFurthestStationMiss = 1.0;   // m
 constexpr int kEvidenceRounds = 2;
@@ -61,8 +44,7 @@ class Identification {
   Identification(const Campaign& campaign, const ModelSpec& spec, const FitOptions& options)
       : campaign_(campaign),
         options_(options),
-        threads_(options.threads > 0 ? options.threads
-                                     : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+        threads_(thread_count(options.threads)),
         spec_(resolve_knots(spec, campaign)),
         model_(campaign, spec_),
         index_(model_) {
@@ -83,6 +65,11 @@ class Identification {
     adjust();
     remove_outliers();
     lap("adjustment");
+    if (models_noise()) {
+      progress("noise", 0.75);
+      model_noise();
+      lap("noise");
+    }
     progress("covariance and residuals", 0.9);
     finish();
     lap("covariance and residuals");
@@ -125,6 +112,7 @@ class Identification {
   }
 
   std::vector<double> sigma() const {
+    if (!noise_.empty()) return total_sigma(campaign_noise_, stated_sigma_, noise_);
     std::vector<double> sigma = stated_sigma_;
     for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
       const std::size_t begin = index_.first_observation(setup, 0);
@@ -291,7 +279,56 @@ class Identification {
     minimise_all();
   }
 
+  /// After the noise has been estimated to be more than white.
+  void adjust_to_noise(int evidence_rounds) {
+    const WhitenedCampaign whitened(model_, *datum_, campaign_noise_, noise_, threads_);
+    const auto renew = [this](const Eigen::VectorXd& z) {
+      parameters_ = datum_->raw(z);
+      expand();
+    };
+    correlated_ = adjust_correlated(whitened, base_prior_, evidence_rounds, renew, terms_, z_);
+    parameters_ = datum_->raw(z_);
+    result_.iterations += correlated_.iterations;
+    result_.final_cost = correlated_.cost;
+    converged_ = correlated_.converged;
+  }
+
+  /// Where an error is not visible, wide priors decide what it is, and with it what is left for the noise.
+  bool models_noise() const {
+    return options_.noise == NoisePolicy::Automatic && options_.loss == RobustLoss::None &&
+           options_.variance_components && !rank_.deficient;
+  }
+
+  /// Estimated about the white adjustment and once more about that which follows from it: smoothing chosen
+  /// with white weights takes part of a wander for detail of the functions.
+  void model_noise() {
+    campaign_noise_ = campaign_noise(model_, stated_sigma_, removed_);
+    NoiseOptions options;
+    options.threads = threads_;
+    options.uncertainty = false;
+    NoiseEstimate estimate = estimate_noise(model_, *datum_, campaign_noise_, z_, prior(), options);
+    if (is_more_than_white(estimate)) {
+      noise_ = estimate.parameters();
+      adjust_to_noise(kEvidenceRounds);
+      options.uncertainty = true;
+      estimate = estimate_noise(model_, *datum_, campaign_noise_, z_, prior(), options, &estimate);
+      noise_ = estimate.parameters();
+      adjust_to_noise(1);
+      remove_outliers();
+    }
+    result_.noise.estimated = true;
+    result_.noise.more_than_white = is_more_than_white(estimate);
+    result_.noise.instruments = campaign_noise_.instruments;
+    result_.noise.rows = noise_table(estimate);
+    for (const InstrumentNoise& own : estimate.instruments) white_log_u_.push_back(own.log_uncertainty.white);
+  }
+
   void update_covariance() {
+    if (!noise_.empty()) {
+      reduced_covariance_ = correlated_.covariance;
+      result_.covariance = datum_->expand_covariance(reduced_covariance_);
+      return;
+    }
     const std::vector<double> weight = weights(sigma());
     NormalAccumulator accumulator(index_, weight, nullptr, threads_);
     const NormalEquations& sums = accumulator.accumulate(parameters_);
@@ -325,9 +362,18 @@ class Identification {
       }
       if (worst.empty()) break;
       for (const auto& [setup, i] : worst) removed_[i] = true;
+      readjust();
+      update_residuals();
+    }
+  }
+
+  void readjust() {
+    if (noise_.empty()) {
       update_hyperparameters();
       minimise_all();
-      update_residuals();
+    } else {
+      campaign_noise_ = campaign_noise(model_, stated_sigma_, removed_);
+      adjust_to_noise(0);
     }
   }
 
@@ -344,12 +390,17 @@ class Identification {
     }
     result_.sigma0 = result_.dof > 0.0 ? std::sqrt(result_.chi2 / result_.dof) : 0.0;
     summarise_variance_components();
-    summarise_functions();
+    summarise_whitened_residuals();
+    result_.functions = function_summaries(campaign_, spec_, *datum_, terms_, reduced_covariance_);
     result_.rank = rank_.report;
     update_observability();
-    result_.identified = identified_model();
-    summarise_temperature();
-    judge();
+    result_.identified = identified_model(spec_, model_.layout(), parameters_);
+    summarise_temperature(campaign_, result_);
+    if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
+      result_.messages.push_back(
+          "robust loss: readings are taken as independent; wander and offsets of lines were not looked for");
+    }
+    judge(campaign_, model_.binding(), {converged_, rank_.deficient}, result_);
   }
 
   void summarise_variance_components() {
@@ -366,161 +417,34 @@ class Identification {
           component.redundancy > 0.0 ? component.scale / std::sqrt(2.0 * component.redundancy) : 0.0;
       result_.variance_components.push_back(component);
     }
+    for (std::size_t g = 0; g < noise_.size(); ++g) {
+      auto& component = *std::ranges::find(result_.variance_components, campaign_noise_.instruments[g],
+                                           &VarianceComponent::instrument);
+      component.scale = noise_[g].white;
+      if (std::isfinite(white_log_u_[g])) component.scale_u = component.scale * white_log_u_[g];
+    }
   }
 
-  void summarise_functions() {
-    for (const auto& function : datum_->functions()) {
-      FunctionSummary summary;
-      summary.symbol = function.symbol;
-      const FunctionSpec& spec = spec_.function(function.symbol);
-      summary.intervals = std::max(0, static_cast<int>(spec.breakpoints.size()) - 1);
-      summary.effective_parameters = function.size();
-      for (const SmoothingTerm& term : terms_) {
-        if (term.symbol != function.symbol) continue;
-        summary.smoothed = true;
-        summary.prior = to_string(term.prior_shape().roughness);
-        summary.correlation_length =
-            term.prior_shape().length * campaign_.machine.axis(function.symbol.axis).travel();
-        const auto n = term.precision().rows();
-        summary.effective_parameters -=
-            term.lambda *
-            reduced_covariance_.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();
-      }
-      const MeasuredRange range = measured_range(campaign_, function.symbol.axis);
-      summary.measured_min = range.min;
-      summary.measured_max = range.max;
-      result_.functions.push_back(summary);
+  void summarise_whitened_residuals() {
+    result_.noise.chi2 = correlated_.squares;
+    result_.noise.dof = correlated_.redundancy;
+    if (!noise_.empty()) return;
+    for (const ResidualRecord& record : result_.residuals) {
+      if (record.removed) continue;
+      result_.noise.chi2 += std::pow(record.residual() / record.sigma, 2);
+      result_.noise.dof += record.redundancy;
     }
   }
 
   /// Observability with the final noise and resolution instead of the rank analysis' wide priors.
   void update_observability() {
     for (Observability& figure : result_.rank.errors) {
+      if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
       for (const FunctionSummary& function : result_.functions) {
         if (function.symbol.name() == figure.symbol)
           figure.effective_parameters = function.effective_parameters;
       }
-      if (figure.visible) figure.u_rms = mean_uncertainty(figure.symbol);
-    }
-  }
-
-  double mean_uncertainty(const std::string& name) const {
-    const auto symbol = ErrorSymbol::parse(name);
-    if (!symbol) {
-      const int offset = model_.layout().find_block(name)->offset;
-      return std::sqrt(result_.covariance(offset, offset));
-    }
-    constexpr int kPositions = 33;
-    const auto place = *model_.layout().find(*symbol);
-    const FunctionGroup& group = model_.layout().groups[static_cast<std::size_t>(place.group)];
-    const MeasuredRange range = measured_range(campaign_, symbol->axis);
-    std::vector<int> raw;
-    for (int j = 0; j < group.basis->size(); ++j) raw.push_back(group.index(j, place.slot));
-    const Eigen::MatrixXd covariance = result_.covariance(raw, raw);
-    double sum = 0.0;
-    for (int i = 0; i < kPositions; ++i) {
-      const Eigen::VectorXd row =
-          group.basis->row(range.min + (range.max - range.min) * static_cast<double>(i) / (kPositions - 1));
-      sum += row.dot(covariance * row);
-    }
-    return std::sqrt(sum / kPositions);
-  }
-
-  ModelSpec identified_model() const {
-    ModelSpec identified = spec_;
-    identified.file.clear();
-    for (const ErrorSymbol symbol : model_.layout().symbols()) {
-      FunctionSpec& function = identified.functions[symbol];
-      function.knots = KnotChoice::Explicit;
-      const Eigen::VectorXd coefficients = model_.layout().coefficients(symbol, parameters_);
-      function.coefficients.assign(coefficients.begin(), coefficients.end());
-    }
-    for (const ParameterBlock& block : model_.layout().blocks) {
-      if (block.location) identified.locations[*block.location] = parameters_[block.offset];
-    }
-    for (EffectSpec& effect : identified.effects) {
-      const auto made = find_effect(effect.kind)->make(effect, spec_.file);
-      const auto keep = [&](const std::string& label, const std::string& key) {
-        const ParameterBlock* block = model_.layout().find_block(label);
-        if (block != nullptr) effect.options.set(std::string(stem_of_key(key)), parameters_[block->offset]);
-      };
-      for (const EffectAmplitude& amplitude : made->amplitudes()) keep(amplitude.label, amplitude.key);
-      for (const EffectShape& shape : made->shapes()) keep(shape.label, shape.key);
-    }
-    return identified;
-  }
-
-  void summarise_temperature() {
-    const bool expands =
-        std::ranges::any_of(campaign_.machine.axes, [](const Axis& a) { return a.expansion.has_value(); });
-    if (expands) return;
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const Setup& setup : campaign_.setups) {
-      for (const auto& [channel, values] : setup.readings.temperature) {
-        for (const double value : values) sum += value;
-        count += values.size();
-      }
-    }
-    result_.temperature_is_campaign_mean = true;
-    result_.reference_temperature_degC = count > 0 ? sum / static_cast<double>(count) : std::nan("");
-  }
-
-  void judge() {
-    for (const VarianceComponent& component : result_.variance_components) {
-      if (std::abs(component.scale - 1.0) < std::max(0.1, 3.0 * component.scale_u)) continue;
-      std::ostringstream text;
-      text.precision(3);
-      text << component.instrument << ": its residuals scatter " << component.scale
-           << " times as much as its stated sigma; "
-           << "weights and uncertainties use the estimated value";
-      result_.messages.push_back(text.str());
-    }
-    const double exceedance = result_.dof > 0.0 ? chi_squared_exceedance(result_.chi2, result_.dof) : 1.0;
-    const bool lack = exceedance < kSignificanceOfLackOfFit && result_.sigma0 > kSmallestLackOfFit;
-    for (const std::string& sentence : result_.rank.invisible) result_.messages.push_back(sentence);
-    report_outliers();
-    report_unrecorded_drivers();
-    if (lack) {
-      std::ostringstream text;
-      text.precision(3);
-      text << "lack of fit: residuals are " << result_.sigma0
-           << " times the stated noise; run `volcal compare` to see where the model fails";
-      result_.messages.push_back(text.str());
-    }
-    if (!converged_)
-      result_.messages.push_back("not converged: the cost still fell after the last iteration");
-    result_.status = !converged_       ? FitStatus::NotConverged
-                     : rank_.deficient ? FitStatus::RankDeficient
-                     : lack            ? FitStatus::LackOfFit
-                                       : FitStatus::Ok;
-  }
-
-  void report_outliers() {
-    const auto flagged = std::ranges::count_if(
-        result_.residuals, [](const ResidualRecord& r) { return r.flagged && !r.removed; });
-    const auto removed = std::ranges::count_if(result_.residuals, &ResidualRecord::removed);
-    if (flagged > 0) {
-      result_.messages.push_back(
-          std::to_string(flagged) +
-          " readings are flagged by the w-test and still in the adjustment; they are listed in "
-          "residuals.csv (--outliers remove takes them out)");
-    }
-    if (removed > 0) {
-      result_.messages.push_back(std::to_string(removed) +
-                                 " readings were removed by the w-test; they are listed in residuals.csv");
-    }
-  }
-
-  void report_unrecorded_drivers() {
-    for (const EffectBinding& effect : model_.binding().effects) {
-      std::size_t unrecorded = 0;
-      for (const Setup& setup : campaign_.setups)
-        unrecorded += effect.effect->unrecorded({campaign_, setup, {}, {}});
-      if (unrecorded == 0) continue;
-      result_.messages.push_back(effect.effect->amplitudes().front().label + ": " +
-                                 std::to_string(unrecorded) + " readings do not record " +
-                                 effect.effect->name().driver + " and carry nothing of the effect");
+      if (figure.visible) figure.u_rms = mean_uncertainty(campaign_, result_, figure.symbol);
     }
   }
 
@@ -542,6 +466,10 @@ class Identification {
   std::vector<SmoothingTerm> terms_;
   RankAnalysis rank_;
   Eigen::MatrixXd reduced_covariance_;
+  CampaignNoise campaign_noise_;
+  std::vector<NoiseParameters> noise_;  ///< per instrument of it; empty = white
+  std::vector<double> white_log_u_;
+  CorrelatedAdjustment correlated_;
   bool converged_ = false;
   Stopwatch stopwatch_;
   FitResult result_;

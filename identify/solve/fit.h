@@ -5,7 +5,10 @@
 ///   2. rank analysis: what the readings cannot tell is named before anything is inverted,
 ///   3. all parameters together; smoothing and variance components by evidence; the exact transforms'
 ///      second-order remainder added,
-///   4. residuals, redundancy, Baarda's w-test, covariance.
+///   4. the noise by restricted maximum likelihood about that; where it is more than white (slow wander,
+///   offsets
+///      of lines, a part in proportion to length) generalised least squares (correlated_adjustment.h),
+///   5. residuals, redundancy, Baarda's w-test, covariance.
 
 #include <functional>
 #include <string>
@@ -16,6 +19,8 @@
 namespace volcal {
 
 enum class OutlierPolicy { List, Remove };
+/// White: independent readings; also with a robust loss, kept stated sigma or errors that are not visible.
+enum class NoisePolicy { Automatic, White };
 
 struct FitOptions {
   int threads = 0;  ///< 0 = as many as the machine has
@@ -24,7 +29,8 @@ struct FitOptions {
   OutlierPolicy outliers = OutlierPolicy::List;
   double outlier_family_risk = 0.05;  ///< chance that any good reading of the campaign is flagged
   bool variance_components = true;    ///< correct a wrong stated sigma, per instrument
-  bool exact_kinematics = true;       ///< second-order remainder of the exact transforms
+  NoisePolicy noise = NoisePolicy::Automatic;
+  bool exact_kinematics = true;  ///< second-order remainder of the exact transforms
   int max_iterations = 100;
   /// Called as stages begin, with a share of the work done, 0..1.
   std::function<void(const std::string& stage, double done)> progress;

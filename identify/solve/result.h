@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/observation/parameters.h"
@@ -26,9 +27,9 @@ struct ResidualRecord {
   std::int64_t source_line = 0;  ///< 1-based line of the file
   double reading = 0.0;
   double predicted = 0.0;
-  double sigma = 0.0;       ///< standard deviation used in the last adjustment (after variance components)
-  double redundancy = 0.0;  ///< Baarda's redundancy number, 0..1
-  double w = 0.0;           ///< Baarda's w = residual / (sigma sqrt(redundancy)); 0 when redundancy is 0
+  double sigma = 0.0;       ///< total standard deviation in the last adjustment: sqrt(Sigma_ii)
+  double redundancy = 0.0;  ///< (Sigma_ii - j Cov j^T) / Sigma_ii, 0..1: Baarda's number for white noise
+  double w = 0.0;           ///< residual / (sigma sqrt(redundancy)), standard normal; 0 without redundancy
   bool flagged = false;     ///< |w| above the critical value
   bool removed = false;     ///< taken out of the adjustment
 
@@ -48,13 +49,24 @@ struct SetupSummary {
   double max_residual = 0.0;  ///< SI
 };
 
-/// Variance component of one instrument: the stated sigma must be multiplied by `scale` (1 = as stated).
+/// Variance component of one instrument: the stated sigma must be multiplied by `scale` (1 = as stated). With
+/// correlated noise that of its independent part.
 struct VarianceComponent {
   std::string instrument;
   double scale = 1.0;
   double scale_u = 0.0;  ///< standard uncertainty of the scale
   double redundancy = 0.0;
   std::size_t observations = 0;
+};
+
+/// The noise that the adjustment's weights stand for (noise_model.h), by restricted maximum likelihood.
+struct NoiseSummary {
+  bool estimated = false;        ///< false: independent readings were assumed, nothing else was tried
+  bool more_than_white = false;  ///< weights are Sigma^-1 of `rows`; else 1 / sigma^2 of independent readings
+  std::vector<std::string> instruments;
+  std::vector<NoiseRow> rows;  ///< of all instruments; empty when not estimated
+  double chi2 = 0.0;           ///< of the whitened residuals, with the estimated noise
+  double dof = 0.0;            ///< observations minus what the parameters take
 };
 
 /// How well one error (function, squareness) is seen.
@@ -127,6 +139,7 @@ struct FitResult {
 
   std::vector<SetupSummary> setups;
   std::vector<VarianceComponent> variance_components;
+  NoiseSummary noise;
   std::vector<FunctionSummary> functions;
   RankReport rank;
   std::vector<ResidualRecord> residuals;

@@ -18,6 +18,10 @@
 namespace volcal::cli {
 namespace {
 
+constexpr double kWander = 0.4e-6;  // m
+constexpr double kWanderTime = 600.0;
+constexpr double kLineOffset = 0.2e-6;
+
 sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
   const std::vector<Machine> machines = sim::reference_machines();
   sim::Study study;
@@ -25,6 +29,11 @@ sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
   study.seed = options.seed + static_cast<std::uint64_t>(campaign);
   sim::Tracking tracking;
   tracking.grid = {options.grid[0], options.grid[1], options.grid[2]};
+  if (options.correlated_noise) {
+    tracking.noise.wander = kWander;
+    tracking.noise.wander_time = kWanderTime;
+    tracking.noise.line = kLineOffset;
+  }
   study.measurements.emplace_back().settings = tracking;
   return study;
 }
@@ -33,13 +42,15 @@ double rms_of(const sim::SimulatedCampaign& simulated, const FitResult& result) 
   return validate(simulated.validation, result, 1).figures.rms_after;
 }
 
-FitOptions one_thread() {
+FitOptions one_thread(NoisePolicy noise) {
   FitOptions options;
   options.threads = 1;
+  options.noise = noise;
   return options;
 }
 
-double fixed_rms(const sim::SimulatedCampaign& simulated, const std::array<int, 3>& intervals) {
+double fixed_rms(const sim::SimulatedCampaign& simulated, const std::array<int, 3>& intervals,
+                 NoisePolicy noise) {
   ModelSpec model;
   for (const Axis& axis : simulated.campaign.machine.axes) {
     for (const Component component : kAllComponents) {
@@ -49,7 +60,7 @@ double fixed_rms(const sim::SimulatedCampaign& simulated, const std::array<int, 
       model.functions[{component, axis.name}] = function;
     }
   }
-  return rms_of(simulated, fit(simulated.campaign, model, one_thread()));
+  return rms_of(simulated, fit(simulated.campaign, model, one_thread(noise)));
 }
 
 double truth_of(const sim::TruthInDatum& truth, const std::array<LocationSymbol, 3>& squareness,
@@ -81,7 +92,7 @@ std::map<std::string, double> table_coverage(const sim::SimulatedCampaign& simul
 ClosedLoopCampaign run_campaign(const ClosedLoopOptions& options, int campaign) {
   const sim::Study study = study_of(options, campaign);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
-  const FitResult result = fit(simulated.campaign, ModelSpec{}, one_thread());
+  const FitResult result = fit(simulated.campaign, ModelSpec{}, one_thread(NoisePolicy::Automatic));
   const Validation validation = validate(simulated.validation, result, 1);
   ClosedLoopCampaign row;
   row.structure = study.machine.structure.code;
@@ -92,8 +103,15 @@ ClosedLoopCampaign run_campaign(const ClosedLoopOptions& options, int campaign) 
   row.rms_after = validation.figures.rms_after;
   row.reduced_chi2 = result.chi2 / result.dof;
   row.coverage = table_coverage(simulated, result);
+  row.white_rms_after = std::numeric_limits<double>::quiet_NaN();
+  if (options.correlated_noise) {
+    const FitResult white = fit(simulated.campaign, ModelSpec{}, one_thread(NoisePolicy::White));
+    row.white_coverage = table_coverage(simulated, white);
+    row.white_rms_after = rms_of(simulated, white);
+  }
+  const NoisePolicy of_fixed = options.correlated_noise ? NoisePolicy::Automatic : NoisePolicy::White;
   for (std::size_t i = 0; i < kFixedKnotSets.size(); ++i) {
-    row.rms_fixed[i] = options.fixed_knots ? fixed_rms(simulated, kFixedKnotSets[i])
+    row.rms_fixed[i] = options.fixed_knots ? fixed_rms(simulated, kFixedKnotSets[i], of_fixed)
                                            : std::numeric_limits<double>::quiet_NaN();
   }
   return row;
@@ -103,7 +121,7 @@ ClosedLoopCampaign run_campaign(const ClosedLoopOptions& options, int campaign) 
 
 double ClosedLoopCampaign::best_fixed() const { return *std::ranges::min_element(rms_fixed); }
 
-double ClosedLoopCampaign::mean_coverage() const {
+double mean_coverage(const std::map<std::string, double>& coverage) {
   const double sum = std::accumulate(coverage.begin(), coverage.end(), 0.0,
                                      [](double total, const auto& entry) { return total + entry.second; });
   return sum / static_cast<double>(coverage.size());

@@ -18,7 +18,10 @@ struct ClosedLoopOptions {
   std::uint64_t seed = 1;
   std::array<int, 3> grid{9, 7, 6};  ///< positions of a run per axis; 9 x 7 x 6 gives 6,048 readings
   bool fixed_knots = false;          ///< fit five fixed sets of knot intervals as well
-  int threads = 0;                   ///< 0 = all; results do not depend on it
+  /// Besides independent noise, readings wander slowly (0.4 um, 600 s) and lines have offsets (0.2 um); white
+  /// weights are fitted as well.
+  bool correlated_noise = false;
+  int threads = 0;  ///< 0 = all; results do not depend on it
   std::function<void(int done, int all)> progress;
 };
 
@@ -35,10 +38,14 @@ struct ClosedLoopCampaign {
   double reduced_chi2 = 0.0;                              ///< of the readings, with the stated sigma
   std::array<double, kFixedKnotSets.size()> rms_fixed{};  ///< NaN when not asked for
   std::map<std::string, double> coverage;  ///< per symbol: share of table values whose U95 holds the truth
+  std::map<std::string, double> white_coverage;  ///< of a fit with white weights; empty when not asked for
+  double white_rms_after = 0.0;                  ///< m; NaN when not asked for
 
   double best_fixed() const;
-  double mean_coverage() const;
 };
+
+/// Mean over the symbols.
+double mean_coverage(const std::map<std::string, double>& coverage);
 
 /// In the order of the campaigns. Repeatable to the bit.
 std::vector<ClosedLoopCampaign> closed_loop(const ClosedLoopOptions& options);

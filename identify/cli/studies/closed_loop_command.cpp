@@ -16,6 +16,7 @@ namespace {
 
 struct Arguments {
   ClosedLoopOptions options;
+  std::string noise = "white";
   bool small = false;
   bool json = false;
 };
@@ -61,11 +62,14 @@ struct Row {
   MeanWithError chi2;
   MeanWithError coverage;
   double coverage_5th = 0.0;
+  double median_white = 0.0;
+  MeanWithError white_coverage;
 };
 
 Row row_of(const std::string& name, const Campaigns& campaigns) {
   const auto after = collect(campaigns, [](const auto& c) { return c.rms_after; });
-  const auto coverage = collect(campaigns, [](const auto& c) { return c.mean_coverage(); });
+  const auto coverage = collect(campaigns, [](const auto& c) { return mean_coverage(c.coverage); });
+  const auto white = collect(campaigns, [](const auto& c) { return mean_coverage(c.white_coverage); });
   const auto ratio = collect(campaigns, [](const auto& c) { return c.rms_after / c.best_fixed(); });
   return {name,
           static_cast<int>(campaigns.size()),
@@ -76,7 +80,9 @@ Row row_of(const std::string& name, const Campaigns& campaigns) {
           std::ranges::max(ratio),
           mean_of(collect(campaigns, [](const auto& c) { return c.reduced_chi2; })),
           mean_of(coverage),
-          quantile(coverage, 0.05)};
+          quantile(coverage, 0.05),
+          quantile(collect(campaigns, [](const auto& c) { return c.white_rms_after; }), 0.5),
+          mean_of(white)};
 }
 
 std::vector<Row> rows_of(const Campaigns& campaigns) {
@@ -103,35 +109,39 @@ std::map<std::string, std::vector<double>> coverage_by_symbol(const Campaigns& c
 
 std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
   const bool fixed = arguments.options.fixed_knots;
-  TextTable table({{"structure", Align::Left},
-                   {"campaigns"},
-                   {"before [um]"},
-                   {"median [um]"},
-                   {"worst [um]"},
-                   {"best fixed [um]"},
-                   {"worst ratio"},
-                   {"chi2/dof"},
-                   {"coverage [%]"},
-                   {"5th [%]"}},
+  const bool correlated = arguments.options.correlated_noise;
+  const auto percent = [](const MeanWithError& share) {
+    return fmt::format("{:.1f} +- {:.1f}", 100.0 * share.mean, 100.0 * share.standard_error);
+  };
+  std::vector<TextColumn> columns = {
+      {"structure", Align::Left}, {"campaigns"},   {"before [um]"}, {"median [um]"},  {"worst [um]"},
+      {"best fixed [um]"},        {"worst ratio"}, {"chi2/dof"},    {"coverage [%]"}, {"5th [%]"}};
+  if (correlated) columns.insert(columns.end(), {{"white: median [um]"}, {"white: coverage [%]"}});
+  TextTable table(columns,
                   "Volumetric error at fresh points before and after, best of five fixed knot sets with "
                   "hindsight, coverage of U95 in the tables");
   for (const Row& row : rows_of(campaigns)) {
-    table.add_row(
-        {row.structure, count_number(row.campaigns), fixed_number(row.before * 1e6, 2),
-         fixed_number(row.median * 1e6, 3), fixed_number(row.worst * 1e6, 3),
-         fixed ? fixed_number(row.median_fixed * 1e6, 3) : "-",
-         fixed ? fixed_number(row.worst_ratio, 2) : "-",
-         fmt::format("{:.3f} +- {:.3f}", row.chi2.mean, row.chi2.standard_error),
-         fmt::format("{:.1f} +- {:.1f}", 100.0 * row.coverage.mean, 100.0 * row.coverage.standard_error),
-         fixed_number(100.0 * row.coverage_5th, 1)});
+    std::vector<std::string> cells = {row.structure,
+                                      count_number(row.campaigns),
+                                      fixed_number(row.before * 1e6, 2),
+                                      fixed_number(row.median * 1e6, 3),
+                                      fixed_number(row.worst * 1e6, 3),
+                                      fixed ? fixed_number(row.median_fixed * 1e6, 3) : "-",
+                                      fixed ? fixed_number(row.worst_ratio, 2) : "-",
+                                      fmt::format("{:.3f} +- {:.3f}", row.chi2.mean, row.chi2.standard_error),
+                                      percent(row.coverage),
+                                      fixed_number(100.0 * row.coverage_5th, 1)};
+    if (correlated) {
+      cells.push_back(fixed_number(row.median_white * 1e6, 3));
+      cells.push_back(percent(row.white_coverage));
+    }
+    table.add_row(cells);
   }
   TextTable symbols({{"symbol", Align::Left}, {"coverage [%]"}, {"5th percentile [%]"}},
                     "Coverage per symbol over the campaigns");
   for (const auto& [symbol, shares] : coverage_by_symbol(campaigns)) {
     const MeanWithError share = mean_of(shares);
-    symbols.add_row({symbol,
-                     fmt::format("{:.1f} +- {:.1f}", 100.0 * share.mean, 100.0 * share.standard_error),
-                     fixed_number(100.0 * quantile(shares, 0.05), 1)});
+    symbols.add_row({symbol, percent(share), fixed_number(100.0 * quantile(shares, 0.05), 1)});
   }
   return fmt::format(
       "closed loop, {} campaigns, seeds from {}; +- is one standard error of the mean\n\n{}\n{}",
@@ -146,10 +156,14 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
                                     {"rms_before_um", campaign.rms_before * 1e6},
                                     {"rms_after_um", campaign.rms_after * 1e6},
                                     {"reduced_chi2", campaign.reduced_chi2},
-                                    {"coverage95", campaign.mean_coverage()},
+                                    {"coverage95", mean_coverage(campaign.coverage)},
                                     {"coverage95_of", campaign.coverage}};
     if (arguments.options.fixed_knots) {
       for (const double rms : campaign.rms_fixed) entry["rms_fixed_um"].push_back(rms * 1e6);
+    }
+    if (arguments.options.correlated_noise) {
+      entry["white_rms_after_um"] = campaign.white_rms_after * 1e6;
+      entry["white_coverage95"] = mean_coverage(campaign.white_coverage);
     }
     json["campaigns"].push_back(entry);
   }
@@ -166,6 +180,10 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
       entry["median_best_fixed_um"] = row.median_fixed * 1e6;
       entry["worst_ratio_to_best_fixed"] = row.worst_ratio;
     }
+    if (arguments.options.correlated_noise) {
+      entry["white_median_rms_after_um"] = row.median_white * 1e6;
+      entry["white_mean_coverage95"] = row.white_coverage.mean;
+    }
     json["summary"].push_back(entry);
   }
   return json;
@@ -173,6 +191,7 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
 
 int run(Arguments arguments) {
   if (arguments.small) arguments.options.grid = {6, 5, 4};
+  arguments.options.correlated_noise = arguments.noise == "correlated";
   ProgressBar bar("closed loop");
   arguments.options.progress = [&bar](int done, int all) {
     bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
@@ -196,6 +215,12 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
   app.add_flag("--fixed", options.fixed_knots,
                "fit five fixed sets of knot intervals too and compare with the best of them");
+  app.add_option(
+         "--noise", arguments->noise,
+         "of the readings: white, or correlated: with slow wander (0.4 um, 10 min) and offsets of lines "
+         "(0.2 um), fitted with white weights too")
+      ->check(CLI::IsMember({"white", "correlated"}))
+      ->capture_default_str();
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
@@ -209,6 +234,7 @@ const Command& closed_loop_study() {
   static const Command command = {
       "closed-loop", "simulated machines identified: error left, resolution and coverage of U95, counted",
       "  volcal study closed-loop -n 80 --fixed\n"
+      "  volcal study closed-loop -n 20 --noise correlated\n"
       "  volcal study closed-loop -n 4 --small --json\n",
       define};
   return command;

@@ -32,6 +32,7 @@ FitResult fitted(const Campaign& campaign, const ModelSpec& model) {
   FitOptions options;
   options.threads = 1;
   options.outliers = OutlierPolicy::Remove;
+  options.noise = NoisePolicy::White;  // as `volcal diagnose`
   return fit(campaign, model, options);
 }
 

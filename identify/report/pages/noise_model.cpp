@@ -1,39 +1,12 @@
 /// Noise of every instrument by restricted maximum likelihood.
 
-#include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/noise_rows.h"
 
 namespace volcal::report {
-namespace {
-
-std::string meaning(const std::string& term) {
-  if (term == "white") return "independent, times the stated σ";
-  if (term == "wander") return "slow wander";
-  if (term == "tau") return "correlation time of the wander";
-  if (term == "line") return "offset that the readings of a line share";
-  return "independent, proportional to length";
-}
-
-}  // namespace
 
 Json noise_model_page(const DiagnosisInput& input) {
-  Json rows = Json::array();
-  for (const NoiseRow& row : input.diagnosis.noise) {
-    const bool is_length = row.unit == "m or rad" || row.unit == "m/m";
-    const double factor = is_length ? kPerMicro : 1.0;
-    rows.push_back({{"instrument", input.diagnosis.noise_instruments[row.instrument]},
-                    {"term", row.term},
-                    {"meaning", meaning(row.term)},
-                    {"value", rounded(row.value * factor, 4)},
-                    {"low", rounded(row.low * factor, 3)},
-                    {"high", rounded(row.high * factor, 3)},
-                    {"unit", row.unit == "m or rad" ? "µm or µrad"
-                             : row.unit == "m/m"    ? "µm/m"
-                             : row.unit == "1"      ? ""
-                                                    : row.unit},
-                    {"likelihood_ratio", rounded(row.likelihood_ratio, 4)},
-                    {"remark", row.remark}});
-  }
-  return {{"rows", std::move(rows)}, {"removed_readings", input.diagnosis.removed_readings}};
+  return {{"rows", noise_rows(input.diagnosis.noise, input.diagnosis.noise_instruments)},
+          {"removed_readings", input.diagnosis.removed_readings}};
 }
 
 }  // namespace volcal::report

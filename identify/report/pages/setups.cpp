@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/noise_rows.h"
 
 namespace volcal::report {
 namespace {
@@ -41,7 +41,15 @@ Json component_rows(const FitResult& result) {
 }  // namespace
 
 Json setups_page(const PageInput& input) {
-  return {{"setups", setup_rows(input.result)}, {"components", component_rows(input.result)}};
+  const NoiseSummary& noise = input.result.noise;
+  return {{"setups", setup_rows(input.result)},
+          {"components", component_rows(input.result)},
+          {"noise",
+           {{"estimated", noise.estimated},
+            {"more_than_white", noise.more_than_white},
+            {"reduced",
+             rounded(noise.dof > 0 ? noise.chi2 / noise.dof : std::numeric_limits<double>::quiet_NaN(), 4)},
+            {"rows", noise_rows(noise.rows, noise.instruments)}}}};
 }
 
 }  // namespace volcal::report

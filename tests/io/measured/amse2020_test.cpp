@@ -102,13 +102,15 @@ std::vector<double> left_out_by_polynomial(const Campaign& campaign, const Terms
 /// The fit with one point given no weight; what is left of that point's readings.
 std::vector<double> left_out_by_fit(const Campaign& campaign, const ModelSpec& model) {
   std::vector<double> misses;
+  FitOptions options;
+  options.noise = NoisePolicy::White;  // as the polynomials
   for (const Vector& out : vectors_of(campaign)) {
     Campaign others = campaign;
     for (volcal::Setup& setup : others.setups) {
       setup.readings.sigma.assign(setup.readings.size(), *setup.noise.number("constant"));
     }
     others.setups[out.setup].readings.sigma[out.row] = kIgnored;
-    const FitResult result = fit(others, model);
+    const FitResult result = fit(others, model, options);
     for (const ResidualRecord& record : result.residuals) {
       if (record.setup == out.setup && record.row == out.row) misses.push_back(record.residual());
     }

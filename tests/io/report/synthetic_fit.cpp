@@ -1,6 +1,7 @@
 #include "tests/io/report/synthetic_fit.h"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -247,6 +248,17 @@ SyntheticFit synthetic_fit(int scale) {
   result.variance_components = {{"laser-tracer", 1.02, 0.03, 900.0, 1000},
                                 {"ball-bar", 1.31, 0.04, 320.0, 360},
                                 {"displacement", 0.97, 0.12, 38.0, 42}};
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  result.noise = {
+      .estimated = true,
+      .more_than_white = true,
+      .instruments = {"laser-tracer"},
+      .rows = {{0, "white", "1", 1.02, 0.98, 1.06, none, ""},
+               {0, "wander", "m or rad", 0.41e-6, 0.3e-6, 0.56e-6, 41.5, ""},
+               {0, "tau", "s", 540.0, 280.0, 1040.0, 41.5, ""},
+               {0, "line", "m or rad", 0.0, none, none, 1.1, "off: not supported by the readings"}},
+      .chi2 = 905.0,
+      .dof = 900.0};
   result.timings = {{"read", 0.012}, {"solve", 0.431}, {"covariance", 0.087}};
   result.iterations = 9;
   result.initial_cost = 4.1e7;

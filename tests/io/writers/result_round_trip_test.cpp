@@ -92,6 +92,30 @@ TEST(ResultJson, ReturnsTheSameErrorFunctions) {
   }
 }
 
+TEST(ResultJson, ReturnsTheNoise) {
+  FitResult written = small_result();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  written.noise = {.estimated = true,
+                   .more_than_white = true,
+                   .instruments = {"laser-tracer", "angle"},
+                   .rows = {{0, "wander", "m or rad", 0.4e-6, 0.3e-6, 0.5e-6, 31.5, ""},
+                            {1, "white", "1", 1.25, none, none, none, "stated: too few redundant readings"}},
+                   .chi2 = 812.5,
+                   .dof = 800.25};
+  const FitResult read = result_from_json(result_json(written), "result.json");
+  EXPECT_TRUE(read.noise.estimated);
+  EXPECT_TRUE(read.noise.more_than_white);
+  EXPECT_EQ(read.noise.instruments, written.noise.instruments);
+  EXPECT_EQ(read.noise.chi2, 812.5);
+  EXPECT_EQ(read.noise.dof, 800.25);
+  ASSERT_EQ(read.noise.rows.size(), 2U);
+  EXPECT_EQ(read.noise.rows[0].value, 0.4e-6);
+  EXPECT_EQ(read.noise.rows[0].likelihood_ratio, 31.5);
+  EXPECT_EQ(read.noise.rows[1].instrument, 1U);
+  EXPECT_EQ(read.noise.rows[1].remark, "stated: too few redundant readings");
+  EXPECT_TRUE(std::isnan(read.noise.rows[1].low));
+}
+
 TEST(ResultJson, KeepsNumbersThatAreNotFinite) {
   FitResult result = small_result();
   result.chi2 = std::numeric_limits<double>::infinity();

@@ -1,9 +1,19 @@
 import { count, el, fixed, longTable, note, table } from '../dom.js';
+import { noiseTable } from '../noise_table.js';
 
 function noiseVerdict(row) {
   const distance = Math.abs(row.scale - 1) / Math.max(row.u, 1e-12);
   if (distance < 2) return 'as stated';
   return row.scale > 1 ? 'stated σ is too small' : 'stated σ is too large';
+}
+
+function noiseModel(noise) {
+  if (!noise.estimated) return [note('Readings were taken as independent; slow wander, offsets of lines and a part in proportion to length were not looked for.')];
+  if (!noise.more_than_white) return [note('Independent readings suffice: no slow wander, offset of lines or part in proportion to length is supported by the readings.')];
+  return [
+    noiseTable(noise.rows.filter((row) => row.value !== 0)),
+    note(`The readings' noise is not independent. Its terms come from restricted maximum likelihood; weights and uncertainties allow for them. χ² of the whitened residuals per degree of freedom: ${fixed(noise.reduced, 3)}.`),
+  ];
 }
 
 export function renderSetups(body, data) {
@@ -17,7 +27,8 @@ export function renderSetups(body, data) {
       { name: 'u', cell: (row) => fixed(row.u, 3) },
       { name: 'Verdict', align: 'left', cell: noiseVerdict },
     ], data.components),
-    note('Variance component of each kind of instrument: the factor by which its stated standard deviation must be multiplied to agree with the residuals. The uncertainties of this report use the found values.'),
+    note('Variance component of each kind of instrument: the factor by which its stated standard deviation (of the independent part, where there is another) must be multiplied to agree with the residuals. The uncertainties of this report use the found values.'),
+    ...noiseModel(data.noise),
     el('h3', {}, 'Setups'),
     longTable([
       { name: 'Setup', align: 'left', cell: (row) => row.name },

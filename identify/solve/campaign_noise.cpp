@@ -1,0 +1,119 @@
+#include "volcal/identify/solve/campaign_noise.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "volcal/identify/stats/even_sample.h"
+
+namespace volcal {
+namespace {
+
+/// Positions within a sequence in time order, `count` of them.
+std::vector<std::size_t> first_in_time(const NoiseSequence& sequence, std::size_t count) {
+  std::vector<std::size_t> order(sequence.observation.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!sequence.time.empty())
+    std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.time[k]; });
+  order.resize(std::min(count, order.size()));
+  return order;
+}
+
+/// Sequences in the order in which a sample takes them: one of each group, then by a scrambled index.
+std::vector<std::size_t> sampling_order(const std::vector<NoiseSequence>& sequences) {
+  std::vector<std::size_t> order(sequences.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, scrambled);
+  std::set<std::size_t> seen;
+  std::ranges::stable_partition(order, [&](std::size_t i) { return seen.insert(sequences[i].group).second; });
+  return order;
+}
+
+}  // namespace
+
+std::vector<ObservationPlace> observation_places(const MeasurementModel& model) {
+  std::vector<ObservationPlace> places;
+  const auto& setups = model.campaign().setups;
+  for (std::size_t setup = 0; setup < setups.size(); ++setup) {
+    for (std::size_t row = 0; row < setups[setup].readings.size(); ++row) {
+      for (int channel = 0; channel < model.bound(setup).channels(); ++channel)
+        places.push_back({setup, row, channel});
+    }
+  }
+  return places;
+}
+
+CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> stated_sigma,
+                             const std::vector<bool>& removed) {
+  CampaignNoise noise{observation_places(model), {}, {}};
+  noise.data.sigma = std::move(stated_sigma);
+  std::map<std::tuple<std::size_t, std::int32_t, int>, std::size_t> sequence_of;
+  for (std::size_t i = 0; i < noise.places.size(); ++i) {
+    const auto [setup_index, row, channel] = noise.places[i];
+    const Setup& setup = model.campaign().setups[setup_index];
+    const Readings& readings = setup.readings;
+    if (!removed.empty() && removed[i]) noise.data.sigma[i] = std::numeric_limits<double>::infinity();
+    noise.data.length.push_back(model.bound(setup_index).noise_length(row, 0));
+    const std::int32_t run = readings.run.empty() ? 0 : readings.run[row];
+    const auto [found, is_new] =
+        sequence_of.try_emplace({setup_index, run, channel}, noise.data.sequences.size());
+    if (is_new) {
+      noise.data.sequences.emplace_back();
+      const auto known = std::ranges::find(noise.instruments, setup.instrument);
+      noise.data.sequences.back().group = static_cast<std::size_t>(known - noise.instruments.begin());
+      if (known == noise.instruments.end()) noise.instruments.push_back(setup.instrument);
+    }
+    NoiseSequence& sequence = noise.data.sequences[found->second];
+    sequence.observation.push_back(i);
+    if (!readings.time.empty()) sequence.time.push_back(readings.time[row]);
+    if (!readings.line.empty()) sequence.line.push_back(readings.line[row]);
+  }
+  return noise;
+}
+
+CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
+  if (all.places.size() <= limit) return all;
+  CampaignNoise sample{{}, {}, all.instruments};
+  for (const std::size_t which : sampling_order(all.data.sequences)) {
+    const bool each_instrument = sample.data.sequences.size() >= all.instruments.size();
+    if (each_instrument && sample.places.size() >= limit) break;
+    const NoiseSequence& sequence = all.data.sequences[which];
+    NoiseSequence kept;
+    kept.group = sequence.group;
+    for (const std::size_t k : first_in_time(sequence, limit)) {
+      const std::size_t i = sequence.observation[k];
+      kept.observation.push_back(sample.places.size());
+      if (!sequence.time.empty()) kept.time.push_back(sequence.time[k]);
+      if (!sequence.line.empty()) kept.line.push_back(sequence.line[k]);
+      sample.places.push_back(all.places[i]);
+      sample.data.sigma.push_back(all.data.sigma[i]);
+      sample.data.length.push_back(all.data.length[i]);
+    }
+    sample.data.sequences.push_back(std::move(kept));
+  }
+  return sample;
+}
+
+void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
+               const std::vector<ObservationPlace>& places, NoiseProblem& problem) {
+  const auto count = static_cast<Eigen::Index>(places.size());
+  problem.jacobian.resize(count, datum.size());
+  problem.residual.resize(count);
+  RowJacobian row;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const ObservationPlace& place = places[static_cast<std::size_t>(i)];
+    const bool same_reading = i > 0 && place.setup == places[static_cast<std::size_t>(i - 1)].setup &&
+                              place.row == places[static_cast<std::size_t>(i - 1)].row;
+    if (!same_reading) model.linearize(place.setup, place.row, parameters, row);
+    const Readings& readings = model.campaign().setups[place.setup].readings;
+    problem.jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, place.channel).transpose());
+    problem.residual[i] =
+        readings.value[static_cast<std::size_t>(place.channel)][place.row] - row.predicted[place.channel];
+  }
+}
+
+}  // namespace volcal

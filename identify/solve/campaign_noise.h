@@ -1,0 +1,43 @@
+#pragma once
+/// A campaign as its noise model sees it (identify/noise/noise_model.h): which observations follow one
+/// another in one setup, run and channel, and the linear model of some of them about given parameters.
+
+#include <string>
+#include <vector>
+
+#include "volcal/identify/noise/restricted_likelihood.h"
+#include "volcal/identify/solve/datum.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+
+/// Place of an observation; they are numbered setup by setup, row by row, channel by channel.
+struct ObservationPlace {
+  std::size_t setup = 0;
+  std::size_t row = 0;
+  int channel = 0;
+};
+
+std::vector<ObservationPlace> observation_places(const MeasurementModel& model);
+
+struct CampaignNoise {
+  std::vector<ObservationPlace> places;  ///< of the observations of `data`
+  NoiseData data;                        ///< SI; removed observations have an infinite sigma
+  std::vector<std::string> instruments;  ///< of the groups, in the order of their first observation
+};
+
+/// All observations. `stated_sigma`: per observation, m or rad; `removed`: per observation, empty = none.
+CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> stated_sigma,
+                             const std::vector<bool>& removed);
+
+/// Whole sequences, evenly chosen, until `limit` observations are reached; every instrument keeps one at
+/// least. A sequence that alone is longer than the limit gives its first readings in time. All when there are
+/// no more.
+CampaignNoise sampled(const CampaignNoise& all, std::size_t limit);
+
+/// Fills derivatives to the reduced parameters and residuals (reading minus prediction, m or rad) of the
+/// observations at `places`.
+void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
+               const std::vector<ObservationPlace>& places, NoiseProblem& problem);
+
+}  // namespace volcal

@@ -1,0 +1,174 @@
+#include "volcal/identify/solve/correlated_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "volcal/identify/numeric/dense.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kNoiseSample = 50000;
+constexpr double kSpeaks = 1e-2;
+constexpr double kNoPrior = 1e-10;
+constexpr Eigen::Index kBlock = 4096;
+constexpr double kNegligible = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
+constexpr int kRenewals = 4;          // of what the model holds fixed; then it stays, and steps contract
+constexpr int kMostIterations = 12;
+
+InstrumentEquations sum_of(const std::vector<InstrumentEquations>& equations) {
+  InstrumentEquations total = equations.front();
+  for (std::size_t g = 1; g < equations.size(); ++g) {
+    total.matrix += equations[g].matrix;
+    total.gradient += equations[g].gradient;
+    total.squares += equations[g].squares;
+    total.observations += equations[g].observations;
+  }
+  return total;
+}
+
+/// Directions of the parameters that the observations speak about. Where white readings contribute less than
+/// kSpeaks of the information the prior decides, whatever the noise: the direction is held at the prior's
+/// mean.
+void keep_what_is_determined(NoiseProblem& problem) {
+  const Eigen::Index p = problem.jacobian.cols();
+  Eigen::MatrixXd readings = Eigen::MatrixXd::Zero(p, p);
+  for (Eigen::Index first = 0; first < problem.jacobian.rows(); first += kBlock) {
+    const Eigen::Index rows = std::min(kBlock, problem.jacobian.rows() - first);
+    const Eigen::Map<const Eigen::ArrayXd> sigma(problem.data.sigma.data() + first, rows);
+    add_gram_upper(sigma.inverse().matrix().asDiagonal() * problem.jacobian.middleRows(first, rows), 1.0,
+                   readings);
+  }
+  symmetrise_from_upper(readings);
+  const auto lower = cholesky_lower(readings + problem.prior_precision);
+  if (!lower) return;
+  solve_lower(*lower, readings);
+  readings.transposeInPlace();
+  solve_lower(*lower, readings);
+  const SymmetricEigen share = eigen_decomposition(readings);  // of the readings in the information
+  const auto held = static_cast<Eigen::Index>((share.values.array() < kSpeaks).count());
+  const Eigen::MatrixXd directions =
+      lower->triangularView<Eigen::Lower>().transpose().solve(share.vectors);  // information = identity
+  const Eigen::ArrayXd weight = 1.0 - share.values.array();                    // of the prior
+  const Eigen::ArrayXd of_prior = (weight > kNoPrior).select(weight, 0.0);
+  const Eigen::ArrayXd pull =
+      (directions.transpose() * (problem.prior_precision * problem.prior_mean)).array();
+  const Eigen::VectorXd mean = (of_prior > 0.0).select(pull / of_prior.max(kNoPrior), 0.0);
+  problem.residual -= problem.jacobian * (directions.leftCols(held) * mean.head(held));
+  problem.jacobian = (problem.jacobian * directions.rightCols(p - held)).eval();
+  problem.prior_precision = of_prior.tail(p - held).matrix().asDiagonal();
+  problem.prior_mean = mean.tail(p - held);
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& datum,
+                             const CampaignNoise& noise, const Eigen::VectorXd& z, const GaussianPrior& prior,
+                             const NoiseOptions& options, const NoiseEstimate* previous) {
+  CampaignNoise sample = sampled(noise, kNoiseSample);
+  NoiseProblem problem;
+  linearise(model, datum, datum.raw(z), sample.places, problem);
+  problem.data = std::move(sample.data);
+  problem.prior_precision = prior.precision;
+  problem.prior_mean = prior.mean - z;
+  keep_what_is_determined(problem);
+  return estimate_noise(problem, options, previous);
+}
+
+bool is_more_than_white(const NoiseEstimate& estimate) {
+  return std::ranges::any_of(estimate.instruments, [](const InstrumentNoise& instrument) {
+    return instrument.wander.on || instrument.line.on || instrument.per_metre.on;
+  });
+}
+
+std::vector<double> total_sigma(const CampaignNoise& noise, const std::vector<double>& stated_sigma,
+                                const std::vector<NoiseParameters>& parameters) {
+  std::vector<double> total(stated_sigma.size());
+  for (const NoiseSequence& sequence : noise.data.sequences) {
+    const NoiseParameters& own = parameters[sequence.group];
+    const double wander = sequence.time.empty() ? 0.0 : own.wander;
+    const double line = sequence.line.empty() ? 0.0 : own.line;
+    for (const std::size_t i : sequence.observation) {
+      const double white = own.white * stated_sigma[i];
+      const double proportional = own.per_metre * noise.data.length[i];
+      total[i] = std::sqrt(white * white + proportional * proportional + wander * wander + line * line);
+    }
+  }
+  return total;
+}
+
+WhitenedCampaign::WhitenedCampaign(const MeasurementModel& model, const DatumSpace& datum,
+                                   const CampaignNoise& noise, const std::vector<NoiseParameters>& parameters,
+                                   int threads)
+    : model_(model), datum_(datum), noise_(noise), whitener_(noise.data, parameters), threads_(threads) {}
+
+/// Raw derivatives and the error (predicted minus reading) of observations, one column each.
+void WhitenedCampaign::fill(const std::vector<std::size_t>& observations, const Eigen::VectorXd& raw,
+                            const TabulatedFunctions& tabulated, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  const Eigen::Index last = columns.rows() - 1;
+  columns.setZero();
+  RowJacobian row;
+  for (std::size_t k = 0; k < observations.size(); ++k) {
+    const auto [setup, reading, channel] = noise_.places[observations[k]];
+    model_.linearize(setup, reading, raw, row, &tabulated);
+    const auto column = static_cast<Eigen::Index>(k);
+    for_each_derivative(model_.layout(), row, channel,
+                        [&](int parameter, double derivative) { columns(parameter, column) += derivative; });
+    columns(last, column) =
+        row.predicted[channel] -
+        model_.campaign().setups[setup].readings.value[static_cast<std::size_t>(channel)][reading];
+  }
+}
+
+std::vector<InstrumentEquations> WhitenedCampaign::equations(const Eigen::VectorXd& z) const {
+  const Eigen::VectorXd raw = datum_.raw(z);
+  const TabulatedFunctions tabulated = model_.tabulate(raw);
+  const Eigen::Index size = raw.size();
+  std::vector<InstrumentEquations> equations;
+  for (std::size_t group = 0; group < noise_.instruments.size(); ++group) {
+    const Whitener::GroupGram sums = whitener_.gram_of_group(
+        group, size + 1,
+        [&](const std::vector<std::size_t>& observations, Eigen::Ref<Eigen::MatrixXd> columns) {
+          fill(observations, raw, tabulated, columns);
+        },
+        threads_);
+    equations.push_back({datum_.reduce_matrix(sums.gram.topLeftCorner(size, size)),
+                         datum_.reduce_gradient(sums.gram.col(size).head(size)), sums.gram(size, size),
+                         static_cast<double>(sums.observations)});
+  }
+  return equations;
+}
+
+CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const GaussianPrior& prior,
+                                       int evidence_rounds,
+                                       const std::function<void(const Eigen::VectorXd& z)>& renew,
+                                       std::vector<SmoothingTerm>& terms, Eigen::VectorXd& z) {
+  CorrelatedAdjustment result;
+  while (!result.converged && result.iterations < kMostIterations) {
+    const std::vector<InstrumentEquations> equations = campaign.equations(z);
+    if (result.iterations < evidence_rounds && !terms.empty()) {
+      const std::vector<double> unscaled(equations.size(), 1.0);
+      maximise_evidence(equations, z, prior, {.variance_components = false}, unscaled, terms);
+    }
+    GaussianPrior total = prior;
+    add_smoothing(terms, total);
+    const InstrumentEquations sums = sum_of(equations);
+    const auto factor = cholesky_lower(sums.matrix + total.precision);
+    if (!factor) throw std::runtime_error("adjust_correlated: the normal matrix is not positive definite");
+    result.covariance = inverse_from_cholesky(*factor);
+    const Eigen::VectorXd gradient = sums.gradient + total.gradient(z);
+    const Eigen::VectorXd step = -(result.covariance * gradient);
+    z += step;
+    if (result.iterations < kRenewals) renew(z);
+    ++result.iterations;
+    result.squares = sums.squares + 2.0 * sums.gradient.dot(step) + step.dot(sums.matrix * step);
+    result.redundancy = sums.observations - result.covariance.cwiseProduct(sums.matrix).sum();
+    result.cost = 0.5 * result.squares + total.cost(z);
+    result.converged = result.iterations >= evidence_rounds && -gradient.dot(step) < kNegligible;
+  }
+  return result;
+}
+
+}  // namespace volcal

@@ -1,0 +1,104 @@
+#include "volcal/identify/solve/summaries.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/solve/resolution.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+
+std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const ModelSpec& spec,
+                                                const DatumSpace& datum,
+                                                const std::vector<SmoothingTerm>& terms,
+                                                const Eigen::MatrixXd& covariance) {
+  std::vector<FunctionSummary> summaries;
+  for (const auto& function : datum.functions()) {
+    FunctionSummary summary;
+    summary.symbol = function.symbol;
+    const FunctionSpec& function_spec = spec.function(function.symbol);
+    summary.intervals = std::max(0, static_cast<int>(function_spec.breakpoints.size()) - 1);
+    summary.effective_parameters = function.size();
+    for (const SmoothingTerm& term : terms) {
+      if (term.symbol != function.symbol) continue;
+      summary.smoothed = true;
+      summary.prior = to_string(term.prior_shape().roughness);
+      summary.correlation_length =
+          term.prior_shape().length * campaign.machine.axis(function.symbol.axis).travel();
+      const auto n = term.precision().rows();
+      summary.effective_parameters -=
+          term.lambda * covariance.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();
+    }
+    const MeasuredRange range = measured_range(campaign, function.symbol.axis);
+    summary.measured_min = range.min;
+    summary.measured_max = range.max;
+    summaries.push_back(summary);
+  }
+  return summaries;
+}
+
+double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  if (!symbol) {
+    const int offset = result.layout.find_block(name)->offset;
+    return std::sqrt(result.covariance(offset, offset));
+  }
+  constexpr int kPositions = 33;
+  const auto place = *result.layout.find(*symbol);
+  const FunctionGroup& group = result.layout.groups[static_cast<std::size_t>(place.group)];
+  const MeasuredRange range = measured_range(campaign, symbol->axis);
+  std::vector<int> raw;
+  for (int j = 0; j < group.basis->size(); ++j) raw.push_back(group.index(j, place.slot));
+  const Eigen::MatrixXd covariance = result.covariance(raw, raw);
+  double sum = 0.0;
+  for (int i = 0; i < kPositions; ++i) {
+    const Eigen::VectorXd row =
+        group.basis->row(range.min + (range.max - range.min) * static_cast<double>(i) / (kPositions - 1));
+    sum += row.dot(covariance * row);
+  }
+  return std::sqrt(sum / kPositions);
+}
+
+ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
+                           const Eigen::VectorXd& parameters) {
+  ModelSpec identified = spec;
+  identified.file.clear();
+  for (const ErrorSymbol symbol : layout.symbols()) {
+    FunctionSpec& function = identified.functions[symbol];
+    function.knots = KnotChoice::Explicit;
+    const Eigen::VectorXd coefficients = layout.coefficients(symbol, parameters);
+    function.coefficients.assign(coefficients.begin(), coefficients.end());
+  }
+  for (const ParameterBlock& block : layout.blocks) {
+    if (block.location) identified.locations[*block.location] = parameters[block.offset];
+  }
+  for (EffectSpec& effect : identified.effects) {
+    const auto made = find_effect(effect.kind)->make(effect, spec.file);
+    const auto keep = [&](const std::string& label, const std::string& key) {
+      const ParameterBlock* block = layout.find_block(label);
+      if (block != nullptr) effect.options.set(std::string(stem_of_key(key)), parameters[block->offset]);
+    };
+    for (const EffectAmplitude& amplitude : made->amplitudes()) keep(amplitude.label, amplitude.key);
+    for (const EffectShape& shape : made->shapes()) keep(shape.label, shape.key);
+  }
+  return identified;
+}
+
+void summarise_temperature(const Campaign& campaign, FitResult& result) {
+  const bool expands =
+      std::ranges::any_of(campaign.machine.axes, [](const Axis& a) { return a.expansion.has_value(); });
+  if (expands) return;
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Setup& setup : campaign.setups) {
+    for (const auto& [channel, values] : setup.readings.temperature) {
+      for (const double value : values) sum += value;
+      count += values.size();
+    }
+  }
+  result.temperature_is_campaign_mean = true;
+  result.reference_temperature_degC = count > 0 ? sum / static_cast<double>(count) : std::nan("");
+}
+
+}  // namespace volcal

@@ -1,0 +1,30 @@
+#pragma once
+/// What a result tells of an adjustment besides its parameters: functions, the identified model, temperature.
+
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/datum.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/identify/solve/smoothing.h"
+
+namespace volcal {
+
+/// Resolution of every function. `covariance`: of the reduced parameters, smoothing held.
+std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const ModelSpec& spec,
+                                                const DatumSpace& datum,
+                                                const std::vector<SmoothingTerm>& terms,
+                                                const Eigen::MatrixXd& covariance);
+
+/// Root mean square standard uncertainty of a function over its measured travel, or of a scalar parameter, by
+/// the layout and covariance of the result; m or rad.
+double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& symbol);
+
+/// `spec` with explicit knots and the values of `parameters`; can be loaded again.
+ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
+                           const Eigen::VectorXd& parameters);
+
+/// Sets the temperature that the result's functions hold for.
+void summarise_temperature(const Campaign& campaign, FitResult& result);
+
+}  // namespace volcal

@@ -1,0 +1,127 @@
+#include "volcal/identify/solve/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "volcal/identify/stats/chi_squared.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kSignificanceOfLackOfFit = 1e-3;
+constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
+
+void report_stated_sigma(FitResult& result) {
+  for (const VarianceComponent& component : result.variance_components) {
+    if (std::abs(component.scale - 1.0) < std::max(0.1, 3.0 * component.scale_u)) continue;
+    std::ostringstream text;
+    text.precision(3);
+    text << component.instrument << ": "
+         << (result.noise.more_than_white ? "the independent part of its residuals scatters "
+                                          : "its residuals scatter ")
+         << component.scale << " times as much as its stated sigma; "
+         << "weights and uncertainties use the estimated value";
+    result.messages.push_back(text.str());
+  }
+}
+
+/// "slow wander of 0.41 um over 580 s", empty for what stands in no sentence of its own.
+std::string noise_phrase(const FitResult& result, const NoiseRow& row) {
+  const std::string unit = result.noise.instruments[row.instrument] == "angle" ? "urad" : "um";
+  std::ostringstream text;
+  text.precision(2);
+  if (row.term == "wander") text << "slow wander of " << row.value * 1e6 << " " << unit;
+  if (row.term == "line") text << "offsets of lines of " << row.value * 1e6 << " " << unit;
+  if (row.term == "per_metre") text << row.value * 1e6 << " " << unit << "/m in proportion to length";
+  return text.str();
+}
+
+void report_noise(FitResult& result) {
+  for (std::size_t g = 0; g < result.noise.instruments.size(); ++g) {
+    std::string phrases;
+    for (const NoiseRow& row : result.noise.rows) {
+      if (row.instrument != g || row.value == 0.0) continue;
+      const std::string phrase = noise_phrase(result, row);
+      if (!phrase.empty()) phrases += (phrases.empty() ? "" : ", ") + phrase;
+    }
+    if (phrases.empty()) continue;
+    result.messages.push_back(result.noise.instruments[g] + ": its noise is not independent (" + phrases +
+                              "); weights and uncertainties allow for it");
+  }
+}
+
+void report_outliers(FitResult& result) {
+  const auto flagged = std::ranges::count_if(result.residuals,
+                                             [](const ResidualRecord& r) { return r.flagged && !r.removed; });
+  const auto removed = std::ranges::count_if(result.residuals, &ResidualRecord::removed);
+  if (flagged > 0) {
+    result.messages.push_back(
+        std::to_string(flagged) +
+        " readings are flagged by the w-test and still in the adjustment; they are listed in "
+        "residuals.csv (--outliers remove takes them out)");
+  }
+  if (removed > 0) {
+    result.messages.push_back(std::to_string(removed) +
+                              " readings were removed by the w-test; they are listed in residuals.csv");
+  }
+}
+
+void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& binding, FitResult& result) {
+  for (const EffectBinding& effect : binding.effects) {
+    std::size_t unrecorded = 0;
+    for (const Setup& setup : campaign.setups)
+      unrecorded += effect.effect->unrecorded({campaign, setup, {}, {}});
+    if (unrecorded == 0) continue;
+    result.messages.push_back(effect.effect->amplitudes().front().label + ": " + std::to_string(unrecorded) +
+                              " readings do not record " + effect.effect->name().driver +
+                              " and carry nothing of the effect");
+  }
+}
+
+void report_lack_of_fit(FitResult& result) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "lack of fit: residuals are " << result.sigma0 << " times the stated noise; ";
+  if (result.noise.more_than_white)
+    text << "an effect that the model lacks can look like the noise found here, which `volcal diagnose` "
+            "tells; ";
+  text << "run `volcal compare` to see where the model fails";
+  result.messages.push_back(text.str());
+}
+
+}  // namespace
+
+std::string_view to_string(FitStatus status) {
+  switch (status) {
+    case FitStatus::Ok:
+      return "ok";
+    case FitStatus::LackOfFit:
+      return "lack_of_fit";
+    case FitStatus::RankDeficient:
+      return "rank_deficient";
+    case FitStatus::NotConverged:
+      return "not_converged";
+  }
+  return "";
+}
+
+void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
+           FitResult& result) {
+  report_stated_sigma(result);
+  report_noise(result);
+  const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
+  const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
+  for (const std::string& sentence : result.rank.invisible) result.messages.push_back(sentence);
+  report_outliers(result);
+  report_unrecorded_drivers(campaign, binding, result);
+  if (lack) report_lack_of_fit(result);
+  if (!end.converged)
+    result.messages.push_back("not converged: the cost still fell after the last iteration");
+  result.status = !end.converged       ? FitStatus::NotConverged
+                  : end.rank_deficient ? FitStatus::RankDeficient
+                  : lack               ? FitStatus::LackOfFit
+                                       : FitStatus::Ok;
+}
+
+}  // namespace volcal

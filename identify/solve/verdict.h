@@ -1,0 +1,19 @@
+#pragma once
+/// What the user is told about a finished adjustment.
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/observation/campaign_binding.h"
+
+namespace volcal {
+
+struct AdjustmentEnd {
+  bool converged = true;
+  bool rank_deficient = false;  ///< an error that the model has is not visible
+};
+
+/// Sets status and appends messages: stated sigma that is wrong, noise that is more than white, what is not
+/// visible, outliers, drivers that were not recorded, lack of fit.
+void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
+           FitResult& result);
+
+}  // namespace volcal

@@ -1,0 +1,93 @@
+/// Noise of a fit on the command line: what is looked for, printed and written.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::run_program;
+
+/// A campaign whose readings wander and whose lines have offsets.
+class FitNoiseProgram : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string machine = VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml";
+    std::ofstream(in_scratch("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"" << machine
+                                            << "\"\nseed = 5\n"
+                                               "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 4]\n"
+                                               "noise = { constant_um = 0.25, per_metre_um = 0.3, "
+                                               "repeatability_um = 0.6, wander_um = 1.2, "
+                                               "wander_time_s = 60.0, line_um = 0.8 }\n"
+                                               "[validation]\npoints = 5\n";
+    const auto run = run_program("simulate " + in_scratch("study.toml") + " -o " + in_scratch("campaign"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    std::ofstream(in_scratch("campaign/plain.toml"))
+        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
+           "[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 3 }\n";
+  }
+
+  std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
+  auto fit(const std::string& options) const {
+    return run_program("fit " + in_scratch("campaign/campaign.toml") + " --model " +
+                       in_scratch("campaign/plain.toml") + " -o " + in_scratch("result") + " " + options);
+  }
+
+ private:
+  testing::ScratchFolder scratch_;
+};
+
+TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
+  const auto run = fit("");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Noise by restricted maximum likelihood"));
+  EXPECT_THAT(run.output, HasSubstr("slow wander"));
+  EXPECT_THAT(run.output, HasSubstr("its noise is not independent"));
+  const auto noise = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("noise");
+  EXPECT_TRUE(noise.at("more_than_white").get<bool>());
+  EXPECT_NEAR(noise.at("whitened_chi2_per_dof").get<double>(), 1.0, 0.1);
+  bool wander = false;
+  for (const auto& row : noise.at("terms")) {
+    if (row.at("term") != "wander") continue;
+    wander = true;
+    EXPECT_EQ(row.at("instrument"), "laser-tracer");
+    EXPECT_NEAR(row.at("value").get<double>(), 1.2e-6, 0.4e-6);
+    EXPECT_LT(row.at("low").get<double>(), row.at("value").get<double>());
+    EXPECT_GT(row.at("high").get<double>(), row.at("value").get<double>());
+  }
+  EXPECT_TRUE(wander);
+  // Other commands read the result.
+  EXPECT_EQ(
+      run_program("tables " + in_scratch("result") + " --format csv -o " + in_scratch("tables")).exit_code,
+      0);
+}
+
+TEST_F(FitNoiseProgram, TakesReadingsAsIndependentWhenAsked) {
+  const auto run = fit("--noise white");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("readings taken as independent"));
+  EXPECT_THAT(run.output, Not(HasSubstr("slow wander")));
+  const auto noise = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("noise");
+  EXPECT_FALSE(noise.at("estimated").get<bool>());
+  EXPECT_TRUE(noise.at("terms").empty());
+}
+
+TEST_F(FitNoiseProgram, RefusesAnUnknownNoise) {
+  const auto run = fit("--noise pink");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("--noise"));
+  EXPECT_THAT(run.errors, HasSubstr("pink"));
+}
+
+}  // namespace
+}  // namespace volcal

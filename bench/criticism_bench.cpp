@@ -1,24 +1,24 @@
-// Times the projection of candidate effects on the reference campaign (8 runs of 756 laser-tracer readings)
-// and prints the figures as JSON.
+// Times the projection of candidate effects on the reference campaign (8 runs of 756 laser-tracer readings,
+// or of a coarser grid) and prints the figures as JSON.
 //
-//   criticism_bench --threads N --repeats N [--write DIR]
+//   criticism_bench --threads N --repeats N [--grid NX,NY,NZ] [--write DIR]
 //
 // --write stores what another program needs for the same step: problem.json and little-endian doubles,
 // matrices column by column.
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "measure.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/noise/noise_estimate.h"
@@ -36,38 +36,38 @@ constexpr Eigen::Index kBlockColumns = 512;
 struct Arguments {
   int threads = 1;
   int repeats = 5;
+  Eigen::Vector3i grid = sim::Tracking{}.grid;
   std::string folder;
 };
 
+Eigen::Vector3i grid_from(const std::string& text) {
+  Eigen::Vector3i grid;
+  char comma = 0;
+  std::istringstream stream(text);
+  if (!(stream >> grid[0] >> comma >> grid[1] >> comma >> grid[2]))
+    throw std::invalid_argument("--grid " + text + " is not NX,NY,NZ");
+  return grid;
+}
+
 Arguments parse(int count, char** values) {
   Arguments arguments;
-  for (int i = 1; i + 1 < count; i += 2) {
-    const std::string option = values[i], value = values[i + 1];
-    if (option == "--threads")
-      arguments.threads = std::stoi(value);
-    else if (option == "--repeats")
-      arguments.repeats = std::stoi(value);
-    else if (option == "--write")
-      arguments.folder = value;
-    else
-      throw std::invalid_argument("unknown option " + option);
-  }
+  read_options(count, values, 1,
+               {{"--threads", into(arguments.threads)},
+                {"--repeats", into(arguments.repeats)},
+                {"--grid", [&](const std::string& value) { arguments.grid = grid_from(value); }},
+                {"--write", into(arguments.folder)}});
   return arguments;
 }
 
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-Campaign reference_campaign() {
+Campaign reference_campaign(const Eigen::Vector3i& grid) {
   sim::Study study;
   study.machine = sim::reference_machines()[0];
   study.seed = 31;
   study.environment.channels = {
       {.name = "column", .start = 20.0, .drift = 0.6 / 3600.0, .amplitude = 0.2, .period = 9000.0}};
-  study.measurements.emplace_back().settings = sim::Tracking{};
+  sim::Tracking tracking;
+  tracking.grid = grid;
+  study.measurements.emplace_back().settings = tracking;
   study.validation.points = 10;
   return sim::simulate(study).campaign;
 }
@@ -157,7 +157,7 @@ void write_step(const Step& step, const std::vector<double>& lm, const std::stri
 }
 
 Json run(const Arguments& arguments) {
-  const Campaign campaign = reference_campaign();
+  const Campaign campaign = reference_campaign(arguments.grid);
   const Step step(campaign);
   std::vector<double> setup_s, step_s, families_s, generic_s;
   std::vector<double> lm;
@@ -182,6 +182,8 @@ Json run(const Arguments& arguments) {
           {"shapes", step.widths.size()},
           {"columns", step.columns.cols()},
           {"threads", arguments.threads},
+          {"blas", blas_core()},
+          {"peak_bytes", peak_memory()},
           {"setup_s", setup_s},
           {"projection_s", step_s},
           {"families_s", families_s},

@@ -9,87 +9,29 @@ to 1e-11. When other programs used the processors during a measurement it is rep
 
 import argparse
 import json
-import os
 import pathlib
-import platform
-import resource
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
+
+import quiet_machine
+from quiet_machine import environment, free_bytes, merged, milliseconds
 
 HERE = pathlib.Path(__file__).parent
 GRIDS = {4752: (11, 9, 8), 12960: (15, 12, 12), 100776: (34, 26, 19), 1003104: (72, 54, 43)}
 SAME_COST = 1e-9            # between the two programs, at the solution
 SAME_JACOBIAN = 1e-7        # of central differences, relative to a column's largest element
-OTHERS = 0.1                # processor seconds per second that other programs may use
-ATTEMPTS = 5
 SCIPY_BYTES = 11_000        # memory that scipy needs per reading
-MARKS = ("<!-- figures: written by scripts/bench -->", "<!-- end of figures -->")
-
-
-class Noise(Exception):
-    pass
-
-
-def busy_seconds():
-    """Processor time used by everything since the machine started, s."""
-    user, nice, system, _idle, _wait, irq, softirq, steal = map(
-        int, pathlib.Path("/proc/stat").read_text().splitlines()[0].split()[1:9])
-    return (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
-
-
-def own_seconds():
-    usages = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
-    return sum(usage.ru_utime + usage.ru_stime for usage in usages)
-
-
-def load_of_others(work):
-    """Result of work() and the processor seconds per second that other programs used meanwhile."""
-    clock, busy, own = time.monotonic(), busy_seconds(), own_seconds()
-    result = work()
-    elapsed = time.monotonic() - clock
-    return result, max(0.0, busy_seconds() - busy - (own_seconds() - own)) / elapsed
-
-
-def free_bytes():
-    for line in open("/proc/meminfo"):
-        if line.startswith("MemAvailable:"):
-            return 1024 * int(line.split()[1])
-    raise RuntimeError("/proc/meminfo has no MemAvailable")
-
-
-def environment(threads):
-    clean = {key: value for key, value in os.environ.items()
-             if not key.startswith(("OPENBLAS_", "GOTO_", "OMP_", "MKL_"))}
-    return clean | {"OPENBLAS_NUM_THREADS": str(threads)}
+MARK = "<!-- figures: written by scripts/bench -->"
 
 
 class Bench:
-    def __init__(self, fit_bench, noisy):
-        self.fit_bench, self.noisy = fit_bench, noisy
-        self.marked = False
-        self.most_noise = 0.0
+    def __init__(self, machine, fit_bench):
+        self.machine, self.fit_bench = machine, fit_bench
 
     def run(self, command, threads):
-        """JSON of a program that had the machine to itself."""
-        def work():
-            done = subprocess.run(command, env=environment(threads), capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                sys.exit(f"fit_against_scipy: {' '.join(command)}: {done.stderr.strip()}")
-            return json.loads(done.stdout)
-
-        for attempt in range(ATTEMPTS):
-            figures, others = load_of_others(work)
-            if others <= OTHERS or self.noisy:
-                break
-            time.sleep(5.0 * (attempt + 1))
-        else:
-            raise Noise(f"other programs used {others:.2f} processors during {' '.join(command)}")
-        self.most_noise = max(self.most_noise, others)
-        self.marked |= others > OTHERS
-        return figures | {"marked": others > OTHERS}
+        return self.machine.run(command, threads)
 
     def volcal(self, readings, threads, repeats, target, solver="compressed"):
         grid = [str(n) for n in GRIDS[readings]]
@@ -114,17 +56,6 @@ def check(folder):
     if abs(found["cost_difference"]) > SAME_COST or found["jacobian_difference"] > SAME_JACOBIAN:
         sys.exit(f"fit_against_scipy: the programs do not solve the same problem: {found}")
     return found
-
-
-def merged(parts):
-    """One set of figures out of several runs of the same program."""
-    total = dict(parts[0])
-    for key in ("setup_s", "fit_s", "converged_s"):
-        if key in total:
-            total[key] = [value for part in parts for value in part[key]]
-    total["peak_bytes"] = max(part["peak_bytes"] for part in parts)
-    total["marked"] = any(part["marked"] for part in parts)
-    return total
 
 
 def measure(bench, readings, repeats, rounds, scipy_repeats):
@@ -152,11 +83,6 @@ def measure(bench, readings, repeats, rounds, scipy_repeats):
     return {key: merged(parts) for key, parts in runs.items()}, same, x_scale
 
 
-def milliseconds(seconds):
-    value = 1e3 * statistics.median(seconds)
-    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 1000 else f"{value:,.0f}"
-
-
 def table(results):
     lines = ["| Readings | Program | Threads | Set-up, ms | Fit, ms | n | scipy / fit | scipy / both | Peak, MB |",
              "|--:|---|--:|--:|--:|--:|--:|--:|--:|"]
@@ -175,20 +101,10 @@ def table(results):
     return "\n".join(lines)
 
 
-def processor():
-    for line in open("/proc/cpuinfo"):
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return platform.machine()
-
-
 def conditions(bench, results, checks):
     any_row = next(iter(results.values()))
     volcal, scipy = any_row[("volcal", 2)], any_row.get(("scipy TRF", 2), {})
-    lines = [f"{time.strftime('%Y-%m-%d')}; {processor()}, {os.cpu_count()} processors; "
-             f"BLAS core {volcal['blas']} (volcal), {scipy.get('blas', 'not run')} (scipy); "
-             f"load average {os.getloadavg()[0]:.2f}; other programs used at most {bench.most_noise:.2f} processors "
-             f"during a measurement." + (" **Some figures are marked noisy.**" if bench.marked else "")]
+    lines = [bench.machine.conditions(f"{volcal['blas']} (volcal), {scipy.get('blas', 'not run')} (scipy)")]
     for readings, (same, x_scale) in checks.items():
         if same is not None:
             lines.append(f"{readings:,} readings: costs at the solution differ by {abs(same['cost_difference']):.0e}, "
@@ -197,10 +113,14 @@ def conditions(bench, results, checks):
     return "  \n".join(lines)
 
 
-def write(page, text):
-    content = page.read_text()
-    begin, end = (content.index(mark) for mark in MARKS)
-    page.write_text(content[:begin + len(MARKS[0])] + "\n\n" + text + "\n\n" + content[end:])
+def measured_text(bench, sizes):
+    results, checks = {}, {}
+    for size in sizes:
+        million = size > 500_000
+        rows, same, x_scale = measure(bench, size, repeats=5, rounds=3 if size < 10_000 else 1,
+                                      scipy_repeats=1 if million else 5)
+        results[size], checks[size] = rows, (same, x_scale)
+    return conditions(bench, results, checks) + "\n\n" + table(results)
 
 
 def main():
@@ -210,24 +130,9 @@ def main():
     parser.add_argument("--noisy", action="store_true")
     parser.add_argument("--write", type=pathlib.Path)
     arguments = parser.parse_args()
-    bench = Bench(arguments.fit_bench, arguments.noisy)
-    _, others = load_of_others(lambda: time.sleep(1.0))
-    try:
-        if others > OTHERS and not arguments.noisy:
-            raise Noise(f"other programs use {others:.2f} processors")
-        results, checks = {}, {}
-        for size in map(int, arguments.sizes.split(",")):
-            million = size > 500_000
-            rows, same, x_scale = measure(bench, size, repeats=5, rounds=3 if size < 10_000 else 1,
-                                          scipy_repeats=1 if million else 5)
-            results[size], checks[size] = rows, (same, x_scale)
-    except Noise as noise:
-        print(f"fit_against_scipy: no figures: {noise}; try again later, or quote them as --noisy", file=sys.stderr)
-        sys.exit(3)
-    text = conditions(bench, results, checks) + "\n\n" + table(results)
-    print(text)
-    if arguments.write:
-        write(arguments.write, text)
+    sizes = [int(size) for size in arguments.sizes.split(",")]
+    quiet_machine.main("fit_against_scipy",
+                       lambda machine: measured_text(Bench(machine, arguments.fit_bench), sizes), MARK, arguments)
 
 
 if __name__ == "__main__":

@@ -6,19 +6,17 @@
 // --write stores the problem and its solution for another program: problem.json, readings.f64 (one row of
 // x, y, z, length, sigma per reading, m, set-up by set-up).
 
-#include <dlfcn.h>
-
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "measure.h"
 #include "reference_problem.h"
 #include "volcal/identify/solve/minimise.h"
 
@@ -42,28 +40,16 @@ Arguments parse(int count, char** values) {
   if (count < 4) throw std::invalid_argument("fit_bench NX NY NZ [--threads N] [--repeats N] ...");
   Arguments arguments;
   for (int i = 0; i < 3; ++i) arguments.grid[static_cast<std::size_t>(i)] = std::stoi(values[i + 1]);
-  for (int i = 4; i + 1 < count; i += 2) {
-    const std::string option = values[i], value = values[i + 1];
-    if (option == "--threads")
-      arguments.threads = std::stoi(value);
-    else if (option == "--repeats")
-      arguments.repeats = std::stoi(value);
-    else if (option == "--target")
-      arguments.target = std::stod(value);
-    else if (option == "--write")
-      arguments.folder = value;
-    else if (option == "--solver")
-      arguments.solver = value == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
-    else
-      throw std::invalid_argument("unknown option " + option);
-  }
+  read_options(count, values, 4,
+               {{"--threads", into(arguments.threads)},
+                {"--repeats", into(arguments.repeats)},
+                {"--target", into(arguments.target)},
+                {"--write", into(arguments.folder)},
+                {"--solver", [&](const std::string& value) {
+                   arguments.solver =
+                       value == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
+                 }}});
   return arguments;
-}
-
-double seconds(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 /// What a fit needs besides the campaign; its making is the benchmark's "set-up".
@@ -166,22 +152,6 @@ void write_problem(const ReferenceProblem& source, const Problem& problem, const
     }
   }
   std::ofstream(folder + "/problem.json") << json.dump(1) << '\n';
-}
-
-std::string blas_core() {
-  using Name = char* (*)();
-  const auto name = reinterpret_cast<Name>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
-  return name == nullptr ? "not OpenBLAS" : name();
-}
-
-/// Largest resident size of this process so far, bytes.
-std::size_t peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    std::size_t kilobytes = 0;
-    if (word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
-  }
-  throw std::runtime_error("/proc/self/status has no VmHWM");
 }
 
 Json run(const Arguments& arguments) {

@@ -3,7 +3,8 @@
     numpy_projection.py FOLDER REPEATS     (FOLDER from criticism_bench --write)
 
 Prints JSON: seconds of the set-up (whitening and factor of the model's columns) and of the step (whitening the
-candidates' columns, projecting them, LM of every shape), and the largest relative difference of LM.
+candidates' columns, projecting them, LM of every shape), the largest relative difference of LM, and
+peak memory.
 """
 
 import json
@@ -13,6 +14,8 @@ import time
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
+
+from scipy_fit import blas_core, peak_memory
 
 VISIBLE = 1e-8  # least eigenvalue of a normalised Gram matrix, as in score_test
 
@@ -99,6 +102,8 @@ def main():
         figures["projection_s"].append(time.perf_counter() - clock)
     expected = np.array(problem["lm"])
     figures["difference"] = float(np.max(np.abs(lm - expected) / (1.0 + expected)))
+    figures["blas"], figures["threads"] = blas_core()
+    figures["peak_bytes"] = peak_memory()
     print(json.dumps(figures))
 
 

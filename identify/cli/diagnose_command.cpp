@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/effect_list.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
@@ -19,7 +20,6 @@
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -37,14 +37,18 @@ struct Arguments {
   std::size_t readings = PlanningOptions{}.readings;
 };
 
-/// Every registered kind, and what its effects can act on and depend on.
-int print_list() {
-  for (const EffectKind* kind : effect_kinds()) {
-    const EffectSchema& schema = kind->schema();
-    fmt::print("{}\n  {}\n  source: {}\n", schema.kind, schema.summary, schema.source);
-    for (const KeySchema& key : schema.keys) fmt::print("    {:<24} {}\n", key.key, key.help);
+ModelSpec given_model(const Arguments& arguments, const Campaign& campaign) {
+  return arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+}
+
+/// Of a campaign also by name.
+int print_list(const Arguments& arguments) {
+  std::vector<std::string> testable;
+  if (!arguments.campaign.empty()) {
+    const Campaign campaign = read_campaign(arguments.campaign);
+    testable = testable_effects(campaign, given_model(arguments, campaign));
   }
-  fmt::print("{}\n  {}\n", kLeftOut, kLeftOutSummary);
+  fmt::print("{}", arguments.json ? effect_list_json(testable) : effect_list_text(testable));
   return kDone;
 }
 
@@ -83,15 +87,14 @@ void write_folder(const Arguments& arguments, const Campaign& campaign, const Mo
 }
 
 int run(const Arguments& arguments) {
-  if (arguments.list) return print_list();
+  if (arguments.list) return print_list(arguments);
   if (!arguments.shown.empty()) return show(arguments);
   if (arguments.campaign.empty()) {
     throw InputError({}, "no campaign is given",
                      "volcal diagnose CAMPAIGN.toml -o DIR, --show DIR, or --list");
   }
   const Campaign campaign = read_campaign(arguments.campaign);
-  const ModelSpec model =
-      arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  const ModelSpec model = given_model(arguments, campaign);
   DiagnoseOptions options;
   options.threads = arguments.threads;
   options.climb = arguments.climb;
@@ -132,7 +135,7 @@ std::function<int()> define(CLI::App& app) {
                  "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
-  app.add_flag("--auto", arguments->climb, "add effects one after another until nothing is left");
+  app.add_flag("--auto", arguments->climb, "tell everything that was found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,
                  "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
       ->delimiter(',');
@@ -141,7 +144,9 @@ std::function<int()> define(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--show", arguments->shown,
                  "print the diagnosis kept in a folder (or diagnosis.json) again");
-  app.add_flag("--list", arguments->list, "print every kind of effect and stop");
+  app.add_flag(
+      "--list", arguments->list,
+      "print every kind, target, driver and shape of effects, and what could act in CAMPAIGN, and stop");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
   return [arguments] { return run(*arguments); };
 }
@@ -155,7 +160,8 @@ const Command& diagnose_command() {
       "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
       "  volcal diagnose campaign.toml --separate station-drift:\"station P1\",dead-path:\"readings of S1\"\n"
       "  volcal diagnose --show diagnosis\n"
-      "  volcal diagnose --list\n",
+      "  volcal diagnose --list\n"
+      "  volcal diagnose campaign.toml --list\n",
       define};
   return command;
 }

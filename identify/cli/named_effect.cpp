@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
 
@@ -20,10 +21,6 @@ std::vector<std::string> parts_of(const std::string& text) {
     }
   }
   return parts;
-}
-
-std::string full_name(const EffectName& name) {
-  return fmt::format("{}:{}:{}:{}", name.kind, name.target, name.driver, name.shape);
 }
 
 }  // namespace

@@ -218,7 +218,7 @@ void add_confounding(const CriticismState& state, Diagnosis& diagnosis) {
       }
     }
   };
-  add(diagnosis.one_of, diagnosis.one_of.size());
+  for (const auto* set : sets_of_alternatives(diagnosis)) add(*set, set->size());
   add(diagnosis.ranking, diagnosis.ranking.size());
   add(diagnosis.not_visible, kInvisibleListed);
   RivalSearch search(state, accepted, std::move(others));
@@ -230,7 +230,10 @@ void add_confounding(const CriticismState& state, Diagnosis& diagnosis) {
   for (std::size_t i = 0; i < nearest.size(); ++i) {
     found[state.families[search.focus()[i].family].name()] = &nearest[i];
   }
-  for (auto* list : {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking, &diagnosis.not_visible}) {
+  std::vector<std::vector<EffectFinding>*> lists = {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking,
+                                                    &diagnosis.not_visible};
+  for (auto& set : diagnosis.further_one_of) lists.push_back(&set);
+  for (auto* list : lists) {
     for (EffectFinding& finding : *list) {
       const auto it = found.find(finding.name);
       if (it == found.end()) continue;

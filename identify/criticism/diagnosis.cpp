@@ -46,9 +46,11 @@ namespace {
 constexpr double kVisible = 0.02;
 constexpr double kPower = 0.8;
 constexpr std::size_t kListed = 40;
-constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
+constexpr const char* kKnownMore =
+    "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb with "
+    "--auto.";
 
 int thread_count(int asked) {
   return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -186,10 +188,12 @@ class Diagnostician {
       (finding.resolution ? diagnosis_.model_changes : diagnosis_.effects).push_back(finding);
       return;
     }
-    if (!diagnosis_.one_of.empty()) return;
-    diagnosis_.one_of.push_back(finding);
-    for (const FamilyTest& rival : added.rivals) {
-      if (diagnosis_.one_of.size() < kMostAlternatives) diagnosis_.one_of.push_back(this->finding(rival));
+    std::vector<EffectFinding> set{finding};
+    for (const FamilyTest& rival : added.rivals) set.push_back(this->finding(rival));
+    if (diagnosis_.one_of.empty()) {
+      diagnosis_.one_of = std::move(set);
+    } else {
+      diagnosis_.further_one_of.push_back(std::move(set));
     }
   }
 
@@ -257,6 +261,22 @@ class Diagnostician {
       diagnosis_.unknown.push_back(
           {test->variables, test->direction, test->rms, search_.family_wise_log10_p(*test)});
     }
+    if (diagnosis_.unknown.empty()) collect_given_up();
+  }
+
+  /// What stood out under names that are none, and no generic test sees for itself.
+  void collect_given_up() {
+    for (const auto& [family, reason] : search_.given_up()) {
+      const FamilyTest& test = search_.tests()[family];
+      if (search_.is_added(family) || search_.family_wise_log10_p(test) > kLog10FamilyRisk) continue;
+      const EffectName name = families_[family].name();
+      const Eigen::VectorXd moved =
+          family_columns(model_, families_[family], test.shape) * test.score.amplitude;
+      diagnosis_.unknown.push_back({scan_variables_of(name), name.target,
+                                    moved.norm() / std::sqrt(static_cast<double>(moved.size())),
+                                    search_.family_wise_log10_p(test)});
+    }
+    std::ranges::sort(diagnosis_.unknown, {}, &UnknownFinding::log10_p);
   }
 
   /// What the readings can tell apart, and what would have to be measured for the rest.
@@ -286,23 +306,27 @@ class Diagnostician {
 
   void conclude() {
     const bool more = !diagnosis_.unknown.empty();
+    const auto sets = sets_of_alternatives(diagnosis_);
     auto& words = diagnosis_.words;
     if (!diagnosis_.effects.empty()) {
-      const bool open = more || !diagnosis_.one_of.empty();
+      const bool open = more || !sets.empty() || search_.more_is_known();
       diagnosis_.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
       for (const EffectFinding& effect : diagnosis_.effects)
         words.push_back("The missing effect is: " + sentence(effect));
-      if (!diagnosis_.one_of.empty()) words.push_back("More remains, one of: " + names(diagnosis_.one_of));
+      for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
+      if (search_.more_is_known()) words.emplace_back(kKnownMore);
       if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
-    } else if (!diagnosis_.one_of.empty() && !more) {
+    } else if (!sets.empty() && !more) {
       diagnosis_.verdict = Verdict::OneOf;
-      words.push_back("One of these is missing, and these readings do not tell them apart: " +
-                      names(diagnosis_.one_of));
+      for (const auto* set : sets) {
+        words.push_back("One of these is missing, and these readings do not tell them apart: " + names(*set));
+      }
+      if (search_.more_is_known()) words.emplace_back(kKnownMore);
     } else if (more) {
       diagnosis_.verdict = Verdict::Unknown;
       words.push_back("An effect that is in no catalogue: " + sentence(diagnosis_.unknown.front()));
-      if (!diagnosis_.one_of.empty()) {
-        words.push_back("Nearest in the catalogue, but not all of it: " + names(diagnosis_.one_of));
+      for (const auto* set : sets) {
+        words.push_back("Nearest in the catalogue, but not all of it: " + names(*set));
       }
     } else if (mostly_invisible()) {
       diagnosis_.verdict = Verdict::NotVisible;
@@ -314,6 +338,9 @@ class Diagnostician {
       words.emplace_back(
           "Nothing is above the noise; what would have been found is in the table of smallest detectable "
           "amplitudes.");
+    }
+    for (const auto& [family, reason] : search_.given_up()) {
+      words.push_back("Not named " + families_[family].label() + ": " + reason + ".");
     }
     for (const EffectFinding& change : diagnosis_.model_changes) {
       words.push_back("The error function " + change.name.target + " needs more knots.");
@@ -354,6 +381,13 @@ class Diagnostician {
 };
 
 }  // namespace
+
+std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {
+  std::vector<const std::vector<EffectFinding>*> sets;
+  if (!diagnosis.one_of.empty()) sets.push_back(&diagnosis.one_of);
+  for (const auto& set : diagnosis.further_one_of) sets.push_back(&set);
+  return sets;
+}
 
 double log10_family_risk() { return kLog10FamilyRisk; }
 double log10_generic_risk() { return kLog10GenericRisk; }

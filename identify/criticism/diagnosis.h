@@ -4,7 +4,8 @@
 ///   1. the noise model by restricted likelihood,
 ///   2. score tests of every named family, after projection off the model,
 ///   3. two generic scans, because the catalogue is never complete,
-///   4. a verdict in the user's words; with `climb`, effects are added one by one until nothing is left.
+///   4. a verdict in the user's words; effects are added one by one until nothing is left, and told all with
+///      `climb`, else the first.
 ///
 /// A share of the lines is held out: they never choose, and judge every step.
 
@@ -85,7 +86,7 @@ struct LadderStep {
 
 struct DiagnoseOptions {
   int threads = 1;     ///< 0 = as many as the machine has; results do not depend on it
-  bool climb = false;  ///< add effects until nothing is left
+  bool climb = false;  ///< tell all effects that were found, not the first alone
   int most_effects = 8;
   double heldout_share = 0.1;
   bool figures = true;                 ///< what the report draws; a study leaves it out
@@ -97,10 +98,11 @@ struct DiagnoseOptions {
 
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
-  std::vector<std::string> words;            ///< the verdict in plain sentences
-  std::vector<EffectFinding> effects;        ///< named, in the order in which they were added
-  std::vector<EffectFinding> one_of;         ///< alternatives that the readings do not tell apart
-  std::vector<UnknownFinding> unknown;       ///< leading first
+  std::vector<std::string> words;      ///< the verdict in plain sentences
+  std::vector<EffectFinding> effects;  ///< named, in the order in which they were added
+  std::vector<EffectFinding> one_of;   ///< alternatives that the readings do not tell apart
+  std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
+  std::vector<UnknownFinding> unknown;                     ///< leading first
   std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
@@ -116,6 +118,9 @@ struct Diagnosis {
   std::size_t generic_tests = 0;
   DiagnosisFigures figures;  ///< not kept in files
 };
+
+/// The sets of alternatives: one_of and those beside it; none when it is empty.
+std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
 
 /// `result` must come from fit() of this campaign.
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <tuple>
 #include <utility>
 
+#include "volcal/identify/criticism/constancy_test.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/stats/chi_squared.h"
 
@@ -16,6 +16,7 @@ namespace volcal {
 
 const double kLog10FamilyRisk = std::log10(0.005);
 const double kLog10GenericRisk = std::log10(0.002);
+const double kLog10ConstancyRisk = std::log10(0.002);
 
 namespace {
 
@@ -32,16 +33,6 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
   all.conservativeResize(more.rows(), before + more.cols());
   all.rightCols(more.cols()) = more;
-}
-
-/// Variables of the generic scan that an effect depends on: "T_column", "dir_x", "tool side_x", "time" and
-/// "z".
-std::vector<std::string> drivers_of(const EffectName& name) {
-  std::vector<std::string> drivers;
-  if (name.driver.starts_with("tool ")) return {name.driver};
-  std::istringstream words(name.driver);
-  for (std::string word; words >> word;) drivers.push_back(word);
-  return drivers;
 }
 
 bool near(const FamilyTest& own, const FamilyTest& other) {
@@ -64,6 +55,7 @@ void EffectSearch::run() {
   climb();
   settle([this] { climb(); });
   give_up();
+  if (!options_.climb) keep_one_step();
   restate_ladder();
 }
 
@@ -155,9 +147,7 @@ void EffectSearch::climb() {
       first_tests_ = tests_;
       first_generic_ = generic_;
     }
-    const bool enough =
-        static_cast<int>(added_.size()) >= options_.most || (!options_.climb && !added_.empty());
-    if (enough || !add_leading()) return;
+    if (static_cast<int>(added_.size()) >= options_.most || !add_leading()) return;
   }
 }
 
@@ -302,21 +292,47 @@ bool EffectSearch::still_moves(const std::vector<std::string>& drivers) const {
 }
 
 /// Powers of one driver that are needed together stand for a function of it that the catalogue does not hold,
-/// and a name that is less certain than what it leaves unexplained, or leaves its own driver at work, is
-/// none.
+/// and a name that is less certain than what it leaves unexplained, leaves its own driver at work, or is of
+/// another size here than there, is none.
 void EffectSearch::find_no_names() {
-  double remains = 0.0;
-  for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
   std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::size_t>> by_driver;
-  for (const AddedEffect& effect : added_) {
-    const EffectName name = families_[effect.test.family].name();
-    by_driver[{name.kind, name.target, name.driver}].push_back(effect.test.family);
-    const bool less_certain = remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test);
-    if (less_certain || still_moves(drivers_of(name))) given_up_.insert(effect.test.family);
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    const std::size_t family = added_[i].test.family;
+    const EffectName name = families_[family].name();
+    by_driver[{name.kind, name.target, name.driver}].push_back(family);
+    const std::string reason = why_no_name(i);
+    if (!reason.empty()) given_up_[family] = reason;
   }
   for (const auto& [key, members] : by_driver) {
-    if (members.size() > 1) given_up_.insert(members.begin(), members.end());
+    if (members.size() < 2) continue;
+    for (const std::size_t family : members) given_up_[family] = "several powers of its driver are needed";
   }
+}
+
+/// Empty for a name that stands.
+std::string EffectSearch::why_no_name(std::size_t added) const {
+  const AddedEffect& effect = added_[added];
+  const Family& family = families_[effect.test.family];
+  double remains = 0.0;
+  for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
+  if (remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test)) {
+    return "what it leaves stands out more than it does";
+  }
+  const auto drivers = scan_variables_of(family.name());
+  if (still_moves(drivers)) return fmt::format("{} still moves what it leaves", fmt::join(drivers, " or "));
+  if (!family.effect) return {};
+  const Eigen::Index first = first_column(added), count = family.amplitudes();
+  const Eigen::VectorXd moved = effect.columns.leftCols(count) * projector_->solution().segment(first, count);
+  const ConstancyTest constancy = least_constant(family, moved, variables_, *projector_);
+  if (constancy.log10_p > kLog10ConstancyRisk) return {};
+  return fmt::format("its amplitude varies with {} (log10 p {:.1f})", constancy.variable, constancy.log10_p);
+}
+
+/// Of the amplitudes among the projector's parameters.
+Eigen::Index EffectSearch::first_column(std::size_t added) const {
+  Eigen::Index first = projector_->parameters() - projector_->accepted();
+  for (std::size_t i = 0; i < added; ++i) first += added_[i].columns.cols();
+  return first;
 }
 
 void EffectSearch::give_up() {
@@ -328,6 +344,22 @@ void EffectSearch::give_up() {
   }
   add_again(kept);
   settle([] {});
+  test();
+}
+
+/// The first effect, and the changes of the model before it.
+void EffectSearch::keep_one_step() {
+  const auto is_effect = [this](const AddedEffect& each) {
+    return families_[each.test.family].effect != nullptr;
+  };
+  const auto first = std::ranges::find_if(added_, is_effect);
+  if (first == added_.end() || first + 1 == added_.end()) return;
+  more_is_known_ = std::any_of(first + 1, added_.end(), is_effect);
+  const std::vector<AddedEffect> before(added_.begin(), first + 1);
+  std::vector<FamilyTest> kept;
+  for (const AddedEffect& effect : before) kept.push_back(effect.test);
+  add_again(kept);
+  for (std::size_t i = 0; i < before.size(); ++i) added_[i].rivals = before[i].rivals;
   test();
 }
 

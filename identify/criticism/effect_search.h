@@ -1,10 +1,12 @@
 #pragma once
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
 /// and no generic test does better; then every added one must stand against all others again. Several powers
-/// of one driver on one target are no name, nor is what explains less than it leaves: such are left out
-/// again.
+/// of one driver on one target are no name, nor is what explains less than it leaves or what varies
+/// (constancy_test.h): such are left out again. A search for one step climbs as well, so that what it names
+/// stands beside all the rest, and then keeps the first.
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -21,7 +23,7 @@ namespace volcal {
 struct SearchOptions {
   int threads = 1;    ///< at least 1
   int most = 8;       ///< effects added
-  bool climb = true;  ///< false: one effect
+  bool climb = true;  ///< false: in the end one effect is kept
   std::vector<std::string> leave_out;
   std::function<void(const std::string& stage, double done)> progress;
 };
@@ -55,6 +57,11 @@ class EffectSearch {
   /// With intervals, from all readings.
   NoiseEstimate noise_with_uncertainty() const;
 
+  /// Effects found after the one that was kept.
+  bool more_is_known() const { return more_is_known_; }
+  /// Families that stood out and are no names, and why.
+  const std::map<std::size_t, std::string>& given_up() const { return given_up_; }
+
   bool is_added(std::size_t family) const;
   double family_wise_log10_p(const FamilyTest& test) const;
   double family_wise_log10_p(const GenericTest& test) const;
@@ -79,8 +86,11 @@ class EffectSearch {
   void settle(const std::function<void()>& after_a_change);
   bool reconsider(bool may_change);
   bool still_moves(const std::vector<std::string>& drivers) const;
+  std::string why_no_name(std::size_t added) const;
+  Eigen::Index first_column(std::size_t added) const;
   void find_no_names();
   void give_up();
+  void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
   bool generic_does_better(const FamilyTest& best) const;
@@ -98,8 +108,9 @@ class EffectSearch {
   std::vector<GenericTest> generic_;
   std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
-  std::set<std::size_t> given_up_;  ///< no names
-  std::set<std::size_t> dropped_;   ///< not significant beside the others
+  std::map<std::size_t, std::string> given_up_;  ///< no names; reason
+  std::set<std::size_t> dropped_;                ///< not significant beside the others
+  bool more_is_known_ = false;
   std::vector<LadderStep> ladder_;
   std::optional<double> heldout_loglik_;
   double log10_families_ = 0.0;
@@ -109,5 +120,7 @@ class EffectSearch {
 /// Family-wise risks of naming an effect, and of the generic scans (polynomials and kernels each).
 extern const double kLog10FamilyRisk;
 extern const double kLog10GenericRisk;
+/// Risk that a right name is refused because its amplitude seems to vary.
+extern const double kLog10ConstancyRisk;
 
 }  // namespace volcal

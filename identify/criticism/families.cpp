@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/families.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/legendre_polynomials.h"
 
 namespace volcal {
 namespace {
@@ -18,18 +20,6 @@ namespace {
 constexpr Eigen::Index kBlockColumns = 256;
 constexpr int kLowestExtraDegree = 4;
 constexpr int kHighestExtraDegree = 11;
-
-/// Legendre polynomials on [-1, 1] by their recurrence (Abramowitz and Stegun 22.7.10).
-double legendre(int degree, double x) {
-  double before = 1.0, value = x;
-  if (degree == 0) return before;
-  for (int n = 1; n < degree; ++n) {
-    const double next = ((2.0 * n + 1.0) * x * value - n * before) / (n + 1.0);
-    before = value;
-    value = next;
-  }
-  return value;
-}
 
 /// Higher polynomials of an axis' own position: what a function with too few knots leaves.
 void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_t setup,
@@ -40,12 +30,13 @@ void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_
       disturbance_of({.kind = TargetKind::Motion, .symbol = symbol, .component = 0}, campaign.machine);
   const auto& position = campaign.setups[setup].readings.position[index_of(symbol.axis)];
   const Eigen::Index first = model.parts()[setup];
+  std::array<double, kHighestExtraDegree + 1> polynomials;
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
     const double q = position[model.observations()[static_cast<std::size_t>(first + i)].row];
-    const double x =
-        std::clamp(2.0 * (q - range.min) / std::max(1e-12, range.max - range.min) - 1.0, -1.0, 1.0);
+    write_legendre_polynomials(kHighestExtraDegree, range.scaled(q), polynomials.data());
     for (int degree = kLowestExtraDegree; degree <= kHighestExtraDegree; ++degree) {
-      columns(i, degree - kLowestExtraDegree) = legendre(degree, x) * model.sensitivity(first + i, target);
+      columns(i, degree - kLowestExtraDegree) =
+          polynomials[static_cast<std::size_t>(degree)] * model.sensitivity(first + i, target);
     }
   }
 }

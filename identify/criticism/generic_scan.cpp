@@ -1,15 +1,13 @@
 #include "volcal/identify/criticism/generic_scan.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <sstream>
 
 #include "volcal/identify/criticism/score_test.h"
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/stats/chi_squared.h"
-#include "volcal/identify/stats/quadratic_form.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -19,24 +17,12 @@ constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
 constexpr std::size_t kDirections = 4;
 constexpr Eigen::Index kBlockColumns = 256;
-constexpr double kWorthExactTail = -2.0;  // log10 p: above, two moments do
 
 /// What the columns of a variable are made of.
 struct Features {
   Eigen::MatrixXd powers;
-  Eigen::MatrixXd waves;  ///< cos(k pi (v + 1) / 2) / k: a Brownian-like prior, rough enough for kinks
+  Eigen::MatrixXd waves;
 };
-
-Features features_of(const ScanVariable& variable) {
-  if (variable.two_valued) return {variable.value, variable.value};
-  const Eigen::ArrayXd v = variable.value.array();
-  Features features{Eigen::MatrixXd(v.size(), 3), Eigen::MatrixXd(v.size(), kSingleWaves)};
-  features.powers << v, v.square(), v.cube();
-  for (int k = 1; k <= kSingleWaves; ++k) {
-    features.waves.col(k - 1) = ((v + 1.0) * (0.5 * k * std::numbers::pi)).cos() / k;
-  }
-  return features;
-}
 
 void add_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value) {
   const double low = value.minCoeff(), high = value.maxCoeff();
@@ -71,7 +57,8 @@ class GenericScanner {
                  const Projector& projector)
       : model_(model), variables_(variables), projector_(projector), typical_sigma_(typical_sigma()) {
     for (std::size_t k = 0; k < kDirections; ++k) direction_[k] = model.direction(static_cast<int>(k));
-    for (const ScanVariable& variable : variables) features_.push_back(features_of(variable));
+    for (const ScanVariable& variable : variables)
+      features_.push_back({scan_powers(variable), scan_waves(variable, kSingleWaves)});
     log_count_ = std::log(static_cast<double>(projector.observations()));
   }
 
@@ -203,23 +190,9 @@ class GenericScanner {
 
   GenericTest kernel(const std::vector<std::string>& names, std::size_t direction,
                      const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) const {
-    const Eigen::MatrixXd gram = projected.gram(first, columns);
-    const double trace = gram.trace();
-    const double floor = kInvisibleShare * projected.norm.segment(first, columns).squaredNorm();
-    GenericTest test{names, kScanDirections[direction], true, 0.0, 0.0, 0.0, 0.0, 0.0};
-    if (trace > floor) {
-      const double squares = gram.squaredNorm();
-      test.dof = trace * trace / squares;
-      test.lm = projected.score.segment(first, columns).squaredNorm() * trace / squares;
-      test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
-      if (test.log10_p < kWorthExactTail) {
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
-        test.log10_p = log10_quadratic_form_exceedance(projected.score.segment(first, columns).squaredNorm(),
-                                                       eigen.eigenvalues().cwiseMax(0.0));
-      }
-      test.rms = explained_rms(test.lm - test.dof);
-    }
-    return test;
+    const KernelTest test = kernel_test(projected, first, columns);
+    return {names, kScanDirections[direction],       true, test.log10_p, test.lm, test.dof,
+            0.0,   explained_rms(test.lm - test.dof)};
   }
 
   const LinearModel& model_;
@@ -285,6 +258,34 @@ std::vector<ScanVariable> scan_variables(const LinearModel& model) {
       return station_of(setup) == station ? 1.0 : 0.0;
     });
   }
+  return variables;
+}
+
+Eigen::MatrixXd scan_powers(const ScanVariable& variable) {
+  if (variable.two_valued) return variable.value;
+  const Eigen::ArrayXd v = variable.value.array();
+  Eigen::MatrixXd powers(v.size(), 3);
+  powers << v, v.square(), v.cube();
+  return powers;
+}
+
+Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count) {
+  if (variable.two_valued) return variable.value;
+  Eigen::MatrixXd waves(variable.value.size(), count);
+  for (int k = 1; k <= count; ++k) {
+    waves.col(k - 1) = ((variable.value.array() + 1.0) * (0.5 * k * std::numbers::pi)).cos() / k;
+  }
+  return waves;
+}
+
+std::vector<std::string> scan_variables_of(const EffectName& name) {
+  std::vector<std::string> variables;
+  for (const std::string& text : {name.target, name.driver}) {
+    if (text.starts_with("tool ") || text.starts_with("station ")) variables.push_back(text);
+  }
+  if (name.driver.starts_with("tool")) return variables;
+  std::istringstream words(name.driver);
+  for (std::string word; words >> word;) variables.push_back(word);
   return variables;
 }
 

@@ -23,6 +23,16 @@ struct ScanVariable {
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
 
+/// Names of the variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its driver, "tool
+/// side_x" of either, "station P1" of its target.
+std::vector<std::string> scan_variables_of(const EffectName& name);
+
+/// v, v^2, v^3; of a two-valued variable v alone.
+Eigen::MatrixXd scan_powers(const ScanVariable& variable);
+/// cos(k pi (v + 1) / 2) / k, k = 1 ... count: a Brownian-like prior, rough enough for kinks. Of a two-valued
+/// variable v alone.
+Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count);
+
 inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
 
 struct GenericTest {

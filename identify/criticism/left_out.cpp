@@ -7,6 +7,7 @@
 
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/functions/legendre_polynomials.h"
 
 namespace volcal {
 namespace {
@@ -14,15 +15,11 @@ namespace {
 constexpr int kDegrees = 6;        // of one function
 constexpr int kSharedDegrees = 4;  // of each of several
 
-/// Legendre polynomials of degree 1.. by their recurrence (Abramowitz and Stegun 22.7.10).
-std::array<double, kDegrees> legendre(double x) {
-  std::array<double, kDegrees> values{x};
-  double before = 1.0;
-  for (std::size_t n = 1; n < values.size(); ++n) {
-    const auto degree = static_cast<double>(n);
-    values[n] = ((2.0 * degree + 1.0) * x * values[n - 1] - degree * before) / (degree + 1.0);
-    before = values[n - 1];
-  }
+using Polynomials = std::array<double, kDegrees + 1>;  // by degree
+
+Polynomials legendre(double x) {
+  Polynomials values;
+  write_legendre_polynomials(kDegrees, x, values.data());
   return values;
 }
 
@@ -32,29 +29,24 @@ class OwnPosition {
   OwnPosition(const Campaign& campaign, AxisName axis)
       : axis_(axis),
         range_(measured_range(campaign, axis)),
-        home_(legendre(share(campaign.machine.axis(axis).home))) {}
+        home_(legendre(range_.scaled(campaign.machine.axis(axis).home))) {}
 
   bool varies() const { return range_.max > range_.min; }
   void fill(const SetupView& view, Eigen::Ref<Eigen::MatrixXd> columns) const {
     const auto& position = view.setup.readings.position[index_of(axis_)];
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-      const auto values = legendre(share(position[static_cast<std::size_t>(row)]));
+      const Polynomials values = legendre(range_.scaled(position[static_cast<std::size_t>(row)]));
       for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        const auto degree = static_cast<std::size_t>(k);
+        const auto degree = static_cast<std::size_t>(k) + 1;
         columns(row, k) = values[degree] - home_[degree];
       }
     }
   }
 
  private:
-  double share(double position) const {
-    const double reach = std::max(1e-12, range_.max - range_.min);
-    return std::clamp(2.0 * (position - range_.min) / reach - 1.0, -1.0, 1.0);
-  }
-
   AxisName axis_;
   MeasuredRange range_;
-  std::array<double, kDegrees> home_;
+  Polynomials home_;
 };
 
 EffectSpec left_out_spec(const std::string& symbols) { return effect_spec(kLeftOut, {{"symbol", symbols}}); }

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kVisible = 0.02;
 constexpr double kHelps = 1.05;      // a gain below is no proposal
+constexpr double kTold = 1.0;        // s^2 below which two are not told apart
 constexpr double kMuchBetter = 1.5;  // for one pair than the measurement that serves all
 constexpr double kEffort = 2.0;      // how much better it must be with what is not at hand
 constexpr double kNothing = 1e-6;    // s^2 that counts as none
@@ -40,10 +41,14 @@ class Proposer {
 
   void run() {
     const std::vector<PlannedHypothesis> asked = asked_hypotheses();
-    const std::vector<PlannedHypothesis> alternatives = of_findings(diagnosis_.one_of);
+    std::vector<std::vector<PlannedHypothesis>> alternatives;
+    for (const auto* set : sets_of_alternatives(diagnosis_)) {
+      alternatives.push_back(of_findings(*set));
+      if (alternatives.back().size() < 2) alternatives.pop_back();
+    }
     std::vector<PlannedHypothesis> invisible;
     if (diagnosis_.verdict == Verdict::NotVisible) invisible = invisible_hypotheses();
-    if (asked.empty() && alternatives.size() < 2 && invisible.empty()) return;
+    if (asked.empty() && alternatives.empty() && invisible.empty()) return;
 
     const MenuContext context{state_.model.campaign(), state_.model.model().chain(), options_.readings};
     const ImaginedCampaign imagined(state_.model.campaign(), state_.result, state_.model.instruments(),
@@ -53,9 +58,8 @@ class Proposer {
       separate(planner, imagined, asked, all_pairs(asked.size()));
       make_visible(planner, imagined, asked);
     }
-    if (alternatives.size() > 1) {
-      separate(plan(alternatives, imagined), imagined, alternatives, with_leading(alternatives.size()));
-    }
+    for (const auto& set : alternatives)
+      separate(plan(set, imagined), imagined, set, with_leading(set.size()));
     if (!invisible.empty()) make_visible(plan(invisible, imagined), imagined, invisible);
   }
 
@@ -126,7 +130,9 @@ class Proposer {
 
   /// As it was found when it is significant, else where it is hardest to see.
   PlannedHypothesis asked(std::size_t family) const {
-    for (const auto* list : {&diagnosis_.effects, &diagnosis_.one_of}) {
+    std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis_);
+    lists.push_back(&diagnosis_.effects);
+    for (const auto* list : lists) {
       for (const EffectFinding& finding : *list) {
         if (finding.name == state_.families[family].name()) return of_findings({finding}).front();
       }
@@ -247,22 +253,29 @@ class Proposer {
     MeasurementProposal out;
     out.separates = {family(first).name(), family(second).name()};
     out.separation = something(apart(planner.now()));
-    out.gain = ratio(something(apart(planner.with(measurement))), out.separation);
-    out.plain_gain = ratio(something(apart(planner.plain(measurement))), out.separation);
+    out.reached = something(apart(planner.with(measurement)));
+    out.plain = something(apart(planner.plain(measurement)));
+    out.gain = ratio(out.reached, out.separation);
+    out.plain_gain = ratio(out.plain, out.separation);
     const std::string both = described(first) + " from " + described(second);
-    if (out.gain < kHelps) {
+    if (out.gain < kHelps || out.reached < kTold) {
       out.gain = out.plain_gain = 1.0;
+      out.reached = out.plain = out.separation;
       out.words = "Nothing on the menu tells " + both + ": they predict nearly the same readings.";
     } else {
       set_measurement(imagined.measurements()[measurement], out);
       out.words += std::isinf(out.gain)
                        ? fmt::format("tells {}, which the present readings cannot at all", both)
-                       : fmt::format("tells {} {:.2g} times better", both, out.gain);
-      out.words +=
-          fmt::format("; as many further plain readings: {}.",
-                      std::isinf(out.plain_gain) ? "some" : fmt::format("{:.3g} times", out.plain_gain));
+                       : fmt::format("tells {} {} times better", both, factor(out.gain));
+      out.words += fmt::format("; as many further plain readings: {}.",
+                               std::isinf(out.plain_gain) ? "some" : factor(out.plain_gain) + " times");
     }
     add(std::move(out));
+  }
+
+  /// Two decimals where they matter: "1.04", "5.3", "150".
+  static std::string factor(double gain) {
+    return fmt::format("{:.{}f}", gain, gain < 2.0 ? 2 : gain < 20.0 ? 1 : 0);
   }
 
   static void set_measurement(const ExtraMeasurement& extra, MeasurementProposal& out) {

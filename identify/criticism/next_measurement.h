@@ -28,6 +28,8 @@ struct MeasurementProposal {
   double separation = 0.0;  ///< s^2 as it is
   double gain = 0.0;        ///< s^2 with the measurement over s^2; infinite when it is 0 as it is
   double plain_gain = 0.0;  ///< with as many plain readings
+  double reached = 0.0;     ///< s^2 with the measurement; 0 when it makes effects visible
+  double plain = 0.0;       ///< s^2 with as many plain readings
   std::string words;
 };
 

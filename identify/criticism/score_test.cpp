@@ -6,8 +6,14 @@
 #include <cmath>
 
 #include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/stats/quadratic_form.h"
 
 namespace volcal {
+namespace {
+
+constexpr double kWorthExactTail = -2.0;  // log10 p: above, two moments do
+
+}  // namespace
 
 ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) {
   ScoreTest test;
@@ -48,6 +54,21 @@ double ScoreTest::lm_of(const std::vector<Eigen::Index>& which) const {
   solver.compute(own_gram);
   const Eigen::VectorXd scaled = scale.cwiseProduct(own);
   return scaled.dot(solver.solve(scaled));
+}
+
+KernelTest kernel_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) {
+  const Eigen::MatrixXd gram = projected.gram(first, columns);
+  const double trace = gram.trace(), squares = gram.squaredNorm();
+  const double score = projected.score.segment(first, columns).squaredNorm();
+  const double floor = kInvisibleShare * projected.norm.segment(first, columns).squaredNorm();
+  if (!(trace > floor)) return {};
+  KernelTest test{score * trace / squares, trace * trace / squares, 0.0};
+  test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
+  if (test.log10_p < kWorthExactTail) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
+    test.log10_p = log10_quadratic_form_exceedance(score, eigen.eigenvalues().cwiseMax(0.0));
+  }
+  return test;
 }
 
 }  // namespace volcal

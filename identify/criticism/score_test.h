@@ -30,4 +30,13 @@ struct ScoreTest {
 
 ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns);
 
+/// The columns as a variance component, independent amplitudes of one variance (Lin 1997, Biometrika 84,
+/// 309): |s|^2 follows a sum of chi-squared variables weighted by the eigenvalues of G.
+struct KernelTest {
+  double lm = 0.0;  ///< |s|^2 scaled to `dof` degrees of freedom
+  double dof = 0.0;
+  double log10_p = 0.0;
+};
+KernelTest kernel_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns);
+
 }  // namespace volcal

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/toml_writer.h"
@@ -103,11 +104,6 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"log10_p", number(unknown.log10_p)}};
 }
 
-/// As `volcal extend --effect` and `volcal diagnose --separate` take it.
-std::string full_name(const EffectName& name) {
-  return name.kind + ":" + name.target + ":" + name.driver + ":" + name.shape;
-}
-
 Json names_json(const std::vector<EffectName>& names) {
   Json json = Json::array();
   for (const EffectName& name : names) json.push_back(full_name(name));
@@ -122,6 +118,8 @@ Json proposal_json(const MeasurementProposal& proposal) {
           {"makes_visible", names_json(proposal.makes_visible)},
           {"readings", proposal.readings},
           {"separation", number(proposal.separation)},
+          {"separation_reached", number(proposal.reached)},
+          {"separation_plain", number(proposal.plain)},
           {"gain", number(proposal.gain)},
           {"plain_gain", number(proposal.plain_gain)},
           {"words", proposal.words}};
@@ -173,7 +171,9 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                {"verdict", to_string(diagnosis.verdict)},
                {"words", diagnosis.words},
                {"effects", list_json(diagnosis.effects)},
-               {"one_of", list_json(diagnosis.one_of)}};
+               {"one_of", list_json(diagnosis.one_of)},
+               {"further_one_of", Json::array()}};
+  for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["not_visible"] = list_json(diagnosis.not_visible);

@@ -123,6 +123,8 @@ MeasurementProposal proposal_from(const Json& json) {
   proposal.makes_visible = names_from(json.at("makes_visible"));
   proposal.readings = json.at("readings").get<std::size_t>();
   proposal.separation = number(json, "separation");
+  proposal.reached = number(json, "separation_reached");
+  proposal.plain = number(json, "separation_plain");
   proposal.gain = gain_from(json, "gain");
   proposal.plain_gain = gain_from(json, "plain_gain");
   proposal.words = text(json, "words");
@@ -181,6 +183,7 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.words = json.at("words").get<std::vector<std::string>>();
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
+  for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
                                  text(each, "direction"), micro(each, "rms_um"), number(each, "log10_p")});

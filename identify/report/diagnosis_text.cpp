@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <utility>
 
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
@@ -46,7 +46,7 @@ std::string mib_text(const AmplitudeFigure& figure) {
   return std::isinf(figure.mib) ? "never" : edge(figure.mib, figure.si_per_unit, 2);
 }
 
-/// The nearest pairs of the confounding matrix.
+/// Rivals in the confounding matrix, those of the leading effects first.
 std::string confounding_table(const Confounding& confounding) {
   struct Pair {
     double cosine;
@@ -60,7 +60,7 @@ std::string confounding_table(const Confounding& confounding) {
     }
   }
   if (pairs.empty()) return {};
-  std::ranges::stable_sort(pairs, std::greater{}, &Pair::cosine);
+  std::ranges::stable_sort(pairs, {}, [](const Pair& pair) { return std::pair(pair.first, -pair.cosine); });
   TextTable table({{"cosine"}, {"effect", Align::Left}, {"and", Align::Left}},
                   "Hardly told apart (after projection off the model)");
   for (std::size_t i = 0; i < std::min(kRanked, pairs.size()); ++i) {
@@ -167,7 +167,10 @@ std::string detectable_table(const Diagnosis& diagnosis) {
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
   std::vector<EffectFinding> all;
-  for (const auto* list : {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking}) {
+  std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis);
+  lists.insert(lists.begin(), &diagnosis.effects);
+  lists.push_back(&diagnosis.ranking);
+  for (const auto* list : lists) {
     for (const EffectFinding& effect : *list) {
       const bool known = std::ranges::find(all, effect.name, &EffectFinding::name) != all.end();
       if (!known && !effect.resolution) all.push_back(effect);
@@ -183,8 +186,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
-  if (!diagnosis.one_of.empty())
-    text += "\n" + evidence_table(diagnosis.one_of, ranked, "Not told apart", diagnosis.one_of.size());
+  for (const auto* set : sets_of_alternatives(diagnosis))
+    text += "\n" + evidence_table(*set, ranked, "Not told apart", set->size());
   if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
   text += confounding_table(diagnosis.confounding);

@@ -74,7 +74,8 @@ std::string errors_table(const FitResult& result) {
     const std::string value = error.visible ? fixed_number(result.parameters[block->offset] / si, 2) : "-";
     const std::string expanded = fixed_number(result.coverage_factor * error.u_rms / si, 2);
     text.add_row({error.symbol, block->units[0], value, value, expanded, expanded,
-                  fixed_number(error.visible_fraction, 2), "1.0", error.visible ? "" : "NOT VISIBLE"});
+                  fixed_number(error.visible_fraction, 2), error.visible ? "1.0" : "0.0",
+                  error.visible ? "" : "NOT VISIBLE"});
   }
   return text.text();
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "volcal/model/description/units.h"
 
@@ -43,6 +44,9 @@ std::string shown_unit(const std::string& edge_unit) {
   if (second != std::string::npos) {
     shown = shown.substr(0, first + 1) + "(" + shown.substr(first + 1, second - first - 1) + " " +
             shown.substr(second + 1) + ")";
+  }
+  for (const auto& [plain, raised] : {std::pair("m2", "m²"), std::pair("m3", "m³")}) {
+    if (const std::size_t at = shown.find(plain); at != std::string::npos) shown.replace(at, 2, raised);
   }
   return shown;
 }

@@ -19,7 +19,7 @@ Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5
 const char* position_unit(AxisName axis);
 double position_factor(AxisName axis);
 std::string axis_letter(AxisName axis);
-/// Unit as printed: "um/m/K" becomes "µm/(m K)".
+/// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/m2" becomes "µrad/m²".
 std::string shown_unit(const std::string& edge_unit);
 
 /// Entry of the rank report; nullptr when the symbol has none.

@@ -63,6 +63,7 @@ Json added_variable_page(const DiagnosisInput& input);
 Json residual_variables_page(const DiagnosisInput& input);
 Json residual_vectors_page(const DiagnosisInput& input);
 Json generic_map_page(const DiagnosisInput& input);
+Json confounding_page(const DiagnosisInput& input);
 Json autocorrelation_page(const DiagnosisInput& input);
 Json detectable_page(const DiagnosisInput& input);
 Json noise_model_page(const DiagnosisInput& input);

@@ -3,21 +3,17 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/residuals.h"
+#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
 
 constexpr double kUnheldNuisance = 1.0;  // m or rad: far wider than anything a setup can be wrong by
-
-int thread_count(int threads) {
-  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
 
 bool is_frozen_with_the_model(const ParameterBlock& block) {
   return block.kind == ParameterKind::Location || block.kind == ParameterKind::Effect ||

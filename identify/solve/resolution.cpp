@@ -11,6 +11,7 @@ namespace volcal {
 namespace {
 
 constexpr double kDistinctShareOfTravel = 1.0 / 200.0;
+constexpr double kLeastRange = 1e-12;  // m or rad: an axis that did not move
 
 FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign& campaign) {
   const BasisKind* kind = find_basis(function.basis);
@@ -56,6 +57,10 @@ MeasuredRange measured_range(const Campaign& campaign, AxisName axis) {
     }
   }
   return range;
+}
+
+double MeasuredRange::scaled(double position) const {
+  return std::clamp(2.0 * (position - min) / std::max(kLeastRange, max - min) - 1.0, -1.0, 1.0);
 }
 
 }  // namespace volcal

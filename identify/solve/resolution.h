@@ -22,6 +22,9 @@ ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign);
 struct MeasuredRange {
   double min = 0.0;
   double max = 0.0;
+
+  /// -1 at min ... 1 at max, and no further.
+  double scaled(double position) const;
 };
 MeasuredRange measured_range(const Campaign& campaign, AxisName axis);
 

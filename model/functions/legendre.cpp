@@ -1,6 +1,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "volcal/model/functions/legendre_polynomials.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -23,18 +24,12 @@ class Legendre final : public Basis {
   int evaluate(double q, int order, double* values) const override {
     const double slope = 2.0 / (travel_max_ - travel_min_);
     const double t = (q - travel_min_) * slope - 1.0;
-    write_polynomials(t, values);
+    write_legendre_polynomials(degree_, t, values);
     for (int k = 0; k < order; ++k) differentiate(slope, values);
     return 0;
   }
 
  private:
-  void write_polynomials(double t, double* p) const {
-    p[0] = 1.0;
-    if (degree_ > 0) p[1] = t;
-    for (int n = 2; n <= degree_; ++n) p[n] = ((2 * n - 1) * t * p[n - 1] - (n - 1) * p[n - 2]) / n;
-  }
-
   /// Replaces the values by those of the next derivative: P'_n = P'_(n-2) + (2n - 1) P_(n-1), which holds for
   /// any derivative of both sides.
   void differentiate(double slope, double* p) const {

@@ -183,6 +183,7 @@ TEST_F(FromADiagnosis, EveryFailureSaysWhatToDo) {
   write(nothing);
   expect(extend("--accepted"), "its verdict is NOTHING_ABOVE");
   nothing.one_of.clear();
+  nothing.further_one_of.clear();
   nothing.ranking.clear();
   write(nothing);
   expect(extend("--rank 1"), "ranks no effect");

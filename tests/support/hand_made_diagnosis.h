@@ -1,6 +1,6 @@
 #pragma once
-/// A diagnosis with numbers chosen by hand: a reversal of 4 um found, a coupling that might be, one effect
-/// that is not visible.
+/// A diagnosis with numbers chosen by hand: a reversal of 4 um found, a second one that is hardly told from
+/// it, one effect that is not visible.
 
 #include <cmath>
 
@@ -41,8 +41,11 @@ inline Diagnosis hand_made_diagnosis() {
   finer.resolution = true;
   finer.log10_p = -3.0;
   finer.dof = 8;
+  reversal.amplitudes[0].mib = 1.75e-6;
+  reversal.amplitudes[0].mib_rival = other.label;
   diagnosis.effects = {reversal};
   diagnosis.one_of = {other};
+  diagnosis.further_one_of = {{third, other}};
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
   diagnosis.unknown = {{{"x", "time"}, "Z", 0.3e-6, -6.5}};
@@ -54,9 +57,17 @@ inline Diagnosis hand_made_diagnosis() {
   visit.separation = 2.5;
   visit.gain = 3.0;
   visit.plain_gain = 1.25;
+  visit.reached = 7.5;
+  visit.plain = 3.125;
   visit.words = "visit station P1 again after two hours";
   diagnosis.proposals = {visit};
   diagnosis.next_measurement = {visit.words};
+  diagnosis.confounding.names = {reversal.name, other.name, third.name};
+  diagnosis.confounding.labels = {reversal.label, other.label, third.label};
+  diagnosis.confounding.cosine.setIdentity(3, 3);
+  diagnosis.confounding.cosine(0, 1) = diagnosis.confounding.cosine(1, 0) = 0.96;
+  diagnosis.confounding.cosine.row(2).setConstant(std::nan(""));
+  diagnosis.confounding.cosine.col(2).setConstant(std::nan(""));
   LadderStep before;
   before.model = "0";
   before.rms_fit = 2e-6;

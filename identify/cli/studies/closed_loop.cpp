@@ -1,15 +1,15 @@
 #include "volcal/identify/cli/studies/closed_loop.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <mutex>
 #include <numeric>
-#include <thread>
 
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/stats/threads.h"
 #include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/datum.h"
 #include "volcal/sim/reference_machines.h"
@@ -129,24 +129,14 @@ double mean_coverage(const std::map<std::string, double>& coverage) {
 
 std::vector<ClosedLoopCampaign> closed_loop(const ClosedLoopOptions& options) {
   std::vector<ClosedLoopCampaign> rows(static_cast<std::size_t>(options.campaigns));
-  std::atomic<int> next = 0;
   int done = 0;
   std::mutex reporting;
-  const auto work = [&] {
-    for (int campaign = next++; campaign < options.campaigns; campaign = next++) {
-      rows[static_cast<std::size_t>(campaign)] = run_campaign(options, campaign);
-      const std::lock_guard lock(reporting);
-      ++done;
-      if (options.progress) options.progress(done, options.campaigns);
-    }
-  };
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::vector<std::jthread> pool;
-  for (int i = 1; i < threads; ++i) pool.emplace_back(work);
-  work();
-  pool.clear();
+  run_parallel(rows.size(), thread_count(options.threads), [&](std::size_t i) {
+    rows[i] = run_campaign(options, static_cast<int>(i));
+    const std::lock_guard lock(reporting);
+    ++done;
+    if (options.progress) options.progress(done, options.campaigns);
+  });
   return rows;
 }
 

@@ -1,17 +1,15 @@
 #include "volcal/identify/cli/studies/criticism.h"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "volcal/identify/cli/studies/criticism_campaign.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
+#include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::cli {
@@ -106,34 +104,16 @@ std::vector<CampaignRecord> criticism(const CriticismOptions& options) {
       open.push_back(i);
     }
   }
-  std::atomic<std::size_t> next = 0;
   std::size_t done = jobs.size() - open.size();
   std::mutex reporting;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    for (std::size_t at = next++; at < open.size(); at = next++) {
-      const Job& job = jobs[open[at]];
-      try {
-        CampaignRecord record = criticise_campaign(job.row, job.index, options.seed, options.readings);
-        const std::lock_guard lock(reporting);
-        archive.append(record);
-        records[open[at]] = std::move(record);
-        if (options.progress) options.progress(static_cast<int>(++done), static_cast<int>(jobs.size()));
-      } catch (...) {
-        const std::lock_guard lock(reporting);
-        if (!failure) failure = std::current_exception();
-        next = open.size();
-      }
-    }
-  };
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  std::vector<std::jthread> pool;
-  for (int i = 1; i < threads; ++i) pool.emplace_back(work);
-  work();
-  pool.clear();
-  if (failure) std::rethrow_exception(failure);
+  run_parallel(open.size(), thread_count(options.threads), [&](std::size_t at) {
+    const Job& job = jobs[open[at]];
+    CampaignRecord record = criticise_campaign(job.row, job.index, options.seed, options.readings);
+    const std::lock_guard lock(reporting);
+    archive.append(record);
+    records[open[at]] = std::move(record);
+    if (options.progress) options.progress(static_cast<int>(++done), static_cast<int>(jobs.size()));
+  });
   return records;
 }
 

@@ -1,5 +1,7 @@
 /// Added-variable plot of the leading effect: the slope is its amplitude.
 
+#include <algorithm>
+
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
 
@@ -8,9 +10,12 @@ namespace volcal::report {
 Json added_variable_page(const DiagnosisInput& input) {
   const AddedVariableFigure& leading = input.diagnosis.figures.leading;
   const double unit = leading.si_per_unit;
+  const bool alternative = std::ranges::find(input.diagnosis.one_of, leading.label, &EffectFinding::label) !=
+                           input.diagnosis.one_of.end();
   return {{"label", leading.label},
           {"unit", shown_unit(leading.unit)},
           {"accepted", leading.accepted},
+          {"alternative", alternative},
           {"amplitude", rounded(leading.slope / unit, 4)},
           {"U95", rounded(1.96 * leading.u / unit, 3)},
           {"driver", rounded_array(leading.driver, unit, 4)},

@@ -25,6 +25,7 @@ Json evidence_page(const DiagnosisInput& input) {
   return {{"threshold", rounded(log10_family_risk(), 4)},
           {"families", diagnosis.families},
           {"added", list(added)},
+          {"alternatives", list(diagnosis.one_of)},
           {"ranking", list(diagnosis.ranking)}};
 }
 

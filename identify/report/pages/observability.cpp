@@ -13,6 +13,12 @@ bool is_angle(const std::string& symbol) {
   return false;
 }
 
+/// Of a squareness or location, one: its value.
+double effective_parameters(const Observability& error) {
+  if (!LocationSymbol::parse(error.symbol)) return error.effective_parameters;
+  return error.visible ? 1.0 : 0.0;
+}
+
 Json error_rows(const FitResult& result) {
   Json rows = Json::array();
   for (const Observability& error : result.rank.errors) {
@@ -22,7 +28,7 @@ Json error_rows(const FitResult& result) {
                     {"visible", error.visible},
                     {"visible_fraction", rounded(error.visible_fraction, 4)},
                     {"u_rms", rounded(error.u_rms * kPerMicro, 3)},
-                    {"effective_parameters", rounded(error.effective_parameters, 3)},
+                    {"effective_parameters", rounded(effective_parameters(error), 3)},
                     {"reason", error.reason},
                     {"remedy", error.remedy}});
   }

@@ -61,7 +61,7 @@ std::string headline(Verdict verdict) {
 }
 
 std::string interval(const LadderStep& step) {
-  return fmt::format("{} (95 %: {:.2g} to {:.2g} µm)", micrometres(step.systematic),
+  return fmt::format("{} (95 %: {:.3g} to {:.3g} µm)", micrometres(step.systematic),
                      step.systematic_low * kPerMicro, step.systematic_high * kPerMicro);
 }
 
@@ -114,21 +114,24 @@ Json after_json(const Diagnosis& diagnosis) {
   const LadderStep& last = diagnosis.ladder.back();
   Json lines = Json::array();
   if (diagnosis.ladder.size() < 2) {
-    lines.push_back("Nothing was added: the given model is the model reached.");
+    lines.push_back("The given model is the model reached.");
     if (!diagnosis.unknown.empty()) {
       lines.push_back("The noise was estimated beside what remains, and its floor may hold part of that.");
     }
   } else if (std::isfinite(last.rms_heldout)) {
+    const bool only_alternative = diagnosis.effects.empty() && diagnosis.model_changes.empty();
+    const std::string with =
+        only_alternative ? fmt::format("With {}, one of the alternatives, the", last.added) : "The";
     lines.push_back(
-        fmt::format("The systematic error on held-out lines falls from {} to {}; RMS from {} to {} "
-                    "above a noise floor of {}.",
-                    micrometres(first.systematic), interval(last), micrometres(first.rms_heldout),
+        fmt::format("{} systematic error on held-out lines falls from {} to {}; RMS from {} to {}, the noise "
+                    "floor being {}.",
+                    with, micrometres(first.systematic), interval(last), micrometres(first.rms_heldout),
                     micrometres(last.rms_heldout), micrometres(last.noise_floor)));
   }
   for (const UnknownFinding& unknown : diagnosis.unknown) {
     lines.push_back(fmt::format(
         "Still seen by the scan without a catalogue: something that depends on {}, along {}, "
-        "about {} RMS (10^{:.1f}).",
+        "about {} RMS (log10 p {:.1f}).",
         fmt::join(unknown.variables, " and "), unknown.direction, micrometres(unknown.rms), unknown.log10_p));
     if (lines.size() == 5) break;
   }
@@ -161,7 +164,11 @@ Json story_page(const DiagnosisInput& input) {
   Json ladder = Json::array();
   for (const LadderStep& step : diagnosis.ladder) ladder.push_back(step_json(step));
   Json one_of = Json::array();
-  for (const EffectFinding& effect : diagnosis.one_of) one_of.push_back(finding_json(effect));
+  for (const auto* set : sets_of_alternatives(diagnosis)) {
+    Json alternatives = Json::array();
+    for (const EffectFinding& effect : *set) alternatives.push_back(finding_json(effect));
+    one_of.push_back(std::move(alternatives));
+  }
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
           {"headline", headline(diagnosis.verdict)},

@@ -7,32 +7,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/hidden_studies.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/reference_machines.h"
-#include "volcal/sim/study.h"
 
 namespace volcal {
 namespace {
 
-sim::Study hiding(std::vector<sim::HiddenEffect> hidden) {
-  sim::Study study;
-  study.machine = sim::reference_machines()[0];
-  study.seed = 31;
-  study.environment.channels = {
-      {.name = "column", .start = 20.0, .drift = 0.6 / 3600.0, .amplitude = 0.2, .period = 9000.0}};
-  study.hidden = std::move(hidden);
-  sim::Tracking tracking;
-  tracking.grid = {6, 5, 5};
-  study.measurements.emplace_back().settings = tracking;
-  study.validation.points = 10;
-  return study;
-}
-
-sim::HiddenEffect reversal(const std::string& symbol, double rms) {
-  sim::HiddenEffect effect{.kind = "reversal", .options = {}, .rms = rms};
-  effect.options.set("symbol", symbol);
-  return effect;
-}
+using testing_support::hiding;
+using testing_support::reversal;
 
 struct Diagnosed {
   sim::SimulatedCampaign simulated;

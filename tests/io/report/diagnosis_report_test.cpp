@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -104,7 +105,7 @@ TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
   EXPECT_EQ(story.at("level"), "warning");
   const std::string before = story.at("before").at(0);
   EXPECT_THAT(before, HasSubstr("2.5 µm RMS"));
-  EXPECT_THAT(before, HasSubstr("1.5 µm (95 %: 1.2 to 1.8 µm)"));
+  EXPECT_THAT(before, HasSubstr("1.5 µm (95 %: 1.25 to 1.75 µm)"));
   const json& missing = story.at("missing").at(0);
   EXPECT_EQ(missing.at("label"), "reversal EXX");
   EXPECT_EQ(missing.at("amplitudes").at(0).at("value"), 4.0);
@@ -125,8 +126,51 @@ TEST_F(DiagnosisReport, EvidenceHasItsThreshold) {
   const json evidence = page("evidence");
   EXPECT_NEAR(evidence.at("threshold").get<double>(), -2.301, 1e-3);  // 0.5 %
   EXPECT_EQ(evidence.at("added").size(), 1U);
+  EXPECT_EQ(evidence.at("alternatives").at(0).at("label"), "reversal EYY");
   EXPECT_EQ(evidence.at("ranking").size(), 3U);
   EXPECT_EQ(evidence.at("ranking").at(0).at("visible_fraction"), 0.75);
+}
+
+TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
+  const json confounding = page("confounding");
+  EXPECT_EQ(confounding.at("cosine"), (json{json::array(), {0.96}, {nullptr, nullptr}}));
+  const json& effects = confounding.at("effects");
+  ASSERT_EQ(effects.size(), 3U);
+  EXPECT_EQ(effects.at(0).at("role"), "added");
+  EXPECT_EQ(effects.at(1).at("role"), "alternative");
+  EXPECT_EQ(effects.at(2).at("role"), "candidate");
+  EXPECT_EQ(effects.at(0).at("name"), "reversal:EXX:dir_x:step");
+  EXPECT_TRUE(effects.at(0).at("can_be_asked").get<bool>());
+  const json& limit = effects.at(0).at("limits").at(0);
+  EXPECT_EQ(limit.at("mdb"), 0.5);
+  EXPECT_EQ(limit.at("mib"), 1.75);
+  EXPECT_EQ(limit.at("rival"), "reversal EYY");
+  const json& proposal = confounding.at("proposals").at(0);
+  EXPECT_EQ(proposal.at("separates").at(1).at("label"), "reversal EYY");
+  EXPECT_NEAR(proposal.at("now").get<double>(), 1.58, 1e-9);      // square root of 2.5
+  EXPECT_NEAR(proposal.at("reached").get<double>(), 2.74, 1e-9);  // of 7.5
+  EXPECT_NEAR(proposal.at("plain").get<double>(), 1.77, 1e-9);    // of 3.125
+  EXPECT_EQ(proposal.at("readings"), 48);
+}
+
+TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
+  MeasurementProposal& visit = diagnosis_.proposals.front();
+  visit.words = "Measure P1 again after 3 h (48 readings): tells a from b 3 times better.";
+  visit.separates = {{"axis-coupling", "EAY", "z", "linear"}, {"resolution", "EYX", "x", "finer"}};
+  diagnosis_.confounding.names[2] = visit.separates[1];
+  MeasurementProposal nothing = visit;
+  nothing.action.clear();
+  nothing.gain = std::numeric_limits<double>::infinity();
+  diagnosis_.proposals.push_back(nothing);
+  document_ = json::parse(report_json(diagnosis_, campaign_));
+  const json proposals = page("confounding").at("proposals");
+  EXPECT_EQ(proposals.at(0).at("what"), "Measure P1 again after 3 h");
+  EXPECT_EQ(proposals.at(0).at("separates").at(0).at("label"), "axis-coupling:EAY:z:linear");
+  EXPECT_EQ(proposals.at(0).at("separates").at(1).at("label"), "EYX finer");
+  EXPECT_EQ(proposals.at(1).at("what"), "Nothing on the menu");
+  EXPECT_FALSE(proposals.at(1).at("helps").get<bool>());
+  EXPECT_TRUE(proposals.at(1).at("gain").is_null());
+  EXPECT_FALSE(page("confounding").at("effects").at(2).at("can_be_asked").get<bool>());
 }
 
 TEST_F(DiagnosisReport, PlotsAreInEdgeUnits) {
@@ -144,6 +188,16 @@ TEST_F(DiagnosisReport, PlotsAreInEdgeUnits) {
   EXPECT_FALSE(against.at("variables").at(0).contains("angle"));
   EXPECT_EQ(against.at("records").at("held_out"), (json{0, 1}));
   EXPECT_EQ(against.at("records").at("reached").at(0), -1.0);
+}
+
+TEST_F(DiagnosisReport, AnAlternativeIsNotSaidToBeAdded) {
+  EXPECT_FALSE(page("added_variable").at("alternative").get<bool>());
+  diagnosis_.one_of = diagnosis_.effects;
+  diagnosis_.effects.clear();
+  document_ = json::parse(report_json(diagnosis_, campaign_));
+  EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
+  EXPECT_THAT(page("story").at("after").at(0).get<std::string>(),
+              HasSubstr("With reversal EXX, one of the alternatives, the systematic error"));
 }
 
 /// A reading that feels half of a displacement along Y asks for twice its residual; one that feels none is

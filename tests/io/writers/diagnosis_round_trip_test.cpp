@@ -35,12 +35,18 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(effect.at("log10_p"), -12.5);
   EXPECT_EQ(effect.at("visible_fraction"), 0.75);
   EXPECT_EQ(document.at("one_of").at(0).at("target"), "EYY");
+  EXPECT_EQ(document.at("further_one_of").at(0).at(0).at("target"), "EZZ");
+  EXPECT_EQ(document.at("further_one_of").at(0).at(1).at("target"), "EYY");
   const json& unknown = document.at("unknown").at(0);
   EXPECT_EQ(unknown.at("variables"), (json{"x", "time"}));
   EXPECT_EQ(unknown.at("direction"), "Z");
   EXPECT_NEAR(unknown.at("rms_um").get<double>(), 0.3, 1e-12);
   EXPECT_TRUE(document.at("not_visible").at(0).at("mdb").is_null());
   EXPECT_EQ(document.at("next_measurement").size(), 1U);
+  EXPECT_EQ(document.at("next_measurement").at(0).at("separation_reached"), 7.5);
+  EXPECT_EQ(document.at("next_measurement").at(0).at("separation_plain"), 3.125);
+  EXPECT_EQ(document.at("confounding").at("effects").at(1), "reversal:EYY:dir_y:step");
+  EXPECT_EQ(document.at("confounding").at("cosine").at(0), (json{1.0, 0.96, nullptr}));
   const json& step = document.at("ladder").at(1);
   EXPECT_EQ(step.at("model"), "1");
   EXPECT_EQ(step.at("added"), "reversal EXX");
@@ -86,6 +92,7 @@ TEST(DiagnosisJson, RoundTrips) {
   EXPECT_EQ(again.effects[0].spec.options.text("symbol"), "EXX");
   EXPECT_TRUE(again.ranking[1].resolution);
   EXPECT_EQ(diagnosis_text(again), diagnosis_text(testing::hand_made_diagnosis()));
+  EXPECT_THAT(diagnosis_text(again), HasSubstr("0.960  reversal EXX  reversal EYY"));
 }
 
 TEST(DiagnosisJson, UnitsWithDenominatorsComeBack) {

@@ -2,6 +2,7 @@
 import { renderAddedVariable } from './pages/added_variable.js';
 import { renderAutocorrelation } from './pages/autocorrelation.js';
 import { renderComputation } from './pages/computation.js';
+import { renderConfounding } from './pages/confounding.js';
 import { renderDetectable } from './pages/detectable.js';
 import { renderEvidence } from './pages/evidence.js';
 import { renderFunctions } from './pages/functions.js';
@@ -34,6 +35,7 @@ export const renderers = {
   computation: renderComputation,
   story: renderStory,
   evidence: renderEvidence,
+  confounding: renderConfounding,
   added_variable: renderAddedVariable,
   residual_variables: renderResidualVariables,
   residual_vectors: renderResidualVectors,

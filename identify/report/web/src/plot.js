@@ -60,6 +60,9 @@ export const commonLayout = () => ({
   modebar: { bgcolor: color('page'), color: color('muted'), activecolor: color('text') },
 });
 
+/** Height of a picture in space: a scene is drawn to the height, so that a narrow one must be low to show its edges. */
+export const sceneHeight = (node) => Math.round(Math.min(520, Math.max(320, 0.92 * node.clientWidth)));
+
 /** Layout of a two-dimensional plot with titled axes. */
 export function layout2d({ x, y, height, margin = {}, ...rest }) {
   return {

@@ -5,7 +5,7 @@ import { color, series, transparent } from '../theme.js';
 function partialPlot(data) {
   const { mean } = data;
   const ends = [Math.min(...data.driver), Math.max(...data.driver)];
-  const size = Math.max(...data.residual.map(Math.abs));
+  const size = Math.max(Math.min(5, Math.max(...data.residual.map(Math.abs))), ...mean.mean.map((value, k) => Math.abs(value) + 2 * mean.noise[k]));
   const line = (slope) => ends.map((x) => slope * x);
   const per = data.unit === '' ? '' : ` per ${data.unit}`;
   return {
@@ -23,7 +23,7 @@ function partialPlot(data) {
     ],
     layout: layout2d({
       height: 430, margin: { t: 34 }, showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } }, hovermode: 'closest',
-      x: { title: `partial driver [σ${per}]` }, y: { title: 'partial residual [σ]', range: [-1.05 * Math.min(size, 5), 1.05 * Math.min(size, 5)] },
+      x: { title: `partial driver [σ${per}]` }, y: { title: 'partial residual [σ]', range: [-1.05 * size, 1.05 * size] },
     }),
   };
 }
@@ -35,7 +35,7 @@ export function renderAddedVariable(body, data) {
   }
   body.append(
     el('p', {}, [el('strong', {}, data.label), ` ${significant(data.amplitude)} ± ${significant(data.U95, 2)} ${data.unit} (95 %); `,
-      data.accepted ? 'added to the model.' : 'the strongest candidate, not added.']),
+      data.alternative ? 'one of the alternatives.' : data.accepted ? 'added to the model.' : 'the strongest candidate, not added.']),
     note('Both the residuals and the effect’s driver are regressed on everything else in the model and freed of correlated noise: the slope is the amplitude. Points on the line far from the middle speak for the effect; one point alone far out does not. In units of the noise, σ.'),
   );
   const node = el('div', { class: 'plot' });

@@ -24,9 +24,9 @@ function evidencePlot(data, effects) {
   const shown = effects.slice(0, 20).reverse();
   const y = shown.map((_, k) => k);
   const threshold = -data.threshold;
-  const added = new Set(data.added.map((effect) => effect.label));
+  const [added, alternatives] = [data.added, data.alternatives].map((list) => new Set(list.map((effect) => effect.label)));
   const most = Math.max(1.3 * threshold, ...shown.map((effect) => -effect.log10_p));
-  const shadeOf = (effect) => (added.has(effect.label) ? color('good') : effect.log10_p < data.threshold ? color('bad') : series(6));
+  const shadeOf = (effect) => (added.has(effect.label) ? color('good') : alternatives.has(effect.label) ? color('warning') : effect.log10_p < data.threshold ? color('bad') : series(6));
   return {
     data: [{
       x: shown.map((effect) => -effect.log10_p), y, type: 'scatter', mode: 'markers', marker: { size: 14, color: transparent(color('text'), 0) },
@@ -46,12 +46,20 @@ function evidencePlot(data, effects) {
   };
 }
 
+const caption = (data) => {
+  const parts = [data.added.length > 0 ? 'Green: added, with the evidence when it was.' : '', data.alternatives.length > 0 ? 'Orange: alternatives that the readings do not tell apart.' : ''];
+  return parts.some(Boolean) ? [...parts, 'Others: at the model reached.'].filter(Boolean).join(' ') : 'Strongest candidates at the given model';
+};
+
 export function renderEvidence(body, data) {
-  const effects = [...data.added, ...data.ranking];
+  const first = [...data.added, ...data.alternatives];
+  const known = new Set(first.map((effect) => effect.label));
+  const others = data.ranking.filter((effect) => !known.has(effect.label));
   body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates.`));
   const node = el('div', { class: 'plot' });
-  body.append(el('figure', {}, [el('figcaption', {}, data.added.length > 0 ? 'Green: added, with the evidence when it was. Others: at the model reached.' : 'Strongest candidates at the given model'), node]));
-  addPlot(node, () => evidencePlot(data, effects));
+  body.append(el('figure', {}, [el('figcaption', {}, caption(data)), node]));
+  addPlot(node, () => evidencePlot(data, [...first, ...others]));
   if (data.added.length > 0) body.append(el('h3', {}, 'Added'), table(columns, rows(data.added)));
-  body.append(el('h3', {}, 'Not added, strongest first'), longTable(columns, rows(data.ranking)));
+  if (data.alternatives.length > 0) body.append(el('h3', {}, 'Not told apart'), table(columns, rows(data.alternatives)));
+  body.append(el('h3', {}, 'Not added, strongest first'), longTable(columns, rows(others)));
 }

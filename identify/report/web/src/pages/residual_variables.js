@@ -5,7 +5,10 @@ import { color, series, transparent } from '../theme.js';
 /** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
 const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
 
-const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', Y: 'along Y', Z: 'along Z' };
+const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', Y: 'displacement along Y', Z: 'displacement along Z' };
+
+/** Takes a few values only: a name or a direction. */
+const isDiscrete = (variable) => variable.categories.length > 0 || variable.name.startsWith('dir_');
 
 /** Mean square of the means in units of what noise gives them. */
 const deviation = (means) => (means && means.mean.length > 0
@@ -50,7 +53,7 @@ const names = { given: 'given model', reached: 'model reached' };
 
 function points(view, model) {
   const rows = view.rows();
-  const spread = view.variable.categories.length > 0 || view.variable.name.startsWith('dir_') ? 0.3 : 0;
+  const spread = isDiscrete(view.variable) ? 0.3 : 0;
   return {
     x: rows.map((i) => view.variable.x[i] + spread * jitter(i)), y: rows.map((i) => view.data.records[model][i]), text: rows.map((i) => view.hover(i)),
     type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.35, color: series(0) }, showlegend: false, hovertemplate: '%{text}<extra></extra>',
@@ -60,8 +63,9 @@ function points(view, model) {
 function means(view, model) {
   const mean = view.variable[view.kind]?.[model];
   if (!mean) return [];
+  const aside = view.model === 'both' && isDiscrete(view.variable) ? { given: -0.07, reached: 0.07 }[model] : 0;
   return [{
-    x: mean.centre, y: mean.mean, text: mean.count, type: 'scatter', mode: view.variable.categories.length > 0 ? 'markers' : 'lines+markers', name: `mean, ${names[model]}`,
+    x: mean.centre.map((x) => x + aside), y: mean.mean, text: mean.count, type: 'scatter', mode: isDiscrete(view.variable) ? 'markers' : 'lines+markers', name: `mean, ${names[model]}`,
     error_y: { type: 'data', array: mean.noise.map((u) => 2 * u), color: shades[model](), thickness: 1.2, width: 0 },
     line: { color: shades[model](), width: 1.8 }, marker: { size: 6, color: shades[model]() }, hovertemplate: `${names[model]}: mean %{y:.3f} ± %{error_y.array:.3f} ${view.unit()} of %{text} readings<extra></extra>`,
   }];
@@ -69,6 +73,7 @@ function means(view, model) {
 
 function axisX(variable) {
   const title = `${variable.title}${variable.unit ? ` [${variable.unit}]` : ''}`;
+  if (variable.name.startsWith('dir_')) return { title, zeroline: false, showgrid: false, tickvals: [-1, 0, 1], ticktext: ['towards −', 'unknown', 'towards +'], range: [-1.6, 1.6] };
   if (variable.categories.length === 0) return { title, zeroline: false };
   const step = Math.ceil(variable.categories.length / 50);
   const ticks = variable.categories.map((_, k) => k).filter((k) => k % step === 0);

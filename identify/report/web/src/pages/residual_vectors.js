@@ -1,5 +1,5 @@
 import { choice, el, fixed, note } from '../dom.js';
-import { addPlot, commonLayout } from '../plot.js';
+import { addPlot, commonLayout, sceneHeight } from '../plot.js';
 import { color } from '../theme.js';
 
 const norm = (v) => Math.hypot(...v);
@@ -46,20 +46,20 @@ function traces(view, model) {
   ];
 }
 
-function layout(view) {
+function layout(view, height) {
   const points = view.list().map((item) => item.point_mm);
   const axis = (i) => {
     const values = column(points, i);
     const [low, high] = [Math.min(...values), Math.max(...values)];
     const edge = 0.12 * (high - low) + 1;
     return {
-      title: { text: `${'XYZ'[i]} [mm]`, font: { size: 11 } }, range: [low - edge, high + edge], backgroundcolor: 'rgba(0,0,0,0)', showline: true, linecolor: color('rule'), gridcolor: color('grid'), color: color('muted'),
-      zerolinecolor: color('grid'), showspikes: false, nticks: 5,
+      title: { text: `${'xyz'[i]} [mm]`, font: { size: 11, color: color(`axis-${'XYZ'[i]}`) } }, range: [low - edge, high + edge], backgroundcolor: 'rgba(0,0,0,0)', showline: true, linecolor: color('rule'), gridcolor: color('grid'), color: color('muted'),
+      zerolinecolor: color('grid'), tickfont: { size: 10 }, showspikes: false, nticks: 5,
     };
   };
   return {
-    height: 500, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)', ...commonLayout(), showlegend: false,
-    scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: 'data', camera: { eye: { x: 1.55, y: -1.75, z: 0.95 } }, domain: { x: [0, 0.9] } },
+    height, margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)', ...commonLayout(), showlegend: false,
+    scene: { xaxis: axis(0), yaxis: axis(1), zaxis: axis(2), aspectmode: 'data', camera: { eye: { x: 1.66, y: -1.88, z: 1.02 }, center: { x: 0, y: -0.04, z: -0.08 } }, domain: { x: [0, 0.9] } },
   };
 }
 
@@ -94,5 +94,5 @@ export function renderResidualVectors(body, data) {
     controls,
     el('div', { class: nodes.length > 1 ? 'scenes' : '' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
   );
-  nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({ data: traces(view, view.models[k]), layout: layout(view) }))));
+  nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({ data: traces(view, view.models[k]), layout: layout(view, sceneHeight(node)) }))));
 }

@@ -1,6 +1,11 @@
-import { el, fixed, longTable, note, significant, table } from '../dom.js';
+import { decimalsFor, el, fixed, longTable, note, significant, table } from '../dom.js';
 import { addPlot, layout2d } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
+
+const kRaised = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+/** Plain text of the program as it is printed: "10^-12", "+- 3 um". */
+const printed = (text) => text.replaceAll('+-', '±').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/log10 p -/g, 'log10 p −')
+  .replace(/10\^(-?)(\d+)/g, (_, sign, digits) => `10${sign ? '⁻' : ''}${[...digits].map((digit) => kRaised[digit]).join('')}`);
 
 const stepName = (step) => (step.added === '' ? 'as given' : `+ ${step.added}`);
 
@@ -67,12 +72,15 @@ function rmsPlot(ladder) {
   };
 }
 
-const amplitudeText = (amplitude) => `${significant(amplitude.value)} ± ${significant(amplitude.U95, 2)} ${amplitude.unit}`;
+/** What distinguishes one of several amplitudes of an effect: "x", "cos". */
+const partOf = (effect, amplitude) => (effect.amplitudes.length > 1 ? `${amplitude.label.replace(effect.label, '').trim()} ` : '');
+
+const amplitudeText = (effect, amplitude) => `${partOf(effect, amplitude)}${fixed(amplitude.value, decimalsFor(amplitude.U95))} ± ${significant(amplitude.U95, 2)} ${amplitude.unit}`;
 
 const missingItem = (effect) => el('div', { class: 'found' }, [
   el('strong', {}, effect.resolution ? `${effect.label}: the function needs more knots` : effect.label),
-  effect.amplitudes.length > 0 ? el('span', { class: 'amount' }, effect.amplitudes.map((amplitude) => amplitudeText(amplitude)).join('; ')) : null,
-  el('div', { class: 'muted' }, `${effect.kind}, ${effect.shape} in ${effect.driver}; ${effect.how}.`),
+  effect.amplitudes.length > 0 ? el('span', { class: 'amount' }, effect.amplitudes.map((amplitude) => amplitudeText(effect, amplitude)).join('; ')) : null,
+  el('div', { class: 'muted' }, `${effect.kind}, ${effect.shape} in ${effect.driver}; ${printed(effect.how)}.`),
 ]);
 
 const ladderTable = (ladder) => table([
@@ -82,7 +90,7 @@ const ladderTable = (ladder) => table([
   { name: 'RMS held out', unit: 'µm', cell: (row) => significant(row.rms_heldout_um, 4) },
   { name: 'Noise floor', unit: 'µm', cell: (row) => significant(row.noise_floor_um, 4) },
   { name: 'Systematic', unit: 'µm', cell: (row) => significant(row.systematic_um) },
-  { name: '95 % interval', unit: 'µm', cell: (row) => `${significant(row.systematic_low_um, 2)} … ${significant(row.systematic_high_um, 2)}` },
+  { name: '95 % interval', unit: 'µm', cell: (row) => `${significant(row.systematic_low_um)} … ${significant(row.systematic_high_um)}` },
   { name: 'χ²/dof', cell: (row) => fixed(row.reduced_chi2, 3) },
   { name: 'Log-likelihood gain', unit: 'held out', cell: (row) => fixed(row.heldout_loglik_gain, 1) },
 ], ladder);
@@ -94,23 +102,26 @@ const belowTable = (groups) => longTable([
   { name: 'Smallest MDB', cell: (row) => significant(row.smallest, 2) },
   { name: 'Largest MDB', cell: (row) => significant(row.largest, 2) },
   { name: 'Unit', align: 'left', cell: (row) => row.unit },
-  { name: 'found first', align: 'left', cell: (row) => row.smallest_label ?? '–' },
-  { name: 'found last', align: 'left', cell: (row) => row.largest_label ?? '–' },
+  { name: 'Found first', align: 'left', cell: (row) => row.smallest_label ?? '–' },
+  { name: 'Found last', align: 'left', cell: (row) => row.largest_label ?? '–' },
 ], groups);
 
 export function renderStory(body, data) {
   body.append(el('div', { class: `status ${data.level}`, 'data-verdict': data.verdict }, [
-    el('strong', {}, data.headline), ...data.words.map((text) => el('p', {}, text)),
+    el('strong', {}, data.headline), ...data.words.map((text) => el('p', {}, printed(text))),
   ]));
   body.append(el('h3', {}, 'Before'), ...data.before.map((text) => el('p', {}, text)));
   body.append(el('h3', {}, 'What was missing, and how we know'));
-  body.append(...(data.missing.length > 0 ? data.missing.map(missingItem) : [el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and told apart from the others.`)]));
-  if (data.one_of.length > 0) {
-    body.append(el('p', {}, 'These readings do not tell the following apart:'), ...data.one_of.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));
+  body.append(...data.missing.map(missingItem));
+  if (data.missing.length === 0 && data.one_of.length === 0) {
+    body.append(el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and told apart from the others.`));
   }
-  body.append(el('h3', {}, 'After'), ...data.after.map((text) => el('p', {}, text)));
+  for (const set of data.one_of) {
+    body.append(el('p', {}, 'One of the following is missing; these readings do not tell them apart:'), ...set.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));
+  }
+  body.append(el('h3', {}, 'After'), ...data.after.map((text) => el('p', {}, printed(text))));
   const whole = data.ladder.filter((step) => step.rms_heldout_um !== null);
-  if (whole.length > 0) {
+  if (whole.length > 1) {
     const plots = [el('div', { class: 'plot' }), el('div', { class: 'plot' })];
     body.append(el('div', { class: 'pair' }, [
       el('figure', {}, [el('figcaption', {}, 'What is above the noise floor, step by step'), plots[0]]),

@@ -1,5 +1,5 @@
 import { choice, el, fixed, note, table } from '../dom.js';
-import { addPlot, commonLayout } from '../plot.js';
+import { addPlot, commonLayout, sceneHeight } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
@@ -77,8 +77,7 @@ function uncertaintyTraces(tool, magnification) {
 
 function setupTraces(data) {
   const instruments = [...new Set(data.setups.map((setup) => setup.instrument))];
-  const paths = data.setups.filter((setup) => setup.form === 'path');
-  const traces = instruments.flatMap((instrument, k) => {
+  return instruments.flatMap((instrument, k) => {
     const own = data.setups.filter((setup) => setup.instrument === instrument);
     return ['path', 'points'].flatMap((form) => {
       const points = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm, null]);
@@ -92,17 +91,6 @@ function setupTraces(data) {
       }];
     });
   });
-  if (paths.length <= 24) traces.push(pathLabels(paths));
-  return traces;
-}
-
-function pathLabels(paths) {
-  const named = paths.filter((setup) => setup.point_mm.length > 0);
-  const at = named.map((setup) => setup.point_mm.filter((p) => p !== null)[0]);
-  return {
-    x: column(at, 0), y: column(at, 1), z: column(at, 2), text: named.map((setup) => setup.name), type: 'scatter3d', mode: 'text',
-    textfont: { size: 10, color: color('text') }, hoverinfo: 'skip', showlegend: false,
-  };
 }
 
 function stationTraces(points, inLegend) {
@@ -131,7 +119,7 @@ function ranges(data, tool) {
   });
 }
 
-function sceneLayout(data, tool) {
+function sceneLayout(data, tool, height) {
   const [x, y, z] = ranges(data, tool);
   const axis = (name, range) => ({
     range,
@@ -139,14 +127,14 @@ function sceneLayout(data, tool) {
     zeroline: false, showbackground: false, tickfont: { size: 10 }, nticks: 6, showspikes: false,
   });
   return {
-    height: 520, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: 'rgba(0,0,0,0)',
+    height, margin: { l: 0, r: 0, t: 0, b: 0, autoexpand: false }, paper_bgcolor: 'rgba(0,0,0,0)',
     ...commonLayout(),
     legend: { x: 0, y: 0, yanchor: 'bottom', orientation: 'h', bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant' }, uirevision: 'keep',
     scene: { domain: { x: [0, 0.87], y: [0.1, 1] }, aspectmode: 'data', xaxis: axis('x', x), yaxis: axis('y', y), zaxis: axis('z', z), camera: kCamera },
   };
 }
 
-const kCamera = { eye: { x: 1.2, y: -1.68, z: 0.84 }, center: { x: 0.03, y: 0, z: -0.08 } };
+const kCamera = { eye: { x: 1.52, y: -2.12, z: 1.06 }, center: { x: 0, y: -0.02, z: -0.06 } };
 
 /** Turning one picture turns the other; equal cameras end the exchange. */
 function coupleCameras(nodes) {
@@ -219,7 +207,7 @@ export function renderVolume(body, data) {
   const ready = [];
   nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({
     data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...stationTraces(data.named_points, k === 0)],
-    layout: sceneLayout(data, view.tool),
+    layout: sceneLayout(data, view.tool, sceneHeight(node)),
   }), (drawn) => {
     ready.push(drawn);
     if (ready.length === 2) coupleCameras(nodes);
@@ -230,7 +218,7 @@ export function renderVolume(body, data) {
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
     el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
     note('Left: error of the functional point relative to home, each line from the nominal point to the magnified actual one (dot). Right: crosses with arms of one standard uncertainty along x, y and z at the same magnification: the readings do not say in which direction the remaining error points, nor do they cover repeatability, temperature or effects that the model lacks.'),
-    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
+    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
     ])]),
   );
 }

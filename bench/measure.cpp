@@ -1,0 +1,42 @@
+#include "measure.h"
+
+#include <dlfcn.h>
+
+#include <chrono>
+#include <fstream>
+#include <stdexcept>
+
+namespace volcal::bench {
+
+double seconds(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::string blas_core() {
+  using Name = char* (*)();
+  const auto name = reinterpret_cast<Name>(dlsym(RTLD_DEFAULT, "openblas_get_corename"));
+  return name == nullptr ? "not OpenBLAS" : name();
+}
+
+std::size_t peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    std::size_t kilobytes = 0;
+    if (word == "VmHWM:" && status >> kilobytes) return 1024 * kilobytes;
+  }
+  throw std::runtime_error("/proc/self/status has no VmHWM");
+}
+
+void read_options(int count, char** values, int first, const OptionTable& table) {
+  for (int i = first; i < count; i += 2) {
+    const std::string option = values[i];
+    const auto found = table.find(option);
+    if (found == table.end()) throw std::invalid_argument("unknown option " + option);
+    if (i + 1 == count) throw std::invalid_argument(option + " needs a value");
+    found->second(values[i + 1]);
+  }
+}
+
+}  // namespace volcal::bench

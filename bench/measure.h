@@ -1,0 +1,34 @@
+#pragma once
+/// What the benchmarks share: a clock, the machine, and options as pairs `--name value`.
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace volcal::bench {
+
+/// Wall-clock time of the work, s.
+double seconds(const std::function<void()>& work);
+/// Processor that OpenBLAS has found: "SkylakeX"; "not OpenBLAS" with another library.
+std::string blas_core();
+/// Largest resident size of this process so far, bytes.
+std::size_t peak_memory();
+
+using OptionTable = std::map<std::string, std::function<void(const std::string& value)>>;
+
+inline auto into(int& target) {
+  return [&target](const std::string& value) { target = std::stoi(value); };
+}
+inline auto into(double& target) {
+  return [&target](const std::string& value) { target = std::stod(value); };
+}
+inline auto into(std::string& target) {
+  return [&target](const std::string& value) { target = value; };
+}
+
+/// Reads the arguments from `first` on. Throws std::invalid_argument for an option that is not in the table
+/// or has no value.
+void read_options(int count, char** values, int first, const OptionTable& table);
+
+}  // namespace volcal::bench

@@ -1,0 +1,44 @@
+#pragma once
+/// The words that names of effects are made of, and what they mean: what `volcal diagnose --list` prints,
+/// diagnosis.json holds, and --effect and --separate take.
+///
+/// A word in capitals stands for something of the user's files: SYMBOL (EXX, EC0Y), AXIS (x), PLANE (XY),
+/// TOOL, STATION, SETUP, CHANNEL, RUN. An effect whose words are not here fails its contract test.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "volcal/model/effects/effect.h"
+
+namespace volcal {
+
+/// "kind:target:driver:shape"
+std::string full_name(const EffectName& name);
+
+/// Kinds that are changes of the model and no effects to add: an error given back, more knots.
+struct ModelChange {
+  std::string_view kind;
+  std::string_view summary;
+};
+std::span<const ModelChange> model_change_kinds();
+/// Name of more knots for an error function: resolution:EXX:x:finer.
+EffectName resolution_name(ErrorSymbol symbol);
+
+enum class NamePart { Target, Driver, Shape };
+
+struct EffectWord {
+  std::string_view pattern;  ///< "readings of SETUP"
+  std::string_view meaning;
+  std::string_view kind = {};  ///< the only kind that has it; empty: any
+};
+
+std::span<const EffectWord> effect_words(NamePart part);
+/// The word that this part of a name is; nullptr when there is none.
+const EffectWord* find_word(NamePart part, const EffectName& name);
+
+/// What the scans without a catalogue may see: `variables` and `direction` of an unknown effect.
+std::span<const EffectWord> scan_words();
+const EffectWord* find_scan_word(const std::string& variable);
+
+}  // namespace volcal

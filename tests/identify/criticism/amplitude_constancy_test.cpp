@@ -1,0 +1,90 @@
+// Does an amplitude vary? Chance is drawn; variation is put into the readings along the effect's own columns.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/constancy_test.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::families_of;
+using testing_support::white_projector;
+
+const LinearModel& model() {
+  static const testing_support::FittedStudy fitted(testing_support::hiding({}, {5, 4, 3}));
+  return fitted.model;
+}
+
+const std::vector<ScanVariable>& variables() {
+  static const std::vector<ScanVariable> all = scan_variables(model());
+  return all;
+}
+
+Eigen::VectorXd drawn(std::mt19937_64& random) {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(model().size()));
+  std::normal_distribution<double> normal;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    residual[i] = model().problem().data.sigma[static_cast<std::size_t>(i)] * normal(random);
+  }
+  return residual;
+}
+
+class Constancy : public ::testing::Test {
+ protected:
+  Constancy() : families_(families_of(model(), "reversal", "EXX")) {}
+
+  /// Of a reversal of 2 um in the model, the residuals being `rest`.
+  ConstancyTest test(const Eigen::VectorXd& rest) const {
+    Projector projector = white_projector(model(), rest);
+    projector.accept(moved());
+    return least_constant(families_.at(0), 2e-6 * moved(), variables(), projector);
+  }
+
+  Eigen::VectorXd moved() const { return family_columns(model(), families_.at(0), Eigen::VectorXd()); }
+
+  static const Eigen::VectorXd& value(const std::string& name) {
+    return std::ranges::find(variables(), name, &ScanVariable::name)->value;
+  }
+
+  std::vector<Family> families_;
+};
+
+TEST_F(Constancy, KeepsItsProbability) {
+  std::mt19937_64 random(5);
+  constexpr int kDraws = 120;
+  int below_fifth = 0;
+  for (int draw = 0; draw < kDraws; ++draw)
+    below_fifth += test(drawn(random)).log10_p < std::log10(0.2) ? 1 : 0;
+  RecordProperty("below_fifth", below_fifth);
+  EXPECT_LE(below_fifth, 0.2 * kDraws + 3.1 * std::sqrt(0.2 * 0.8 * kDraws));
+  EXPECT_GE(below_fifth, 3);
+}
+
+TEST_F(Constancy, OfTheSameAmplitudeEverywhere) {
+  std::mt19937_64 random(6);
+  EXPECT_GT(test(drawn(random) + 3e-6 * moved()).log10_p, -1.5);
+}
+
+/// Backlash that begins in the middle of the travel is no reversal of one size.
+TEST_F(Constancy, SeesAKinkAlongTheTravel) {
+  std::mt19937_64 random(6);
+  const Eigen::VectorXd kink = moved().cwiseProduct(value("x").cwiseMax(0.0));
+  const ConstancyTest varies = test(drawn(random) + 3e-6 * kink);
+  EXPECT_EQ(varies.variable, "x");
+  EXPECT_LT(varies.log10_p, -6.0);
+}
+
+TEST_F(Constancy, SeesWhatElseAnAmplitudeDependsOn) {
+  std::mt19937_64 random(6);
+  const ConstancyTest varies = test(drawn(random) + 1.5e-6 * moved().cwiseProduct(value("T_column")));
+  EXPECT_EQ(varies.variable, "T_column");
+  EXPECT_LT(varies.log10_p, -4.0);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,106 @@
+// What the search tells and what it keeps to itself. Campaigns come from sim/.
+
+#include "volcal/identify/criticism/effect_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/diagnosis.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::FittedStudy;
+using testing_support::hiding;
+using testing_support::reversal;
+
+const Eigen::Vector3i kGrid{5, 4, 4};
+
+sim::HiddenEffect hidden(const std::string& kind, const std::string& symbol, double rms) {
+  sim::HiddenEffect effect{.kind = kind, .options = {}, .rms = rms};
+  effect.options.set("symbol", symbol);
+  return effect;
+}
+
+Diagnosis diagnosed(const FittedStudy& study, bool climb) {
+  DiagnoseOptions options;
+  options.climb = climb;
+  options.figures = false;
+  options.compare = false;
+  return diagnose(study.simulated.campaign, study.result, options);
+}
+
+std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
+  std::vector<std::string> all;
+  for (const EffectFinding& finding : findings) all.push_back(finding.name.kind + " " + finding.name.target);
+  return all;
+}
+
+TEST(EffectSearch, AStepTellsTheFirstEffectAndThatMoreHasAName) {
+  const FittedStudy study(hiding({reversal("EXX", 0.7e-6), reversal("EYY", 0.5e-6)}, kGrid));
+  const Diagnosis step = diagnosed(study, false);
+  EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
+  EXPECT_THAT(targets(step.effects), ::testing::ElementsAre("reversal EXX"));
+  EXPECT_EQ(step.ladder.size(), 2U);
+  EXPECT_THAT(step.words, ::testing::Contains(::testing::HasSubstr("the catalogue has a name for it")));
+  EXPECT_THAT(targets(step.ranking), ::testing::Contains("reversal EYY"));
+}
+
+/// Two channels that read the same: every thermal effect has a twin, and no set is lost.
+TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
+  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 1.2e-6),
+                    second = hidden("thermal-tilt", "ECX", 1.2e-6);
+  for (sim::HiddenEffect* effect : {&first, &second}) effect->options.set("channel", "column");
+  sim::Study study = hiding({first, second}, kGrid);
+  study.environment.channels[0].amplitude = 1.0;
+  study.environment.channels.push_back(study.environment.channels[0]);
+  study.environment.channels[1].name = "ram";
+  const Diagnosis diagnosis = diagnosed(FittedStudy(study), true);
+  EXPECT_EQ(to_string(diagnosis.verdict), "ONE_OF");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  const auto sets = sets_of_alternatives(diagnosis);
+  ASSERT_EQ(sets.size(), 2U);
+  std::set<std::string> found;
+  for (const auto* set : sets) {
+    ASSERT_GE(set->size(), 2U);
+    EXPECT_EQ(set->at(0).name.target, set->at(1).name.target);
+    EXPECT_NE(set->at(0).name.driver, set->at(1).name.driver);
+    found.insert(set->at(0).name.target);
+  }
+  EXPECT_EQ(found, (std::set<std::string>{"EAZ", "ECX"}));
+  EXPECT_EQ(std::ranges::count_if(diagnosis.words,
+                                  [](const auto& words) { return words.starts_with("One of these"); }),
+            2);
+}
+
+TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
+  sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
+  bump.options.set("centre", 0.1);
+  bump.options.set("width", 0.12);
+  bump.options.set("by", "Y");
+  bump.options.set("by_centre", 0.1);
+  bump.options.set("by_width", 0.12);
+  const FittedStudy study(hiding({bump}, kGrid));
+  const Diagnosis diagnosis = diagnosed(study, false);
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains(::testing::AnyOf("x", "y")));
+}
+
+TEST(ScanVariables, OfAnEffect) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(scan_variables_of({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));
+  EXPECT_EQ(scan_variables_of({"tool-offset", "tool side_x", "tool", "step"}), (Names{"tool side_x"}));
+  EXPECT_EQ(scan_variables_of({"station-drift", "station P1", "time", "linear"}),
+            (Names{"station P1", "time"}));
+  EXPECT_EQ(scan_variables_of({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
+  EXPECT_EQ(scan_variables_of({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
+}
+
+}  // namespace
+}  // namespace volcal

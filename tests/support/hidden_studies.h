@@ -1,0 +1,69 @@
+#pragma once
+/// Small simulated campaigns with effects hidden in them.
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/criticism/families.h"
+#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/study.h"
+
+namespace volcal::testing_support {
+
+inline sim::Study hiding(std::vector<sim::HiddenEffect> hidden, Eigen::Vector3i grid = {6, 5, 5}) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[0];
+  study.seed = 31;
+  study.environment.channels = {
+      {.name = "column", .start = 20.0, .drift = 0.6 / 3600.0, .amplitude = 0.2, .period = 9000.0}};
+  study.hidden = std::move(hidden);
+  sim::Tracking tracking;
+  tracking.grid = grid;
+  study.measurements.emplace_back().settings = tracking;
+  study.validation.points = 10;
+  return study;
+}
+
+inline sim::HiddenEffect reversal(const std::string& symbol, double rms) {
+  sim::HiddenEffect effect{.kind = "reversal", .options = {}, .rms = rms};
+  effect.options.set("symbol", symbol);
+  return effect;
+}
+
+/// A study simulated, fitted and linearised.
+struct FittedStudy {
+  explicit FittedStudy(const sim::Study& study)
+      : simulated(sim::simulate(study)),
+        result(fit(simulated.campaign, ModelSpec{})),
+        model(simulated.campaign, result) {}
+
+  sim::SimulatedCampaign simulated;
+  FitResult result;
+  LinearModel model;
+};
+
+/// Families of a kind; `target` empty = all.
+inline std::vector<Family> families_of(const LinearModel& model, const std::string& kind,
+                                       const std::string& target = "") {
+  std::vector<Family> chosen;
+  for (Family& family : families(model)) {
+    const EffectName name = family.name();
+    if (name.kind == kind && (target.empty() || name.target == target)) chosen.push_back(std::move(family));
+  }
+  return chosen;
+}
+
+/// Projector for other residuals of the same campaign, white noise of the stated sigma.
+inline Projector white_projector(const LinearModel& model, const Eigen::VectorXd& residual) {
+  NoiseProblem problem = model.problem();
+  problem.residual = residual;
+  problem.prior_mean.setZero();
+  const std::vector<NoiseParameters> white(model.instruments().size());
+  return {problem, problem.data, white, 1, model.parts()};
+}
+
+}  // namespace volcal::testing_support

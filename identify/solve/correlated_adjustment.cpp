@@ -10,7 +10,7 @@
 namespace volcal {
 namespace {
 
-constexpr std::size_t kNoiseSample = 50000;
+constexpr std::size_t kNoiseSample = 30000;
 constexpr double kSpeaks = 1e-2;
 constexpr double kNoPrior = 1e-10;
 constexpr Eigen::Index kBlock = 4096;

@@ -135,7 +135,8 @@ std::function<int()> define(CLI::App& app) {
                  "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
-  app.add_flag("--auto", arguments->climb, "tell everything that was found, one effect after another, not the first alone");
+  app.add_flag("--auto", arguments->climb,
+               "tell everything that was found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,
                  "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
       ->delimiter(',');

@@ -69,12 +69,12 @@ class Diagnostician {
         heldout_(heldout_lines(model_, options.heldout_share)),
         search_(model_, heldout_, search_options(options)),
         families_(search_.families()) {
-    diagnosis_.removed_readings = static_cast<std::size_t>(
-        std::ranges::count_if(result.residuals, [](const ResidualRecord& record) { return record.removed; }));
+    removed_by_fit_ = model_.removed().size();
   }
 
   Diagnosis run() {
     search_.run();
+    diagnosis_.removed_readings = model_.removed().size();
     diagnosis_.families = families_.size();
     diagnosis_.generic_tests = search_.generic().size();
     diagnosis_.ladder = search_.ladder();
@@ -338,6 +338,12 @@ class Diagnostician {
     for (const auto& [family, reason] : search_.given_up()) {
       words.push_back("Not named " + families_[family].label() + ": " + reason + ".");
     }
+    if (const std::size_t back = removed_by_fit_ - diagnosis_.removed_readings; back > 0) {
+      words.push_back(
+          fmt::format("{} of {} readings that the outlier test had removed agree with the model "
+                      "reached and are used again.",
+                      back, removed_by_fit_));
+    }
     for (const EffectFinding& change : diagnosis_.model_changes) {
       words.push_back("The error function " + change.name.target + " needs more knots.");
     }
@@ -373,6 +379,7 @@ class Diagnostician {
   std::vector<bool> heldout_;
   EffectSearch search_;
   const std::vector<Family>& families_;
+  std::size_t removed_by_fit_ = 0;
   Diagnosis diagnosis_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/constancy_test.h"
 #include "volcal/identify/criticism/shape_refinement.h"
+#include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
@@ -42,7 +43,7 @@ bool near(const FamilyTest& own, const FamilyTest& other) {
 
 }  // namespace
 
-EffectSearch::EffectSearch(const LinearModel& model, const std::vector<bool>& heldout, SearchOptions options)
+EffectSearch::EffectSearch(LinearModel& model, const std::vector<bool>& heldout, SearchOptions options)
     : model_(model), heldout_(heldout), options_(std::move(options)), families_(volcal::families(model)) {
   std::erase_if(families_, [this](const Family& family) {
     return std::ranges::find(options_.leave_out, family.name().kind) != options_.leave_out.end();
@@ -71,6 +72,7 @@ void EffectSearch::settle(const std::function<void()>& after_a_change) {
 
 void EffectSearch::start() {
   if (options_.progress) options_.progress("noise model", 0.05);
+  model_.remove_as_fitted();
   added_.clear();
   ladder_.clear();
   heldout_loglik_.reset();
@@ -221,7 +223,28 @@ void EffectSearch::add(const FamilyTest& test) {
   }
   added_.push_back(std::move(effect));
   find_noise();
+  while (take_up_removed() > 0) find_noise();
   add_step(family.label());
+}
+
+/// Those that are no outliers of the model reached.
+std::size_t EffectSearch::take_up_removed() {
+  const NoiseProblem& problem = model_.problem();
+  const Eigen::VectorXd solution = projector_->solution();
+  const std::vector<double> sigma = total_sigma(problem.data, model_.stated_sigma(), noise_);
+  Eigen::MatrixXd row(1, solution.size());
+  return model_.take_up([&](std::size_t observation) {
+    const auto at = static_cast<Eigen::Index>(observation);
+    Eigen::Index column = problem.jacobian.cols();
+    row.leftCols(column) = problem.jacobian.row(at);
+    for (const AddedEffect& effect : added_) {
+      row.middleCols(column, effect.columns.cols()) = effect.columns.row(at);
+      column += effect.columns.cols();
+    }
+    const double miss = problem.residual[at] - row.row(0).dot(solution);
+    const double u = std::hypot(sigma[observation], std::sqrt(projector_->prediction_variance(row)[0]));
+    return std::abs(miss) < model_.outlier_critical_value() * u;
+  });
 }
 
 void EffectSearch::add_step(const std::string& added) {

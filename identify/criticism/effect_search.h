@@ -37,8 +37,9 @@ struct AddedEffect {
 
 class EffectSearch {
  public:
-  /// `heldout`: observations that judge and never choose.
-  EffectSearch(const LinearModel& model, const std::vector<bool>& heldout, SearchOptions options);
+  /// `heldout`: observations that judge and never choose. Readings that the fit removed are taken up into
+  /// `model` when the model with the added effects explains them.
+  EffectSearch(LinearModel& model, const std::vector<bool>& heldout, SearchOptions options);
 
   void run();
 
@@ -81,6 +82,7 @@ class EffectSearch {
   std::optional<FamilyTest> hidden_in_noise() const;
   std::optional<FamilyTest> likelihood_ratio(const FamilyTest& test) const;
   void add(const FamilyTest& test);
+  std::size_t take_up_removed();
   void add_step(const std::string& added);
   void restate_ladder();
   void settle(const std::function<void()>& after_a_change);
@@ -95,7 +97,7 @@ class EffectSearch {
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
   bool generic_does_better(const FamilyTest& best) const;
 
-  const LinearModel& model_;
+  LinearModel& model_;
   const std::vector<bool>& heldout_;
   SearchOptions options_;
   std::vector<Family> families_;

@@ -6,13 +6,20 @@
 namespace volcal {
 
 LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
-    : campaign_(campaign), model_(campaign, result.adjustment.model) {
+    : campaign_(campaign),
+      model_(campaign, result.adjustment.model),
+      stated_sigma_(result.adjustment.stated_sigma),
+      outlier_critical_value_(result.outlier_critical_value) {
   model_.expand_effects(result.parameters);
   model_.set_second_order_remainder(result.parameters);
   views_ = setup_views(campaign_, model_.binding(), model_.chain());
   std::vector<bool> removed;
-  for (const ResidualRecord& record : result.residuals) removed.push_back(record.removed);
-  CampaignNoise noise = campaign_noise(model_, result.adjustment.stated_sigma, removed);
+  for (const ResidualRecord& record : result.residuals) {
+    if (record.removed) removed_by_fit_.push_back(removed.size());
+    removed.push_back(record.removed);
+  }
+  removed_ = removed_by_fit_;
+  CampaignNoise noise = campaign_noise(model_, stated_sigma_, removed);
   observations_ = std::move(noise.places);
   instruments_ = std::move(noise.instruments);
   problem_.data = std::move(noise.data);
@@ -33,6 +40,21 @@ void LinearModel::add_sensitivity(const Eigen::VectorXd& parameters) {
     sensitivity_.row(static_cast<Eigen::Index>(i)) = disturbance.row(place.channel);
   }
   parts_.resize(campaign_.setups.size() + 1, static_cast<Eigen::Index>(size()));
+}
+
+std::size_t LinearModel::take_up(const std::function<bool(std::size_t)>& explained) {
+  return std::erase_if(removed_, [&](std::size_t observation) {
+    if (!explained(observation)) return false;
+    problem_.data.sigma[observation] = stated_sigma_[observation];
+    return true;
+  });
+}
+
+void LinearModel::remove_as_fitted() {
+  removed_ = removed_by_fit_;
+  for (const std::size_t observation : removed_) {
+    problem_.data.sigma[observation] = std::numeric_limits<double>::infinity();
+  }
 }
 
 void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,

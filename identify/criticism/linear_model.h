@@ -2,6 +2,7 @@
 /// An adjusted campaign as a linear model about its solution: what every test of model criticism starts from.
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,6 +33,18 @@ class LinearModel {
   /// what the noise model needs. Readings that the fit removed have an infinite sigma.
   const NoiseProblem& problem() const { return problem_; }
 
+  /// Observations that are left out: at first those that the fit removed.
+  const std::vector<std::size_t>& removed() const { return removed_; }
+  /// Takes up again those that a better model explains: a fit that lacks an effect takes what the effect
+  /// moves most for outliers. Returns how many.
+  std::size_t take_up(const std::function<bool(std::size_t observation)>& explained);
+  /// Leaves out again all that the fit removed.
+  void remove_as_fitted();
+  /// Of all observations, those that are left out as well.
+  const std::vector<double>& stated_sigma() const { return stated_sigma_; }
+  /// Of the fit's outlier test.
+  double outlier_critical_value() const { return outlier_critical_value_; }
+
   /// Boundaries 0 ... N of the setups among the observations.
   const std::vector<Eigen::Index>& parts() const { return parts_; }
   /// Columns of the readings that an effect's amplitudes would add, rows of one setup: observations x
@@ -56,6 +69,10 @@ class LinearModel {
   std::vector<SetupView> views_;
   Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;
   NoiseProblem problem_;
+  std::vector<double> stated_sigma_;
+  std::vector<std::size_t> removed_by_fit_;
+  std::vector<std::size_t> removed_;
+  double outlier_critical_value_;
 };
 
 /// The same residuals with some observations left out (their sigma made infinite).

@@ -83,16 +83,16 @@ bool is_more_than_white(const NoiseEstimate& estimate) {
   });
 }
 
-std::vector<double> total_sigma(const CampaignNoise& noise, const std::vector<double>& stated_sigma,
+std::vector<double> total_sigma(const NoiseData& noise, const std::vector<double>& stated_sigma,
                                 const std::vector<NoiseParameters>& parameters) {
   std::vector<double> total(stated_sigma.size());
-  for (const NoiseSequence& sequence : noise.data.sequences) {
+  for (const NoiseSequence& sequence : noise.sequences) {
     const NoiseParameters& own = parameters[sequence.group];
     const double wander = sequence.time.empty() ? 0.0 : own.wander;
     const double line = sequence.line.empty() ? 0.0 : own.line;
     for (const std::size_t i : sequence.observation) {
       const double white = own.white * stated_sigma[i];
-      const double proportional = own.per_metre * noise.data.length[i];
+      const double proportional = own.per_metre * noise.length[i];
       total[i] = std::sqrt(white * white + proportional * proportional + wander * wander + line * line);
     }
   }

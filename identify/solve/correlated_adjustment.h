@@ -30,7 +30,7 @@ NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& da
 bool is_more_than_white(const NoiseEstimate& estimate);
 
 /// sqrt(Sigma_ii) per observation, m or rad, for given stated sigma (removed observations included).
-std::vector<double> total_sigma(const CampaignNoise& noise, const std::vector<double>& stated_sigma,
+std::vector<double> total_sigma(const NoiseData& noise, const std::vector<double>& stated_sigma,
                                 const std::vector<NoiseParameters>& parameters);
 
 class WhitenedCampaign {

@@ -112,7 +112,7 @@ class Identification {
   }
 
   std::vector<double> sigma() const {
-    if (!noise_.empty()) return total_sigma(campaign_noise_, stated_sigma_, noise_);
+    if (!noise_.empty()) return total_sigma(campaign_noise_.data, stated_sigma_, noise_);
     std::vector<double> sigma = stated_sigma_;
     for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
       const std::size_t begin = index_.first_observation(setup, 0);

@@ -10,7 +10,7 @@ namespace volcal {
 namespace {
 
 constexpr double kSharpestEvent = 1.0;  // s
-constexpr int kEventTimes = 24;
+constexpr std::size_t kEventTimes = 24;
 
 bool measures_lengths(const Setup& setup) {
   static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "displacement"};
@@ -120,6 +120,23 @@ std::vector<EffectSpec> station_drifts(const Campaign& campaign) {
   return specs;
 }
 
+/// Between readings of the station, as many of them from one time to the next: visits may lie hours apart.
+std::vector<Eigen::VectorXd> event_times(const Campaign& campaign, const std::string& station) {
+  std::set<double> distinct;
+  for (const Setup& setup : campaign.setups) {
+    if (station_of(setup) == station) distinct.insert(setup.readings.time.begin(), setup.readings.time.end());
+  }
+  const std::vector<double> times(distinct.begin(), distinct.end());
+  std::set<std::size_t> ranks;
+  for (std::size_t i = 1; i < kEventTimes; ++i) ranks.insert(i * times.size() / kEventTimes);
+  ranks.erase(0);
+  std::vector<Eigen::VectorXd> values;
+  for (const std::size_t rank : ranks) {
+    values.emplace_back(Eigen::VectorXd::Constant(1, 0.5 * (times[rank - 1] + times[rank])));
+  }
+  return values;
+}
+
 std::unique_ptr<FormulaEffect> make_station_event(const EffectTable& table) {
   const std::string station = table.text("station", "add station = \"NAME\"");
   const std::string label = "event at station " + station;
@@ -136,14 +153,7 @@ std::unique_ptr<FormulaEffect> make_station_event(const EffectTable& table) {
       });
   effect->add_shape(shape_parameter(table, label + ": time", "time", "s", table.number("time", 0.0),
                                     table.number("from", 0.0), table.number("to", 0.0)));
-  effect->scan_by(
-      [from = table.number("from", 0.0), to = table.number("to", 0.0)](const Campaign& /*campaign*/) {
-        std::vector<Eigen::VectorXd> values;
-        for (int i = 1; i < kEventTimes; ++i) {
-          values.emplace_back(Eigen::VectorXd::Constant(1, from + (to - from) * i / kEventTimes));
-        }
-        return values;
-      });
+  effect->scan_by([station](const Campaign& campaign) { return event_times(campaign, station); });
   return effect;
 }
 

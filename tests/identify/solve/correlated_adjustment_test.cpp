@@ -194,7 +194,7 @@ TEST(CorrelatedAdjustment, RemovedReadingsHaveNoPartInTheEquations) {
 TEST(CorrelatedAdjustment, TotalSigmaIsTheDiagonalOfTheCovariance) {
   const Linearised problem;
   const CampaignNoise noise = problem.noise();
-  const std::vector<double> total = total_sigma(noise, problem.sigma, kTwoNoises);
+  const std::vector<double> total = total_sigma(noise.data, problem.sigma, kTwoNoises);
   const Eigen::VectorXd diagonal = dense_covariance(noise.data, kTwoNoises).diagonal();
   for (std::size_t i = 0; i < total.size(); ++i)
     ASSERT_NEAR(total[i] / std::sqrt(diagonal[static_cast<Eigen::Index>(i)]), 1.0, 1e-12);

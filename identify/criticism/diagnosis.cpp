@@ -193,6 +193,20 @@ class Diagnostician {
     }
   }
 
+  /// The direction of the scan whose share in the readings is most like that of a change.
+  std::string direction_of_change(const Eigen::VectorXd& moved) const {
+    std::size_t nearest = 0;
+    double best = -1.0;
+    for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
+      const Eigen::VectorXd along = model_.direction(static_cast<int>(k));
+      const double likeness = moved.cwiseAbs().dot(along.cwiseAbs()) / std::max(1e-300, along.norm());
+      if (likeness <= best) continue;
+      best = likeness;
+      nearest = k;
+    }
+    return kScanDirections[nearest];
+  }
+
   /// At the given model: what would have been found, and what could not be.
   void list_detectable() {
     const FunctionalPointLevers levers(model_);
@@ -265,10 +279,9 @@ class Diagnostician {
     for (const auto& [family, reason] : search_.given_up()) {
       const FamilyTest& test = search_.tests()[family];
       if (search_.is_added(family) || search_.family_wise_log10_p(test) > kLog10FamilyRisk) continue;
-      const EffectName name = families_[family].name();
       const Eigen::VectorXd moved =
           family_columns(model_, families_[family], test.shape) * test.score.amplitude;
-      diagnosis_.unknown.push_back({scan_variables_of(name), name.target,
+      diagnosis_.unknown.push_back({scan_variables_of(families_[family].name()), direction_of_change(moved),
                                     moved.norm() / std::sqrt(static_cast<double>(moved.size())),
                                     search_.family_wise_log10_p(test)});
     }

@@ -11,7 +11,6 @@
 #include "volcal/identify/criticism/constancy_test.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
-#include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
 
@@ -25,10 +24,8 @@ constexpr double kToldApart = 6.0;       // of the extended BIC
 constexpr double kWorthRefining = 40.0;  // the same, below the leading one
 constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, before its shape is refined
 constexpr double kVisibleDerivative = 1e-3;
-constexpr double kSameLikelihood = 4.0;    // of LM: what fits as well is a rival, however many its parameters
-constexpr double kLessProbable = 0.1;      // share of log10 p, family-wise; components cost probability
-constexpr double kWorthSecondLook = -3.0;  // log10 p of a family for itself
-constexpr std::size_t kMostSecondLooks = 3;
+constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
+constexpr double kLessProbable = 0.1;    // share of log10 p, family-wise; components cost probability
 constexpr int kMostChanges = 4;
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
@@ -86,7 +83,7 @@ void EffectSearch::find_noise() {
   noise.threads = options_.threads;
   noise.uncertainty = false;
   noise_estimate_ =
-      estimate_noise(problem_with(nullptr), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
+      estimate_noise(problem_with_added(), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
   noise_ = noise_estimate_->parameters();
   projector_ = projector_under(noise_, std::nullopt);
 }
@@ -94,7 +91,7 @@ void EffectSearch::find_noise() {
 NoiseEstimate EffectSearch::noise_with_uncertainty() const {
   NoiseOptions noise;
   noise.threads = options_.threads;
-  return estimate_noise(problem_with(nullptr), noise, &*noise_estimate_);
+  return estimate_noise(problem_with_added(), noise, &*noise_estimate_);
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_under(const std::vector<NoiseParameters>& noise,
@@ -109,11 +106,10 @@ std::unique_ptr<Projector> EffectSearch::projector_under(const std::vector<Noise
   return projector;
 }
 
-/// The linear model with the added effects, and perhaps a candidate, as further columns.
-NoiseProblem EffectSearch::problem_with(const Eigen::MatrixXd* candidate) const {
+/// The linear model with the added effects as further columns.
+NoiseProblem EffectSearch::problem_with_added() const {
   NoiseProblem problem = model_.problem();
   for (const AddedEffect& effect : added_) append(problem.jacobian, effect.columns);
-  if (candidate != nullptr) append(problem.jacobian, *candidate);
   const Eigen::Index before = problem.prior_mean.size(), count = problem.jacobian.cols();
   Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
   precision.topLeftCorner(before, before) = problem.prior_precision;
@@ -159,56 +155,10 @@ void EffectSearch::climb() {
 bool EffectSearch::add_leading() {
   const FamilyTest* best = leading(tests_, std::nullopt);
   if (best == nullptr) return false;
-  if (family_wise_log10_p(*best) > kLog10FamilyRisk) {
-    const auto hidden = hidden_in_noise();
-    if (hidden) add(*hidden);
-    return hidden.has_value();
-  }
+  if (family_wise_log10_p(*best) > kLog10FamilyRisk) return false;
   if (generic_does_better(*best)) return false;
   add(FamilyTest(*best));
   return true;
-}
-
-/// The noise is estimated without the candidates, and a slow effect, or one of few readings, passes for noise
-/// in part: those that come near are judged with the noise estimated both ways.
-std::optional<FamilyTest> EffectSearch::hidden_in_noise() const {
-  std::vector<const FamilyTest*> near;
-  for (const FamilyTest& test : tests_) {
-    const bool out =
-        is_added(test.family) || given_up_.contains(test.family) || dropped_.contains(test.family);
-    if (!out && test.log10_p < kWorthSecondLook) near.push_back(&test);
-  }
-  std::ranges::sort(near, std::greater{}, &FamilyTest::gain);
-  if (near.size() > kMostSecondLooks) near.resize(kMostSecondLooks);
-  std::optional<FamilyTest> best;
-  for (const FamilyTest* test : near) {
-    const auto found = likelihood_ratio(*test);
-    if (!found || family_wise_log10_p(*found) > kLog10FamilyRisk) continue;
-    if (!best || found->gain > best->gain) best = found;
-  }
-  return best;
-}
-
-/// Twice the difference of log-likelihoods in place of LM; none where it is not larger.
-std::optional<FamilyTest> EffectSearch::likelihood_ratio(const FamilyTest& test) const {
-  const Family& family = families_[test.family];
-  const Eigen::MatrixXd columns = family_columns(model_, family, test.shape);
-  NoiseOptions options;
-  options.threads = options_.threads;
-  options.uncertainty = false;
-  const auto noise = estimate_noise(problem_with(&columns), options, &*noise_estimate_).parameters();
-  const auto projector = projector_under(noise, std::nullopt);
-  ScoreTest score = score_test(projector->project(columns), 0, columns.cols());
-  const double without = projector_->log_determinant() + projector_->residual_squares();
-  const double with = projector->log_determinant() + projector->residual_squares() - score.lm;
-  if (score.dof == 0 || !(without - with > test.score.lm)) return std::nullopt;
-  FamilyTest out = test;
-  update_test(out, family, test.shape, score, *projector);
-  out.gain += without - with - score.lm;
-  out.score.lm = without - with;
-  out.score.log10_p = log10_chi_squared_exceedance(out.score.lm, out.score.dof);
-  out.log10_p = std::min(0.0, out.score.log10_p + std::log10(out.multiplicity));
-  return out;
 }
 
 void EffectSearch::add(const FamilyTest& test) {

@@ -74,13 +74,11 @@ class EffectSearch {
   void find_noise();
   std::unique_ptr<Projector> projector_under(const std::vector<NoiseParameters>& noise,
                                              std::optional<std::size_t> left_out) const;
-  NoiseProblem problem_with(const Eigen::MatrixXd* candidate) const;
+  NoiseProblem problem_with_added() const;
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
   void climb();
   bool add_leading();
-  std::optional<FamilyTest> hidden_in_noise() const;
-  std::optional<FamilyTest> likelihood_ratio(const FamilyTest& test) const;
   void add(const FamilyTest& test);
   std::size_t take_up_removed();
   void add_step(const std::string& added);

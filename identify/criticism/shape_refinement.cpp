@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 namespace volcal {
 namespace {
 
 constexpr int kGoldenSteps = 12;
-constexpr int kBetween = 8;  // values tried between neighbours: LM may have several maxima there
 constexpr double kGolden = 0.6180339887498949;
 constexpr double kRelatedNeighbours = 0.3;  // cosine of projected columns
 constexpr double kDerivativeStep = 0.02;    // of the distance to the neighbours
@@ -60,19 +58,6 @@ class Refiner {
   const Projector& projector_;
 };
 
-/// The bracket about the best of evenly spaced values.
-std::pair<double, double> around_best_between(const Refiner& refiner, double low, double high) {
-  const double step = (high - low) / (kBetween + 1);
-  double best = low, most = -1.0;
-  for (int i = 0; i <= kBetween + 1; ++i) {
-    const double lm = refiner.score(low + i * step).lm;
-    if (lm <= most) continue;
-    most = lm;
-    best = low + i * step;
-  }
-  return {std::max(low, best - step), std::min(high, best + step)};
-}
-
 }  // namespace
 
 void refine_shape(const LinearModel& model, const Family& family, const Projector& projector,
@@ -84,7 +69,6 @@ void refine_shape(const LinearModel& model, const Family& family, const Projecto
   for (const double neighbour : {low, high}) {
     if (neighbour != centre && refiner.relation(centre, neighbour) < kRelatedNeighbours) return;
   }
-  std::tie(low, high) = around_best_between(refiner, low, high);
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
   ScoreTest at_left = refiner.score(left), at_right = refiner.score(right);
   for (int step = 0; step < kGoldenSteps; ++step) {

@@ -168,5 +168,26 @@ TEST_F(Catalogue, SquarenessDriftsWithAChannel) {
   EXPECT_NEAR(drivers(spec, "S1")(10, 0), -2.0 * readings("S1").position[1][10], 1e-12);
 }
 
+/// P1 is visited from 0 to 460 s and from 7000 to 7460 s, a reading every 20 s.
+TEST_F(Catalogue, EventsAreLookedForBetweenReadings) {
+  for (const EffectSpec& spec : find_effect("station-event")->candidates(campaign_)) {
+    if (spec.options.text("station") != "P1") continue;
+    const auto scan = find_effect("station-event")->make(spec, {})->scan(campaign_);
+    int first_visit = 0, between = 0, second_visit = 0;
+    for (const Eigen::VectorXd& time : scan) {
+      if (time[0] < 460.0) ++first_visit;
+      if (time[0] > 460.0 && time[0] < 7000.0) ++between;
+      if (time[0] > 7000.0) ++second_visit;
+      const double since_a_reading = std::fmod(time[0], 20.0);
+      EXPECT_TRUE(since_a_reading == 10.0 || time[0] == 3730.0) << time[0];
+    }
+    EXPECT_EQ(between, 1);
+    EXPECT_EQ(first_visit, 11);
+    EXPECT_EQ(second_visit, 11);
+    return;
+  }
+  FAIL() << "no event at P1";
+}
+
 }  // namespace
 }  // namespace volcal

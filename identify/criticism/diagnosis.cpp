@@ -380,8 +380,9 @@ class Diagnostician {
   }
 
   static std::string sentence(const UnknownFinding& unknown) {
-    std::string variables;
-    for (const std::string& name : unknown.variables) variables += (variables.empty() ? "" : " and ") + name;
+    const std::string variables = unknown.variables.empty()
+                                      ? "nothing recorded that was tried"
+                                      : fmt::format("{}", fmt::join(unknown.variables, " and "));
     return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings", variables,
                        unknown.direction, unknown.rms * 1e6);
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/resolution.h"
@@ -176,7 +177,7 @@ bool Family::independent_components() const {
 
 EffectName Family::name() const {
   if (!resolution) return effect->name();
-  return {"resolution", resolution->name(), std::string(1, lower_letter_of(resolution->axis)), "finer"};
+  return resolution_name(*resolution);
 }
 
 std::vector<Family> families(const LinearModel& model) {

@@ -1,11 +1,15 @@
 #include "volcal/identify/criticism/generic_scan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <sstream>
 
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/score_test.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -288,14 +292,20 @@ Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count) {
 }
 
 std::vector<std::string> scan_variables_of(const EffectName& name) {
-  std::vector<std::string> variables;
+  std::vector<std::string> words;
   for (const std::string& text : {name.target, name.driver}) {
-    if (text.starts_with("tool ") || text.starts_with("station ")) variables.push_back(text);
+    if (text.starts_with("tool ") || text.starts_with("station ")) words.push_back(text);
   }
-  if (name.driver.starts_with("tool")) return variables;
-  std::istringstream words(name.driver);
-  for (std::string word; words >> word;) variables.push_back(word);
-  return variables;
+  if (name.driver == "dir") {  // the sense of a circle: directions of the axes of its plane
+    for (const char letter : name.target) words.push_back(fmt::format("dir_{:c}", std::tolower(letter)));
+  } else if (name.driver.starts_with("run ")) {
+    words.emplace_back("run");
+  } else if (!name.driver.starts_with("tool")) {
+    std::istringstream drivers(name.driver);
+    for (std::string word; drivers >> word;) words.push_back(word);
+  }
+  std::erase_if(words, [](const std::string& word) { return find_scan_word(word) == nullptr; });
+  return words;
 }
 
 std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,

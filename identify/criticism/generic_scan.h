@@ -23,8 +23,8 @@ struct ScanVariable {
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
 
-/// Names of the variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its driver, "tool
-/// side_x" of either, "station P1" of its target.
+/// Names of the recorded variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its
+/// driver, "tool side_x" of either, "station P1" of its target. Empty where nothing recorded stands for it.
 std::vector<std::string> scan_variables_of(const EffectName& name);
 
 /// v, v^2, v^3; of a two-valued variable v alone.

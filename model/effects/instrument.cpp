@@ -244,7 +244,9 @@ std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
           const double x = radius[direction_of(first)], y = radius[direction_of(second)];
           // Counter-clockwise, x falls where y is positive: the sense follows from either direction.
           const double sense = 0.5 * (dir_2[row] * (x > 0 ? 1 : -1) - dir_1[row] * (y > 0 ? 1 : -1));
-          driver[row] = sense * 2.0 * x * y / std::max(1e-12, x * x + y * y);
+          // By the whole bar: at the poles of a circle in another plane x and y are as small as the centre's
+          // error.
+          driver[row] = sense * 2.0 * x * y / radius.squaredNorm();
         }
         return driver;
       },

@@ -2,6 +2,7 @@
 /// Small simulated campaigns with effects hidden in them.
 
 #include <Eigen/Core>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,16 @@ inline Projector white_projector(const LinearModel& model, const Eigen::VectorXd
   problem.prior_mean.setZero();
   const std::vector<NoiseParameters> white(model.instruments().size());
   return {problem, problem.data, white, 1, model.parts()};
+}
+
+/// White residuals of the stated sigma.
+inline Eigen::VectorXd white_residual(const LinearModel& model, std::mt19937_64& random) {
+  Eigen::VectorXd residual(static_cast<Eigen::Index>(model.size()));
+  std::normal_distribution<double> normal;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    residual[i] = model.problem().data.sigma[static_cast<std::size_t>(i)] * normal(random);
+  }
+  return residual;
 }
 
 }  // namespace volcal::testing_support

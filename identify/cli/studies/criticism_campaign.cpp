@@ -11,6 +11,7 @@
 #include "volcal/identify/cli/studies/criticism_names.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/solve/fit.h"
@@ -230,7 +231,7 @@ class CampaignRun {
     for (std::size_t i = 0; i < hidden_.effects.size(); ++i) {
       RightAnswer right = right_answer(hidden_.effects[i], campaign);
       HiddenRecord& hidden = record_.hidden[i];
-      if (right.name && !left_out(*right.name)) hidden.right = text_of(*right.name);
+      if (right.name && !left_out(*right.name)) hidden.right = full_name(*right.name);
       hidden.drivers.assign(right.drivers.begin(), right.drivers.end());
       hidden.companions.assign(right.companions.begin(), right.companions.end());
       hidden.directions.assign(right.directions.begin(), right.directions.end());
@@ -247,7 +248,10 @@ class CampaignRun {
     record_.families = static_cast<int>(diagnosis.families);
     record_.removed_readings = static_cast<int>(diagnosis.removed_readings);
     for (const EffectFinding& finding : diagnosis.effects) record_.named.push_back(answer(finding));
-    for (const EffectFinding& finding : diagnosis.one_of) record_.one_of.push_back(answer(finding));
+    for (const auto* set : sets_of_alternatives(diagnosis)) {
+      auto& answers = record_.sets.emplace_back();
+      for (const EffectFinding& finding : *set) answers.push_back(answer(finding));
+    }
     for (const EffectFinding& finding : diagnosis.ranking) {
       if (record_.ranking.size() < kKeptOfRanking) record_.ranking.push_back(answer(finding));
     }
@@ -280,7 +284,7 @@ class CampaignRun {
 
   AnswerRecord answer(const EffectFinding& finding) const {
     AnswerRecord answer;
-    answer.name = text_of(finding.name);
+    answer.name = full_name(finding.name);
     answer.resolution = finding.resolution;
     answer.log10_p = finding.log10_p;
     answer.gain = finding.gain;

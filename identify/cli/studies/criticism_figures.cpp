@@ -135,12 +135,24 @@ Detection probit(const std::vector<Trial>& trials) {
 }
 
 const AnswerRecord* answer_for(const CampaignRecord& record) {
-  for (const auto* list : {&record.named, &record.one_of, &record.ranking}) {
+  std::vector<const std::vector<AnswerRecord>*> lists = {&record.named};
+  for (const auto& set : record.sets) lists.push_back(&set);
+  lists.push_back(&record.ranking);
+  for (const auto* list : lists) {
     for (const AnswerRecord& answer : *list) {
       if (answer.by_name && !answer.amplitudes.empty()) return &answer;
     }
   }
   return nullptr;
+}
+
+/// Of verdict ONE_OF: every set must hold something that is there; the largest counts.
+Outcome outcome_of_sets(const std::vector<std::vector<AnswerRecord>>& sets) {
+  if (!std::ranges::all_of(sets, any_right)) return Outcome::WrongSet;
+  const auto up_to_largest = [](std::size_t size) { return size <= kLargestSet; };
+  if (std::ranges::all_of(sets, up_to_largest, &std::vector<AnswerRecord>::size)) return Outcome::RightInSet;
+  return std::ranges::all_of(sets, up_to_largest, distinguishable) ? Outcome::RightInClasses
+                                                                   : Outcome::LargeSet;
 }
 
 }  // namespace
@@ -186,9 +198,7 @@ Outcome outcome_of(const CampaignRecord& record) {
   if (record.verdict == "NOT_VISIBLE") return Outcome::NotVisible;
   if (record.verdict == "UNKNOWN") return right_variables(record) ? Outcome::Unknown : Outcome::UnknownOther;
   if (record.verdict == "ONE_OF") {
-    if (!any_right(record.one_of)) return Outcome::WrongSet;
-    if (record.one_of.size() <= kLargestSet) return Outcome::RightInSet;
-    return distinguishable(record.one_of) <= kLargestSet ? Outcome::RightInClasses : Outcome::LargeSet;
+    return outcome_of_sets(record.sets);
   }
   if (record.verdict == "NAMED_MORE_REMAINS") return Outcome::MoreRemains;
   return everything_named(record) ? Outcome::Right : Outcome::Part;
@@ -338,7 +348,7 @@ std::vector<Detection> detections_of(const Campaigns& campaigns) {
     for (const CampaignRecord* record : records) {
       const double own = stated_signal(*record);
       trials.push_back({record->hidden.front().signal / (std::isfinite(own) ? own : median),
-                        any_right(record->named) || any_right(record->one_of)});
+                        any_right(record->named) || std::ranges::any_of(record->sets, any_right)});
     }
     Detection detection = probit(trials);
     detection.effect = effect;

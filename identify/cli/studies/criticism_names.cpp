@@ -191,8 +191,4 @@ std::string text_of(const sim::HiddenEffect& hidden) {
   return text;
 }
 
-std::string text_of(const EffectName& name) {
-  return fmt::format("{}:{}:{}:{}", name.kind, name.target, name.driver, name.shape);
-}
-
 }  // namespace volcal::cli

@@ -27,7 +27,5 @@ RightAnswer right_answer(const sim::HiddenEffect& hidden, const Campaign& campai
 
 /// "screw-lead EXX period=0.01": kind and keys, SI.
 std::string text_of(const sim::HiddenEffect& hidden);
-/// "lead-error:EXX:x:periodic".
-std::string text_of(const EffectName& name);
 
 }  // namespace volcal::cli

@@ -14,7 +14,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UnknownRecord, variables, direction, log10_p)
 namespace {
 struct Fields : CampaignRecord {};
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fields, row, index, seed, wanted_readings, readings, structure, layout,
-                                   noise, failure, hidden, verdict, named, one_of, ranking, unknown,
+                                   noise, failure, hidden, verdict, named, sets, ranking, unknown,
                                    model_changes, noise_terms, families, removed_readings, named_explain,
                                    recovery, ms_given, ms_named, ms_oracle)
 }  // namespace

@@ -61,8 +61,8 @@ struct CampaignRecord {
   std::vector<HiddenRecord> hidden;
   std::string verdict;
   std::vector<AnswerRecord> named;
-  std::vector<AnswerRecord> one_of;
-  std::vector<AnswerRecord> ranking;  ///< the first five at the model reached
+  std::vector<std::vector<AnswerRecord>> sets;  ///< of alternatives
+  std::vector<AnswerRecord> ranking;            ///< the first five at the model reached
   std::vector<UnknownRecord> unknown;
   std::vector<std::string> model_changes;
   std::vector<std::string> noise_terms;  ///< as estimated

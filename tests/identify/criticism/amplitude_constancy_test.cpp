@@ -14,6 +14,7 @@ namespace {
 
 using testing_support::families_of;
 using testing_support::white_projector;
+using testing_support::white_residual;
 
 const LinearModel& model() {
   static const testing_support::FittedStudy fitted(testing_support::hiding({}, {5, 4, 3}));
@@ -23,15 +24,6 @@ const LinearModel& model() {
 const std::vector<ScanVariable>& variables() {
   static const std::vector<ScanVariable> all = scan_variables(model());
   return all;
-}
-
-Eigen::VectorXd drawn(std::mt19937_64& random) {
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(model().size()));
-  std::normal_distribution<double> normal;
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    residual[i] = model().problem().data.sigma[static_cast<std::size_t>(i)] * normal(random);
-  }
-  return residual;
 }
 
 class Constancy : public ::testing::Test {
@@ -59,7 +51,7 @@ TEST_F(Constancy, KeepsItsProbability) {
   constexpr int kDraws = 60;
   int below_fifth = 0;
   for (int draw = 0; draw < kDraws; ++draw)
-    below_fifth += test(drawn(random)).log10_p < std::log10(0.2) ? 1 : 0;
+    below_fifth += test(white_residual(model(), random)).log10_p < std::log10(0.2) ? 1 : 0;
   RecordProperty("below_fifth", below_fifth);
   EXPECT_LE(below_fifth, 0.2 * kDraws + 3.1 * std::sqrt(0.2 * 0.8 * kDraws));
   EXPECT_GE(below_fifth, 3);
@@ -67,21 +59,22 @@ TEST_F(Constancy, KeepsItsProbability) {
 
 TEST_F(Constancy, OfTheSameAmplitudeEverywhere) {
   std::mt19937_64 random(6);
-  EXPECT_GT(test(drawn(random) + 3e-6 * moved()).log10_p, -1.5);
+  EXPECT_GT(test(white_residual(model(), random) + 3e-6 * moved()).log10_p, -1.5);
 }
 
 /// Backlash that begins in the middle of the travel is no reversal of one size.
 TEST_F(Constancy, SeesAKinkAlongTheTravel) {
   std::mt19937_64 random(6);
   const Eigen::VectorXd kink = moved().cwiseProduct(value("x").cwiseMax(0.0));
-  const ConstancyTest varies = test(drawn(random) + 3e-6 * kink);
+  const ConstancyTest varies = test(white_residual(model(), random) + 3e-6 * kink);
   EXPECT_EQ(varies.variable, "x");
   EXPECT_LT(varies.log10_p, -6.0);
 }
 
 TEST_F(Constancy, SeesWhatElseAnAmplitudeDependsOn) {
   std::mt19937_64 random(6);
-  const ConstancyTest varies = test(drawn(random) + 1.5e-6 * moved().cwiseProduct(value("T_column")));
+  const ConstancyTest varies =
+      test(white_residual(model(), random) + 1.5e-6 * moved().cwiseProduct(value("T_column")));
   EXPECT_EQ(varies.variable, "T_column");
   EXPECT_LT(varies.log10_p, -4.0);
 }

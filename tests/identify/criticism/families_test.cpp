@@ -15,20 +15,11 @@ namespace {
 
 using testing_support::families_of;
 using testing_support::white_projector;
+using testing_support::white_residual;
 
 const LinearModel& model() {
   static const testing_support::FittedStudy fitted(testing_support::hiding({}, {4, 3, 3}));
   return fitted.model;
-}
-
-/// White residuals of the stated sigma.
-Eigen::VectorXd drawn(std::mt19937_64& random) {
-  Eigen::VectorXd residual(static_cast<Eigen::Index>(model().size()));
-  std::normal_distribution<double> normal;
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    residual[i] = model().problem().data.sigma[static_cast<std::size_t>(i)] * normal(random);
-  }
-  return residual;
 }
 
 /// Upper 99.9 % limit of a count whose expectation is no more than n p.
@@ -42,7 +33,7 @@ TEST(Families, ScansKeepTheirProbability) {
   constexpr int kDraws = 150;
   int below_tenth = 0, below_hundredth = 0, unpriced = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Projector projector = white_projector(model(), drawn(random));
+    const Projector projector = white_projector(model(), white_residual(model(), random));
     for (const FamilyTest& test : test_families(model(), scanned, projector, 2)) {
       below_tenth += test.log10_p < -1.0 ? 1 : 0;
       below_hundredth += test.log10_p < -2.0 ? 1 : 0;
@@ -69,7 +60,7 @@ TEST(Families, ADisplacementPaysForTheComponentsThatItNeeds) {
   ASSERT_TRUE(family.independent_components());
 
   std::mt19937_64 random(11);
-  const Eigen::VectorXd noise = drawn(random);
+  const Eigen::VectorXd noise = white_residual(model(), random);
   const Eigen::MatrixXd columns = family_columns(model(), family, family.scan[0]);
   const Eigen::MatrixXd second = columns.col(1);
   const double u = 1.0 / std::sqrt(white_projector(model(), noise).project(second).gram(0, 1)(0, 0));

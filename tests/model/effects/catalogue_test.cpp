@@ -120,6 +120,32 @@ TEST_F(Catalogue, AFoundationTiltAloneIsAnErrorMotion) {
   EXPECT_TRUE(kind->candidates(campaign_).empty());
 }
 
+/// Its own circle sees sin 2 phi with the sign of the sense; at the poles of a circle in another plane, where
+/// both coordinates are as small as the centre is wrong, nothing is seen.
+TEST_F(Catalogue, AServoMismatchActsOnCirclesOfItsPlane) {
+  constexpr double kRadius = 0.15, kLag = 2e-6, kWrong = 2e-6;
+  volcal::Setup& bar = campaign_.setups[index("B1")];
+  const Eigen::Vector3d tool = campaign_.machine.tools[bar.tool].offset, centre(0.25, 0.25, 0.1);
+  bar.options.set("centre", Eigen::Vector3d(centre + Eigen::Vector3d(kWrong, -kWrong, 0.0)));
+  const auto place = [&](std::size_t row, const Eigen::Vector3d& from_centre) {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      bar.readings.position[static_cast<std::size_t>(k)][row] = (centre + from_centre - tool)[k];
+  };
+  const double diagonal = kRadius / std::sqrt(2.0);
+  place(0, {diagonal, diagonal, 0.0});  // first quadrant, counter-clockwise: x falls, y rises
+  bar.readings.direction[0][0] = -1;
+  bar.readings.direction[1][0] = 1;
+  place(1, {diagonal, diagonal, 0.0});
+  bar.readings.direction[0][1] = 1;
+  bar.readings.direction[1][1] = -1;
+  place(2, {0.0, 0.0, kRadius});
+  const EffectSpec spec =
+      effect_spec("servo-mismatch", {{"axis", std::string("X")}, {"second_axis", std::string("Y")}});
+  EXPECT_NEAR(change(spec, kLag, "B1", 0), kLag, 1e-10);
+  EXPECT_NEAR(change(spec, kLag, "B1", 1), -kLag, 1e-10);
+  EXPECT_NEAR(change(spec, kLag, "B1", 2), 0.0, 1e-10);
+}
+
 /// A beam of 1 mrad reads half a ppm too short; a path that runs backwards counts with its sign.
 TEST_F(Catalogue, ABeamThatIsNotParallelReadsTooShort) {
   const EffectSpec spec = effect_spec("beam-misalignment", {{"setup", std::string("D1")}});

@@ -45,6 +45,7 @@ namespace {
 
 constexpr double kVisible = 0.02;
 constexpr double kPower = 0.8;
+constexpr double kNearlyAsImprobable = 0.1;  // share of log10 p
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
@@ -146,10 +147,12 @@ class Diagnostician {
     }
   }
 
-  /// Everything added, estimated together from all readings that are not held out.
+  /// Everything added, estimated together.
   void list_added() {
-    const Eigen::VectorXd solution = search_.projector().solution();
-    const Eigen::MatrixXd covariance = search_.projector().accepted_covariance();
+    if (search_.added().empty()) return;
+    const auto projector = search_.projector_of_all_readings();
+    const Eigen::VectorXd solution = projector->solution();
+    const Eigen::MatrixXd covariance = projector->accepted_covariance();
     Eigen::Index at = 0;
     for (const AddedEffect& added : search_.added()) {
       const Eigen::Index count = added.columns.cols();
@@ -265,6 +268,7 @@ class Diagnostician {
       if (search_.family_wise_log10_p(test) < kLog10GenericRisk) order.push_back(&test);
     }
     std::ranges::sort(order, {}, &GenericTest::log10_p);
+    put_simplest_first(order);
     std::set<std::vector<std::string>> seen;
     for (const GenericTest* test : order) {
       if (!seen.insert(test->variables).second || diagnosis_.unknown.size() == kMostUnknown) continue;
@@ -272,6 +276,16 @@ class Diagnostician {
           {test->variables, test->direction, test->rms, search_.family_wise_log10_p(*test)});
     }
     if (diagnosis_.unknown.empty()) collect_given_up();
+  }
+
+  /// Of those that stand out nearly as much as the most improbable one, the first of a single variable.
+  static void put_simplest_first(std::vector<const GenericTest*>& order) {
+    if (order.empty() || order.front()->variables.size() == 1) return;
+    const double nearly = (1.0 - kNearlyAsImprobable) * order.front()->log10_p;
+    const auto simplest = std::ranges::find_if(order, [nearly](const GenericTest* test) {
+      return test->variables.size() == 1 && test->log10_p <= nearly;
+    });
+    if (simplest != order.end()) std::rotate(order.begin(), simplest, simplest + 1);
   }
 
   /// What stood out under names that are none, and no generic test sees for itself.

@@ -66,13 +66,16 @@ class FigureMaker {
     std::vector<Eigen::MatrixXd> others = columns;
     if (leading != source_.accepted.end())
       others.erase(others.begin() + (leading - source_.accepted.begin()));
-    for (const Eigen::MatrixXd& other : others) rest.accept(other);
     if (leading == source_.accepted.end()) {
+      for (const Eigen::MatrixXd& other : others) rest.accept(other);
       add_leading(rest, others, strongest());
       return;
     }
+    // The amplitude comes from all readings, and so does the line through the points.
+    Projector all(problem_, problem_.data, source_.noise, source_.threads, model_.parts());
+    for (const Eigen::MatrixXd& other : others) all.accept(other);
     figures_.leading.accepted = true;
-    add_leading(rest, others,
+    add_leading(all, others,
                 {*leading, columns[static_cast<std::size_t>(leading - source_.accepted.begin())].leftCols(
                                source_.families[*leading].amplitudes())});
   }

@@ -27,6 +27,7 @@ constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
 constexpr double kLessProbable = 0.1;    // share of log10 p, family-wise; components cost probability
 constexpr int kMostChanges = 4;
+constexpr int kNoiseRounds = 2;
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
@@ -69,23 +70,30 @@ void EffectSearch::settle(const std::function<void()>& after_a_change) {
 
 void EffectSearch::start() {
   if (options_.progress) options_.progress("noise model", 0.05);
-  model_.remove_as_fitted();
+  model_.return_to_fit();
   added_.clear();
   ladder_.clear();
+  smoothing_of_steps_.clear();
   heldout_loglik_.reset();
   find_noise();
   add_step("");
 }
 
-/// Noise of all readings; the projector that chooses sees those that are not held out.
+/// Noise of all readings, then smoothing under it by those that are not held out, as the projector that
+/// chooses; twice, since either takes the other's part.
 void EffectSearch::find_noise() {
   NoiseOptions noise;
   noise.threads = options_.threads;
   noise.uncertainty = false;
-  noise_estimate_ =
-      estimate_noise(problem_with_added(), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
-  noise_ = noise_estimate_->parameters();
-  projector_ = projector_under(noise_, std::nullopt);
+  for (int round = 0; round < (model_.smoothing().empty() ? 1 : kNoiseRounds); ++round) {
+    noise_estimate_ =
+        estimate_noise(problem_with_added(), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
+    noise_ = noise_estimate_->parameters();
+    projector_ = projector_without(std::nullopt);
+    if (model_.smoothing().empty()) return;
+    model_.smooth(projector_->gram(), projector_->observations());
+  }
+  projector_ = projector_without(std::nullopt);
 }
 
 NoiseEstimate EffectSearch::noise_with_uncertainty() const {
@@ -94,10 +102,18 @@ NoiseEstimate EffectSearch::noise_with_uncertainty() const {
   return estimate_noise(problem_with_added(), noise, &*noise_estimate_);
 }
 
-std::unique_ptr<Projector> EffectSearch::projector_under(const std::vector<NoiseParameters>& noise,
-                                                         std::optional<std::size_t> left_out) const {
-  auto projector = std::make_unique<Projector>(model_.problem(), without(model_.problem().data, heldout_),
-                                               noise, options_.threads, model_.parts());
+std::unique_ptr<Projector> EffectSearch::projector_of_all_readings() const {
+  return projector_of(model_.problem().data, std::nullopt);
+}
+
+std::unique_ptr<Projector> EffectSearch::projector_without(std::optional<std::size_t> left_out) const {
+  return projector_of(without(model_.problem().data, heldout_), left_out);
+}
+
+std::unique_ptr<Projector> EffectSearch::projector_of(const NoiseData& data,
+                                                      std::optional<std::size_t> left_out) const {
+  auto projector =
+      std::make_unique<Projector>(model_.problem(), data, noise_, options_.threads, model_.parts());
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (i != left_out) append(columns, added_[i].columns);
@@ -204,20 +220,20 @@ void EffectSearch::add_step(const std::string& added) {
   step.model = std::to_string(ladder_.size());
   step.added = added;
   ladder_.push_back(std::move(step));
+  smoothing_of_steps_.push_back(model_.smoothing());
 }
 
 /// All steps against the noise of the model reached: noise estimated beside a missing effect holds part of
 /// the effect, and would hide its fall.
 void EffectSearch::restate_ladder() {
-  Projector projector(model_.problem(), without(model_.problem().data, heldout_), noise_, options_.threads,
-                      model_.parts());
   std::vector<Eigen::MatrixXd> columns;
   heldout_loglik_.reset();
   for (std::size_t i = 0; i < ladder_.size(); ++i) {
-    if (i > 0) {
-      columns.push_back(added_[i - 1].columns);
-      projector.accept(columns.back());
-    }
+    if (i > 0) columns.push_back(added_[i - 1].columns);
+    model_.set_smoothing(smoothing_of_steps_[i]);
+    Projector projector(model_.problem(), without(model_.problem().data, heldout_), noise_, options_.threads,
+                        model_.parts());
+    for (const Eigen::MatrixXd& each : columns) projector.accept(each);
     LadderStep step = ladder_step(model_, heldout_, noise_, projector, columns, heldout_loglik_);
     step.model = ladder_[i].model;
     step.added = ladder_[i].added;
@@ -232,7 +248,7 @@ bool EffectSearch::reconsider(bool may_change) {
   for (const AddedEffect& effect : added_) kept.push_back(effect.test);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
-    std::vector<FamilyTest> tests = refined_tests(*projector_under(noise_, i));
+    std::vector<FamilyTest> tests = refined_tests(*projector_without(i));
     const FamilyTest& own = tests[kept[i].family];
     if (may_change && family_wise_log10_p(own) > kLog10FamilyRisk) {
       dropped_.insert(own.family);

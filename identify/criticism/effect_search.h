@@ -57,6 +57,8 @@ class EffectSearch {
   const std::vector<NoiseParameters>& noise() const { return noise_; }
   /// With intervals, from all readings.
   NoiseEstimate noise_with_uncertainty() const;
+  /// The model reached, from all readings: those that were held out have judged by now.
+  std::unique_ptr<Projector> projector_of_all_readings() const;
 
   /// Effects found after the one that was kept.
   bool more_is_known() const { return more_is_known_; }
@@ -72,8 +74,8 @@ class EffectSearch {
  private:
   void start();
   void find_noise();
-  std::unique_ptr<Projector> projector_under(const std::vector<NoiseParameters>& noise,
-                                             std::optional<std::size_t> left_out) const;
+  std::unique_ptr<Projector> projector_without(std::optional<std::size_t> left_out) const;
+  std::unique_ptr<Projector> projector_of(const NoiseData& data, std::optional<std::size_t> left_out) const;
   NoiseProblem problem_with_added() const;
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
@@ -112,6 +114,7 @@ class EffectSearch {
   std::set<std::size_t> dropped_;                ///< not significant beside the others
   bool more_is_known_ = false;
   std::vector<LadderStep> ladder_;
+  std::vector<std::vector<SmoothingTerm>> smoothing_of_steps_;
   std::optional<double> heldout_loglik_;
   double log10_families_ = 0.0;
   double log10_generic_ = 0.0;

@@ -20,6 +20,7 @@ namespace {
 constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
 constexpr std::size_t kDirections = 4;
+constexpr std::size_t kBeam = 3;
 constexpr Eigen::Index kBlockColumns = 256;
 
 /// What the columns of a variable are made of.
@@ -39,15 +40,36 @@ void add_variable(std::vector<ScanVariable>& variables, const std::string& name,
   variables.push_back({name, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
 }
 
+bool is_beam_geometry(const std::string& variable) { return variable == "length" || variable == "elevation"; }
+
+bool is_machine_state(const std::string& variable) {
+  return variable.size() == 1 || variable.starts_with("dir_");
+}
+
+/// Does a displacement along X, Y or Z, or a change of what a beam reads, have a reason to follow these
+/// variables? The machine does not know the beam, nor which station looks at it; a station that moves does so
+/// in time; and a beam does not know the machine but by its own length and elevation.
+bool has_reason(const std::string& a, const std::string& b, bool along_beam) {
+  const auto of_either = [&](const auto& is) { return is(a) || is(b); };
+  if (along_beam) return !of_either(is_machine_state);
+  if (of_either(is_beam_geometry)) return false;
+  const auto is_station = [](const std::string& name) { return name.starts_with("station "); };
+  const auto is_tool = [](const std::string& name) { return name.starts_with("tool "); };
+  return !of_either(is_station) || !(of_either(is_machine_state) || of_either(is_tool));
+}
+
 /// One variable, or two.
 struct ScanItem {
   std::size_t a = 0;
   std::size_t b = 0;  ///< same as a: one
   Eigen::Index polynomials = 0;
   Eigen::Index waves = 0;
+  std::vector<std::size_t> directions;
   std::size_t first_test = 0;
 
-  Eigen::Index columns() const { return static_cast<Eigen::Index>(kDirections) * (polynomials + waves); }
+  Eigen::Index columns() const {
+    return static_cast<Eigen::Index>(directions.size()) * (polynomials + waves);
+  }
 };
 
 struct ScanBlock {
@@ -77,18 +99,26 @@ class GenericScanner {
     std::vector<ScanBlock> all;
     std::size_t tests = 0;
     const auto add = [&](ScanItem item) {
+      for (std::size_t d = 0; d < kDirections; ++d) {
+        if (has_reason(variables_[item.a].name, variables_[item.b].name, d == kBeam))
+          item.directions.push_back(d);
+      }
+      if (item.directions.empty()) return;
       if (all.empty() || all.back().columns + item.columns() > kBlockColumns) all.emplace_back();
       item.first_test = tests;
       all.back().items.push_back(item);
       all.back().columns += item.columns();
-      tests += 2 * kDirections;
+      tests += 2 * item.directions.size();
     };
     for (std::size_t a = 0; a < variables_.size(); ++a) {
-      add({a, a, features_[a].powers.cols(), features_[a].waves.cols()});
+      add({a, a, features_[a].powers.cols(), features_[a].waves.cols(), {}});
       for (std::size_t b = a + 1; b < variables_.size(); ++b) {
         if (exclude_each_other(variables_[a], variables_[b])) continue;
-        add({a, b, 1 + (variables_[a].two_valued ? 0 : 1) + (variables_[b].two_valued ? 0 : 1),
-             pair_waves(a) * pair_waves(b)});
+        add({a,
+             b,
+             1 + (variables_[a].two_valued ? 0 : 1) + (variables_[b].two_valued ? 0 : 1),
+             pair_waves(a) * pair_waves(b),
+             {}});
       }
     }
     tests_.resize(tests);
@@ -110,8 +140,8 @@ class GenericScanner {
     const Eigen::Index first = model_.parts()[setup], count = columns.rows();
     const auto rows = [&](const auto& all) { return all.middleRows(first, count); };
     Eigen::Index at = 0;
-    for (const Eigen::VectorXd& all : direction_) {
-      const Eigen::VectorXd direction = rows(all);
+    for (const std::size_t d : item.directions) {
+      const Eigen::VectorXd direction = rows(direction_[d]);
       if (item.a == item.b) {
         const Features& own = features_[item.a];
         columns.middleCols(at, item.polynomials) = direction.asDiagonal() * rows(own.powers);
@@ -146,7 +176,7 @@ class GenericScanner {
                                   fill(block, setup, rows);
                                 }};
     for (const ScanItem& item : block.items) {
-      for (std::size_t d = 0; d < kDirections; ++d) {
+      for (std::size_t d = 0; d < item.directions.size(); ++d) {
         candidates.groups.insert(candidates.groups.end(), {item.polynomials, item.waves});
       }
     }
@@ -155,10 +185,11 @@ class GenericScanner {
     for (const ScanItem& item : block.items) {
       std::vector<std::string> names = {variables_[item.a].name};
       if (item.b != item.a) names.push_back(variables_[item.b].name);
-      for (std::size_t d = 0; d < kDirections; ++d) {
-        tests_[item.first_test + 2 * d] = polynomial(names, d, score_test(projected, at, item.polynomials));
+      std::size_t test = item.first_test;
+      for (const std::size_t d : item.directions) {
+        tests_[test++] = polynomial(names, d, score_test(projected, at, item.polynomials));
         at += item.polynomials;
-        tests_[item.first_test + 2 * d + 1] = kernel(names, d, projected, at, item.waves);
+        tests_[test++] = kernel(names, d, projected, at, item.waves);
         at += item.waves;
       }
     }

@@ -4,6 +4,9 @@
 ///   kernel       the same with a sum of cosines whose weights fall with frequency, as a variance component:
 ///                sees bumps, waves and kinks (score test of a variance component, Lin 1997, Biometrika 84;
 ///                its tail is that of a weighted sum of chi-squared variables)
+/// What moves the machine along X, Y or Z is looked for in what the machine knows: positions, directions of
+/// approach, time, temperatures, tool, feed; a station that moves, in time and temperatures; what changes the
+/// reading of a beam, in all that is not the machine's: length, elevation, station, time, temperatures.
 
 #include <string>
 #include <vector>

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "volcal/identify/solve/adjustment.h"
+
 namespace volcal {
 namespace {
 
@@ -26,7 +28,7 @@ ImaginedCampaign::ImaginedCampaign(const Campaign& campaign, const FitResult& re
     : measurements_(std::move(measurements)),
       instruments_(std::move(instruments)),
       campaign_(extended(campaign)),
-      model_(campaign_, result.adjustment.model) {
+      model_(campaign_, result.adjustment->model) {
   map_parameters(campaign, result);
   model_.expand_effects(parameters_);
   views_ = setup_views(campaign_, model_.binding(), model_.chain());

@@ -3,12 +3,17 @@
 #include <limits>
 #include <utility>
 
+#include "volcal/identify/solve/adjustment.h"
+
 namespace volcal {
 
 LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
     : campaign_(campaign),
-      model_(campaign, result.adjustment.model),
-      stated_sigma_(result.adjustment.stated_sigma),
+      model_(campaign, result.adjustment->model),
+      base_prior_(result.adjustment->prior),
+      reduced_(result.adjustment->reduced),
+      smoothing_as_fitted_(result.adjustment->smoothing),
+      stated_sigma_(result.adjustment->stated_sigma),
       outlier_critical_value_(result.outlier_critical_value) {
   model_.expand_effects(result.parameters);
   model_.set_second_order_remainder(result.parameters);
@@ -26,8 +31,30 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
   const DatumSpace datum(model_.layout(), campaign_.machine, result.parameters);
   linearise(model_, datum, result.parameters, observations_, problem_);
   add_sensitivity(result.parameters);
-  problem_.prior_precision = result.adjustment.prior_precision;
-  problem_.prior_mean = result.adjustment.prior_mean - result.adjustment.reduced;
+  set_smoothing(smoothing_as_fitted_);
+}
+
+void LinearModel::set_smoothing(std::vector<SmoothingTerm> smoothing) {
+  smoothing_ = std::move(smoothing);
+  GaussianPrior prior = base_prior_;
+  add_smoothing(smoothing_, prior);
+  problem_.prior_precision = std::move(prior.precision);
+  problem_.prior_mean = prior.mean - reduced_;
+}
+
+void LinearModel::smooth(const Eigen::MatrixXd& gram, std::size_t observations) {
+  if (smoothing_.empty()) return;
+  const Eigen::Index count = gram.rows() - 1, own = reduced_.size();
+  const InstrumentEquations equations{gram.topLeftCorner(count, count), -gram.col(count).head(count),
+                                      gram(count, count), static_cast<double>(observations)};
+  Eigen::VectorXd from = Eigen::VectorXd::Zero(count);
+  from.head(own) = reduced_;
+  GaussianPrior prior = GaussianPrior::none(static_cast<int>(count));
+  prior.precision.topLeftCorner(own, own) = base_prior_.precision;
+  prior.mean.head(own) = base_prior_.mean;
+  std::vector<SmoothingTerm> smoothing = smoothing_;
+  maximise_evidence({equations}, from, prior, {.variance_components = false}, {1.0}, smoothing);
+  set_smoothing(std::move(smoothing));
 }
 
 void LinearModel::add_sensitivity(const Eigen::VectorXd& parameters) {
@@ -50,7 +77,8 @@ std::size_t LinearModel::take_up(const std::function<bool(std::size_t)>& explain
   });
 }
 
-void LinearModel::remove_as_fitted() {
+void LinearModel::return_to_fit() {
+  set_smoothing(smoothing_as_fitted_);
   removed_ = removed_by_fit_;
   for (const std::size_t observation : removed_) {
     problem_.data.sigma[observation] = std::numeric_limits<double>::infinity();

@@ -11,6 +11,7 @@
 #include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/solve/campaign_noise.h"
 #include "volcal/identify/solve/result.h"
+#include "volcal/identify/solve/smoothing.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -38,8 +39,16 @@ class LinearModel {
   /// Takes up again those that a better model explains: a fit that lacks an effect takes what the effect
   /// moves most for outliers. Returns how many.
   std::size_t take_up(const std::function<bool(std::size_t observation)>& explained);
-  /// Leaves out again all that the fit removed.
-  void remove_as_fitted();
+  /// Leaves out again all that the fit removed, and smooths as it did.
+  void return_to_fit();
+
+  /// Smoothing of functions that have as many knots as the readings can tell apart; goes into the priors of
+  /// problem().
+  const std::vector<SmoothingTerm>& smoothing() const { return smoothing_; }
+  void set_smoothing(std::vector<SmoothingTerm> smoothing);
+  /// Chosen by evidence (smoothing.h) from [J G y]^T Sigma^-1 [J G y], G columns of effects without prior: a
+  /// fit that lacks an effect takes part of it for detail of the functions, or for noise that hides detail.
+  void smooth(const Eigen::MatrixXd& gram, std::size_t observations);
   /// Of all observations, those that are left out as well.
   const std::vector<double>& stated_sigma() const { return stated_sigma_; }
   /// Of the fit's outlier test.
@@ -69,6 +78,10 @@ class LinearModel {
   std::vector<SetupView> views_;
   Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;
   NoiseProblem problem_;
+  GaussianPrior base_prior_;  ///< of the reduced parameters, without smoothing
+  Eigen::VectorXd reduced_;   ///< where the model is linearised
+  std::vector<SmoothingTerm> smoothing_as_fitted_;
+  std::vector<SmoothingTerm> smoothing_;
   std::vector<double> stated_sigma_;
   std::vector<std::size_t> removed_by_fit_;
   std::vector<std::size_t> removed_;

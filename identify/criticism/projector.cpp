@@ -49,10 +49,11 @@ void Projector::factorise() {
     products[part] = Eigen::MatrixXd::Zero(count + 1, count + 1);
     add_gram_upper(whitened_[part], 1.0, products[part]);
   });
-  for (std::size_t part = 1; part < part_count(); ++part) products[0] += products[part];
-  symmetrise_from_upper(products[0]);
-  residual_squares_ = products[0](count, count);
-  Eigen::MatrixXd normal = products[0].topLeftCorner(count, count);
+  gram_ = std::move(products[0]);
+  for (std::size_t part = 1; part < part_count(); ++part) gram_ += products[part];
+  symmetrise_from_upper(gram_);
+  residual_squares_ = gram_(count, count);
+  Eigen::MatrixXd normal = gram_.topLeftCorner(count, count);
   normal.topLeftCorner(base_parameters_, base_parameters_) += precision_;
   scale_ = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   normal = scale_.asDiagonal() * normal * scale_.asDiagonal();
@@ -63,7 +64,7 @@ void Projector::factorise() {
     if (!lower) throw std::runtime_error("the model's columns are not independent");
   }
   lower_ = std::move(*lower);
-  Eigen::MatrixXd right = products[0].col(count).head(count);
+  Eigen::MatrixXd right = gram_.col(count).head(count);
   right.col(0).head(base_parameters_) += pull_;
   right = scale_.asDiagonal() * right;
   solve_lower(lower_, right);

@@ -63,6 +63,8 @@ class Projector {
   Eigen::MatrixXd accepted_covariance() const;
   /// |r~|^2: what the model leaves, in units of the noise.
   double residual_squares() const;
+  /// [J y]^T Sigma^-1 [J y], accepted columns last but for y; without prior.
+  const Eigen::MatrixXd& gram() const { return gram_; }
   /// log|Sigma| of the observations in use.
   double log_determinant() const { return whitener_.log_determinant(); }
   std::size_t observations() const { return whitener_.observations(); }
@@ -83,6 +85,7 @@ class Projector {
   Eigen::VectorXd pull_;                   ///< P m, base parameters
   double prior_squares_ = 0.0;
   double residual_squares_ = 0.0;
+  Eigen::MatrixXd gram_;
   Eigen::VectorXd scale_;
   Eigen::MatrixXd lower_;    ///< C of the columns times scale_
   Eigen::VectorXd rotated_;  ///< C^-1 (J_w^T r_w + P m)

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
@@ -23,7 +24,9 @@ namespace {
 constexpr double kImplausibleResidual = 0.02;  // nominal machine, share of the setup's extent
 constexpr double kFurthestStationMiss = 1.0;   // m
 constexpr int kEvidenceRounds = 2;
-constexpr int kOutlierRounds = 10;
+constexpr int kOutlierRounds = 60;
+constexpr double kMostOutliers = 0.25;  // of a setup: beyond, the model or the stated noise is wrong
+constexpr double kSurelyAsWell = 0.7;   // of the largest |w| of a setup: leaves in the same round
 
 class Stopwatch {
  public:
@@ -207,10 +210,9 @@ class Identification {
     base_prior_ = priors;
     hold_undetermined(wide);
     terms_ = smoothing_terms(model_, *datum_);
-    for (SmoothingTerm& term : terms_) {
-      term.estimate =
-          std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
-    }
+    std::erase_if(terms_, [this](const SmoothingTerm& term) {  // nothing says how rough what is not seen is
+      return std::ranges::find(rank_.invisible_functions, term.symbol) != rank_.invisible_functions.end();
+    });
   }
 
   /// The wide prior, where there is no other, on what the readings may not determine.
@@ -348,20 +350,14 @@ class Identification {
                                          result_.outlier_critical_value, threads_);
   }
 
-  /// Data snooping: the worst of each round's flagged readings go, one per setup and round.
+  /// Data snooping: the worst of each round's flagged readings go, setup by setup.
   void remove_outliers() {
     update_residuals();
     if (options_.outliers != OutlierPolicy::Remove) return;
     for (int round = 0; round < kOutlierRounds; ++round) {
-      std::map<std::size_t, std::size_t> worst;
-      for (std::size_t i = 0; i < result_.residuals.size(); ++i) {
-        const ResidualRecord& record = result_.residuals[i];
-        if (!record.flagged || record.removed) continue;
-        const auto [place, is_new] = worst.try_emplace(record.setup, i);
-        if (std::abs(record.w) > std::abs(result_.residuals[place->second].w)) place->second = i;
-      }
+      const std::vector<std::size_t> worst = worst_outliers(result_.residuals, kSurelyAsWell, kMostOutliers);
       if (worst.empty()) break;
-      for (const auto& [setup, i] : worst) removed_[i] = true;
+      for (const std::size_t i : worst) removed_[i] = true;
       readjust();
       update_residuals();
     }
@@ -378,8 +374,8 @@ class Identification {
   }
 
   void finish() {
-    const GaussianPrior last_prior = prior();
-    result_.adjustment = {spec_, z_, last_prior.precision, last_prior.mean, stated_sigma_};
+    result_.adjustment =
+        std::make_shared<const Adjustment>(Adjustment{spec_, z_, base_prior_, terms_, stated_sigma_});
     result_.parameters = parameters_;
     result_.layout = model_.layout();
     result_.covariance += datum_->expand_covariance(amplitude_covariance(terms_, reduced_covariance_, z_));

@@ -213,6 +213,8 @@ class RankAnalyser {
     const SymmetricEigen eigen = eigen_decomposition(gain);
     analysis_.report.rank = static_cast<int>((eigen.values.array() > kGainOfVisible).count());
     const int hidden = datum_.size() - analysis_.report.rank;
+    hidden_.resize(datum_.size(), hidden);
+    if (hidden == 0) return;
     const Eigen::ArrayXd shrink = (1.0 + eigen.values.head(hidden).array().max(0.0)).rsqrt();
     hidden_ = root->transpose().triangularView<Eigen::Upper>().solve(eigen.vectors.leftCols(hidden) *
                                                                      shrink.matrix().asDiagonal());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <thread>
 
 #include "volcal/identify/stats/normal.h"
@@ -97,6 +98,30 @@ std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const st
   work(0, readings / count);
   for (std::thread& worker : workers) worker.join();
   return records;
+}
+
+std::vector<std::size_t> worst_outliers(const std::vector<ResidualRecord>& records, double nearly,
+                                        double most) {
+  struct Own {
+    double largest = 0.0;
+    double observations = 0.0;
+    double removed = 0.0;
+  };
+  std::map<std::size_t, Own> setups;
+  const auto in_question = [](const ResidualRecord& record) { return record.flagged && !record.removed; };
+  for (const ResidualRecord& record : records) {
+    Own& setup = setups[record.setup];
+    setup.observations += 1.0;
+    setup.removed += record.removed ? 1.0 : 0.0;
+    if (in_question(record)) setup.largest = std::max(setup.largest, std::abs(record.w));
+  }
+  std::vector<std::size_t> worst;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Own& setup = setups[records[i].setup];
+    if (!in_question(records[i]) || setup.removed > most * setup.observations) continue;
+    if (std::abs(records[i].w) >= nearly * setup.largest) worst.push_back(i);
+  }
+  return worst;
 }
 
 std::vector<SetupSummary> setup_summaries(const Campaign& campaign,

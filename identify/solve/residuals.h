@@ -23,6 +23,11 @@ std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const st
                                              const Eigen::MatrixXd& covariance, double critical_value,
                                              int threads);
 
+/// What leaves next: of every setup the flagged reading with the largest |w|, and those with at least the
+/// share `nearly` of it; nothing of a setup that has lost more than the share `most` of its observations.
+std::vector<std::size_t> worst_outliers(const std::vector<ResidualRecord>& records, double nearly,
+                                        double most);
+
 /// Chi-squared, redundancy, RMS and largest residual per setup. `stated_sigma` per observation.
 std::vector<SetupSummary> setup_summaries(const Campaign& campaign,
                                           const std::vector<ResidualRecord>& records,

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -107,14 +108,7 @@ struct Timing {
   double seconds = 0.0;
 };
 
-/// State of the last adjustment, for what criticises it; not written to files.
-struct Adjustment {
-  ModelSpec model;                  ///< with breakpoints, as it was before the fit
-  Eigen::VectorXd reduced;          ///< parameters in the coordinates of the datum (datum.h)
-  Eigen::MatrixXd prior_precision;  ///< of `reduced`: smoothing, stated priors, wide ones
-  Eigen::VectorXd prior_mean;
-  std::vector<double> stated_sigma;  ///< per observation, SI
-};
+struct Adjustment;
 
 struct FitResult {
   FitStatus status = FitStatus::Ok;
@@ -144,7 +138,7 @@ struct FitResult {
   RankReport rank;
   std::vector<ResidualRecord> residuals;
   std::vector<Timing> timings;
-  Adjustment adjustment;
+  std::shared_ptr<const Adjustment> adjustment;  ///< adjustment.h; null in a result read from files
 };
 
 }  // namespace volcal

@@ -217,7 +217,7 @@ class EvidenceSearch {
       : equations_(equations), z0_(z0), prior_(prior), options_(options) {
     for (std::size_t t = 0; t < terms.size(); ++t) {
       stretches_.push_back({&terms[t], terms[t].offset});
-      if (terms[t].estimate) axes_[terms[t].symbol.axis].push_back(t);
+      axes_[terms[t].symbol.axis].push_back(t);
     }
   }
 
@@ -326,8 +326,8 @@ class EvidenceSearch {
   const Eigen::VectorXd& z0_;
   const GaussianPrior& prior_;
   const EvidenceOptions& options_;
-  std::vector<Stretch> stretches_;                     ///< one per term
-  std::map<AxisName, std::vector<std::size_t>> axes_;  ///< terms to estimate
+  std::vector<Stretch> stretches_;  ///< one per term
+  std::map<AxisName, std::vector<std::size_t>> axes_;
 };
 
 }  // namespace
@@ -346,8 +346,8 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
       shapes = std::make_shared<const std::vector<PriorShape>>(prior_shapes(basis, axis, function.basis));
     }
     if (shapes->empty()) continue;
-    SmoothingTerm term{function.symbol, function.offset, shapes, kStartPlace, 0.0, true};
-    term.lambda = 1.0 / (kStartAmplitude * kStartAmplitude);
+    SmoothingTerm term{function.symbol, function.offset, shapes, kStartPlace,
+                       1.0 / (kStartAmplitude * kStartAmplitude)};
     terms.push_back(std::move(term));
   }
   return terms;
@@ -378,25 +378,21 @@ EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equation
 
 Eigen::MatrixXd amplitude_covariance(const std::vector<SmoothingTerm>& terms,
                                      const Eigen::MatrixXd& covariance, const Eigen::VectorXd& z) {
-  std::vector<const SmoothingTerm*> free;
-  for (const SmoothingTerm& term : terms) {
-    if (term.estimate) free.push_back(&term);
-  }
-  const auto count = static_cast<Eigen::Index>(free.size());
+  const auto count = static_cast<Eigen::Index>(terms.size());
   if (count == 0) return Eigen::MatrixXd::Zero(z.size(), z.size());
   Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(z.size(), count);  // lambda S z
   for (Eigen::Index i = 0; i < count; ++i) {
-    const SmoothingTerm& term = *free[static_cast<std::size_t>(i)];
+    const SmoothingTerm& term = terms[static_cast<std::size_t>(i)];
     const Eigen::Index n = term.precision().rows();
     pull.col(i).segment(term.offset, n) = term.lambda * (term.precision() * z.segment(term.offset, n));
   }
   const Eigen::MatrixXd change = -covariance * pull;  // dz / dlog lambda
   Eigen::MatrixXd hessian = pull.transpose() * change;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const SmoothingTerm& a = *free[static_cast<std::size_t>(i)];
+    const SmoothingTerm& a = terms[static_cast<std::size_t>(i)];
     const Eigen::Index rows = a.precision().rows();
     for (Eigen::Index j = 0; j < count; ++j) {
-      const SmoothingTerm& b = *free[static_cast<std::size_t>(j)];
+      const SmoothingTerm& b = terms[static_cast<std::size_t>(j)];
       const Eigen::MatrixXd cross = covariance.block(a.offset, b.offset, rows, b.precision().rows());
       hessian(i, j) -=
           0.5 * a.lambda * b.lambda * (a.precision() * cross).cwiseProduct(cross * b.precision()).sum();

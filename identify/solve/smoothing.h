@@ -31,8 +31,7 @@ struct SmoothingTerm {
   int offset = 0;  ///< in the reduced vector
   std::shared_ptr<const std::vector<PriorShape>> shapes;
   std::size_t shape = 0;
-  double lambda = 0.0;   ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
-  bool estimate = true;  ///< false: held (nothing in the data speaks about it)
+  double lambda = 0.0;  ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
 
   const PriorShape& prior_shape() const { return (*shapes)[shape]; }
   const Eigen::MatrixXd& precision() const { return prior_shape().precision; }  ///< of unit amplitude

@@ -10,6 +10,7 @@ namespace volcal {
 namespace {
 
 constexpr double kSignificanceOfLackOfFit = 1e-3;
+constexpr double kContradicted = 5.0;       // standard deviations of a prior
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
 
 void report_stated_sigma(FitResult& result) {
@@ -56,14 +57,38 @@ void report_outliers(FitResult& result) {
                                              [](const ResidualRecord& r) { return r.flagged && !r.removed; });
   const auto removed = std::ranges::count_if(result.residuals, &ResidualRecord::removed);
   if (flagged > 0) {
-    result.messages.push_back(
-        std::to_string(flagged) +
-        " readings are flagged by the w-test and still in the adjustment; they are listed in "
-        "residuals.csv (--outliers remove takes them out)");
+    result.messages.push_back(std::to_string(flagged) +
+                              " readings are flagged by the w-test and still in the adjustment; they are "
+                              "listed in residuals.csv (" +
+                              (removed == 0 ? "--outliers remove takes them out"
+                                            : "so many were removed before that the model or the stated "
+                                              "noise must be in doubt: run `volcal compare`") +
+                              ")");
   }
   if (removed > 0) {
     result.messages.push_back(std::to_string(removed) +
                               " readings were removed by the w-test; they are listed in residuals.csv");
+  }
+}
+
+/// A stated guess that the readings contradict is a mistake in a file, or a model that lacks something.
+void report_contradicted_priors(FitResult& result) {
+  for (const ParameterBlock& block : result.layout.blocks) {
+    for (int k = 0; k < block.size(); ++k) {
+      if (block.prior_sigma[k] == 0.0) continue;
+      const double miss = result.parameters[block.offset + k] - block.prior_mean[k];
+      if (std::abs(miss) < kContradicted * block.prior_sigma[k]) continue;
+      const auto at = static_cast<std::size_t>(k);
+      std::ostringstream text;
+      text.precision(3);
+      text << block.name << (block.labels[at].empty() ? "" : " " + block.labels[at]) << ": estimated "
+           << std::abs(miss) / block.si_per_unit[at] << ' ' << block.units[at]
+           << " away from what the files say, " << std::abs(miss) / block.prior_sigma[k] << " times its "
+           << (block.weak_default_prior ? "default" : "stated") << " standard deviation of "
+           << block.prior_sigma[k] / block.si_per_unit[at] << ' ' << block.units[at]
+           << "; correct the value, or state a larger one";
+      result.messages.push_back(text.str());
+    }
   }
 }
 
@@ -114,6 +139,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
   for (const std::string& sentence : result.rank.invisible) result.messages.push_back(sentence);
   report_outliers(result);
+  report_contradicted_priors(result);
   report_unrecorded_drivers(campaign, binding, result);
   if (lack) report_lack_of_fit(result);
   if (!end.converged)

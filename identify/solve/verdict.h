@@ -12,7 +12,7 @@ struct AdjustmentEnd {
 };
 
 /// Sets status and appends messages: stated sigma that is wrong, noise that is more than white, what is not
-/// visible, outliers, drivers that were not recorded, lack of fit.
+/// visible, outliers, stated guesses that are contradicted, drivers that were not recorded, lack of fit.
 void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
            FitResult& result);
 

@@ -159,12 +159,18 @@ class CampaignRun {
     record_.wanted_readings = readings;
   }
 
+  std::optional<sim::Study> study() {
+    if (!find_visible()) return std::nullopt;
+    return hiding(plan_.study, hidden_.effects);
+  }
+
   CampaignRecord run() {
-    if (!find_visible()) {
+    const std::optional<sim::Study> drawn = study();
+    if (!drawn) {
       record_.failure = "no effect drawn is visible in this layout";
       return std::move(record_);
     }
-    const sim::SimulatedCampaign simulated = sim::simulate(hiding(plan_.study, hidden_.effects));
+    const sim::SimulatedCampaign simulated = sim::simulate(*drawn);
     describe(simulated.campaign);
     const FitResult given = fitted(simulated.campaign, {});
     DiagnoseOptions options;
@@ -351,6 +357,11 @@ class CampaignRun {
 
 CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings) {
   return CampaignRun(row, index, seed, readings).run();
+}
+
+std::optional<sim::Study> study_of_campaign(const std::string& row, int index, std::uint64_t seed,
+                                            int readings) {
+  return CampaignRun(row, index, seed, readings).study();
 }
 
 }  // namespace volcal::cli

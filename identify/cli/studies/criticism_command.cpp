@@ -1,21 +1,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/criticism.h"
+#include "volcal/identify/cli/studies/criticism_campaign.h"
 #include "volcal/identify/cli/studies/criticism_figures.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
 #include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal::cli {
 namespace {
 
 struct Arguments {
   CriticismOptions options;
+  std::string one;  ///< ROW:INDEX
   bool json = false;
 };
 
@@ -74,7 +80,34 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
   return json;
 }
 
+/// One campaign as files, for a closer look.
+int write_one(const Arguments& arguments) {
+  const CriticismOptions& options = arguments.options;
+  const std::size_t colon = arguments.one.find(':');
+  const std::string row = arguments.one.substr(0, colon), number = arguments.one.substr(colon + 1);
+  int index = -1;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
+  const bool is_number = error == std::errc() && end == number.data() + number.size() && index >= 0;
+  if (colon == std::string::npos || !is_number ||
+      std::ranges::find(criticism_rows(), row) == criticism_rows().end()) {
+    throw InputError({"--one " + arguments.one, 0}, "it is no row and index", "write listed:11");
+  }
+  if (options.output.empty()) throw InputError({"--one", 0}, "it needs a folder", "add -o FOLDER");
+  const auto study = study_of_campaign(row, index, options.seed, options.readings);
+  if (!study) {
+    throw InputError({"--one " + arguments.one, 0}, "no effect drawn is visible in this layout",
+                     "choose another index");
+  }
+  AtomicFolder folder(options.output);
+  write_simulation(sim::simulate(*study), folder);
+  folder.commit();
+  fmt::print("campaign {} of row {} written to {}\nnext: volcal diagnose {}/campaign.toml --auto\n", index,
+             row, options.output, options.output);
+  return kDone;
+}
+
 int run(Arguments arguments) {
+  if (!arguments.one.empty()) return write_one(arguments);
   CriticismOptions& options = arguments.options;
   if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
   ProgressBar bar("criticism");
@@ -109,6 +142,8 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("-o,--output", options.output,
                  "folder that keeps every finished campaign (campaigns.jsonl)");
   app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  app.add_option("--one", arguments->one,
+                 "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
       ->check(CLI::NonNegativeNumber);
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
@@ -122,7 +157,8 @@ const Command& criticism_study() {
       "criticism", "effects hidden in simulated campaigns: what diagnose says of them, counted",
       "  volcal study criticism --rows null,listed -n 40 -o counted\n"
       "  volcal study criticism --rows null,listed -n 200 -o counted --resume\n"
-      "  volcal study criticism --rows unlisted -n 20 --json\n",
+      "  volcal study criticism --rows unlisted -n 20 --json\n"
+      "  volcal study criticism --one listed:11 -o campaign\n",
       define};
   return command;
 }

@@ -32,7 +32,7 @@ TEST(LinearModel, TakesUpReadingsAndLeavesThemOutAgain) {
   EXPECT_EQ(model.take_up([](std::size_t) { return true; }), 1U);
   EXPECT_THAT(model.removed(), IsEmpty());
 
-  model.remove_as_fitted();
+  model.return_to_fit();
   EXPECT_THAT(model.removed(), ElementsAre(4U, 9U, 20U));
   EXPECT_TRUE(std::isinf(sigma[4]) && std::isinf(sigma[9]) && std::isinf(sigma[20]));
 }

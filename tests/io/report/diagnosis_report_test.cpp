@@ -126,7 +126,10 @@ TEST_F(DiagnosisReport, EvidenceHasItsThreshold) {
   const json evidence = page("evidence");
   EXPECT_NEAR(evidence.at("threshold").get<double>(), -2.301, 1e-3);  // 0.5 %
   EXPECT_EQ(evidence.at("added").size(), 1U);
-  EXPECT_EQ(evidence.at("alternatives").at(0).at("label"), "reversal EYY");
+  const json& sets = evidence.at("alternatives");
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_EQ(sets.at(0).at(0).at("label"), "reversal EYY");
+  EXPECT_EQ(sets.at(1).at(0).at("label"), "reversal EZZ");
   EXPECT_EQ(evidence.at("ranking").size(), 3U);
   EXPECT_EQ(evidence.at("ranking").at(0).at("visible_fraction"), 0.75);
 }
@@ -138,7 +141,7 @@ TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
   ASSERT_EQ(effects.size(), 3U);
   EXPECT_EQ(effects.at(0).at("role"), "added");
   EXPECT_EQ(effects.at(1).at("role"), "alternative");
-  EXPECT_EQ(effects.at(2).at("role"), "candidate");
+  EXPECT_EQ(effects.at(2).at("role"), "alternative");  // of a further set
   EXPECT_EQ(effects.at(0).at("name"), "reversal:EXX:dir_x:step");
   EXPECT_TRUE(effects.at(0).at("can_be_asked").get<bool>());
   const json& limit = effects.at(0).at("limits").at(0);
@@ -194,6 +197,10 @@ TEST_F(DiagnosisReport, AnAlternativeIsNotSaidToBeAdded) {
   EXPECT_FALSE(page("added_variable").at("alternative").get<bool>());
   diagnosis_.one_of = diagnosis_.effects;
   diagnosis_.effects.clear();
+  document_ = json::parse(report_json(diagnosis_, campaign_));
+  EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
+  diagnosis_.further_one_of = {diagnosis_.one_of};
+  diagnosis_.one_of = {testing::found_effect("reversal", "EYY", 1e-6)};
   document_ = json::parse(report_json(diagnosis_, campaign_));
   EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
   EXPECT_THAT(page("story").at("after").at(0).get<std::string>(),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
@@ -158,7 +159,7 @@ std::string noise_table_text(const NoiseSummary& noise) {
   return text.text();
 }
 
-std::string outliers_table(const FitResult& result) {
+std::string outliers_table(const FitResult& result, const Campaign& campaign) {
   std::vector<const ResidualRecord*> flagged;
   for (const ResidualRecord& record : result.residuals) {
     if (record.flagged || record.removed) flagged.push_back(&record);
@@ -176,7 +177,8 @@ std::string outliers_table(const FitResult& result) {
   for (std::size_t i = 0; i < std::min(kListedOutliers, flagged.size()); ++i) {
     const ResidualRecord& record = *flagged[i];
     text.add_row({result.setups[record.setup].name, std::to_string(record.source_line),
-                  fixed_number(record.residual() * 1e6, 2), result.setups[record.setup].reading_unit,
+                  fixed_number(record.residual() * 1e6, 2),
+                  residual_unit(campaign.setups[record.setup], static_cast<std::size_t>(record.channel)),
                   fixed_number(record.w, 1), fixed_number(record.redundancy, 2),
                   record.removed ? "removed" : "kept"});
   }
@@ -215,8 +217,9 @@ std::string rank_text(const FitResult& result) {
 
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result, campaign) + reference_line(result);
-  for (const std::string& part : {errors_table(result), setups_table(result), variance_table(result),
-                                  noise_table_text(result.noise), outliers_table(result), notes(result)}) {
+  for (const std::string& part :
+       {errors_table(result), setups_table(result), variance_table(result), noise_table_text(result.noise),
+        outliers_table(result, campaign), notes(result)}) {
     if (!part.empty()) text += "\n" + part;
   }
   return text;

@@ -22,4 +22,18 @@ bool is_angle_channel(const Setup& setup, std::size_t channel) {
   return unit == "urad" || unit == "mrad" || unit == "rad" || unit == "deg";
 }
 
+std::vector<std::vector<bool>> angle_channels(const Campaign& campaign) {
+  std::vector<std::vector<bool>> is_angle;
+  for (const Setup& setup : campaign.setups) {
+    is_angle.emplace_back();
+    for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel)
+      is_angle.back().push_back(is_angle_channel(setup, channel));
+  }
+  return is_angle;
+}
+
+std::string residual_unit(const Setup& setup, std::size_t channel) {
+  return is_angle_channel(setup, channel) ? "urad" : "um";
+}
+
 }  // namespace volcal

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/stats/channels.h"
 
 namespace volcal::report {
 namespace {
@@ -30,7 +31,8 @@ Json outliers_page(const PageInput& input) {
                     {"instrument", setup.instrument},
                     {"file_line", record.source_line},
                     {"channel", record.channel},
-                    {"unit", shown_unit(setup.reading_unit)},
+                    {"unit", shown_unit(residual_unit(input.campaign.setups[record.setup],
+                                                      static_cast<std::size_t>(record.channel)))},
                     {"residual", rounded(record.residual() * kPerMicro, 4)},
                     {"sigma", rounded(record.sigma * kPerMicro, 3)},
                     {"redundancy", rounded(record.redundancy, 3)},

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/residual_sample.h"
+#include "volcal/identify/stats/channels.h"
 
 namespace volcal::report {
 namespace {
@@ -101,27 +102,27 @@ Json plots(const PageInput& input, const std::vector<std::size_t>& drawn) {
   return list;
 }
 
-Json drawn_records(const FitResult& result, const std::vector<std::size_t>& drawn) {
+Json drawn_records(const PageInput& input, const std::vector<std::size_t>& drawn) {
+  const std::vector<std::vector<bool>> is_angle = angle_channels(input.campaign);
   Json setup = Json::array();
   Json line = Json::array();
   Json residual = Json::array();
   Json sigma = Json::array();
   Json w = Json::array();
   Json flag = Json::array();
+  Json angle = Json::array();
   for (const std::size_t i : drawn) {
-    const ResidualRecord& record = result.residuals[i];
+    const ResidualRecord& record = input.result.residuals[i];
     setup.push_back(record.setup);
+    angle.push_back(is_angle[record.setup][static_cast<std::size_t>(record.channel)] ? 1 : 0);
     line.push_back(record.source_line);
     residual.push_back(rounded(record.residual() * kPerMicro, 3));
     sigma.push_back(rounded(record.sigma * kPerMicro, 3));
     w.push_back(rounded(record.w, 3));
     flag.push_back(record.removed ? 2 : record.flagged ? 1 : 0);
   }
-  return {{"setup", std::move(setup)},
-          {"file_line", std::move(line)},
-          {"residual", std::move(residual)},
-          {"sigma", std::move(sigma)},
-          {"w", std::move(w)},
+  return {{"setup", std::move(setup)},       {"file_line", std::move(line)}, {"angle", std::move(angle)},
+          {"residual", std::move(residual)}, {"sigma", std::move(sigma)},    {"w", std::move(w)},
           {"flag", std::move(flag)}};
 }
 
@@ -157,7 +158,6 @@ Json by_setup(const PageInput& input) {
     rows.push_back({{"name", result.setups[i].name},
                     {"instrument", result.setups[i].instrument},
                     {"station", options.text("station").value_or("")},
-                    {"unit", shown_unit(result.setups[i].reading_unit)},
                     {"mean_w", rounded(count[i] > 0 ? sum[i] / count[i] : nan(), 3)},
                     {"rms_w", rounded(count[i] > 0 ? std::sqrt(square[i] / count[i]) : nan(), 4)},
                     {"count", count[i]}});
@@ -173,7 +173,7 @@ Json residuals_page(const PageInput& input) {
   return {{"total", result.residuals.size()},
           {"drawn", drawn.size()},
           {"critical", rounded(result.outlier_critical_value, 4)},
-          {"records", drawn_records(result, drawn)},
+          {"records", drawn_records(input, drawn)},
           {"plots", plots(input, drawn)},
           {"setups", by_setup(input)},
           {"histogram", histogram(result.residuals)}};

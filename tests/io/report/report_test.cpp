@@ -12,6 +12,7 @@
 
 #include "tests/io/report/synthetic_fit.h"
 #include "volcal/identify/report/correlation.h"
+#include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/residual_sample.h"
 
@@ -194,6 +195,32 @@ TEST_F(ReportTest, NeedsNoNetwork) {
   const std::string page = report_html(fit_->result, fit_->campaign);
   for (const char* loading : {"<script src", "<link rel=\"stylesheet\"", "@import", "url(http"}) {
     EXPECT_EQ(page.find(loading), std::string::npos) << loading;
+  }
+}
+
+/// A tracker whose every channel is suspect: a length, an azimuth, an elevation.
+TEST(ReportOfATracker, ReadingsHaveTheUnitOfTheirChannel) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  volcal::Setup& tracker = fit.campaign.setups[0];
+  tracker.instrument = "laser-tracker";
+  tracker.readings.value.resize(3, tracker.readings.value[0]);
+  const ResidualRecord first = fit.result.residuals.front();
+  fit.result.residuals.assign(3, first);
+  for (int channel = 0; channel < 3; ++channel) {
+    ResidualRecord& record = fit.result.residuals[static_cast<std::size_t>(channel)];
+    record.channel = channel;
+    record.w = 9.0 - channel;
+    record.flagged = true;
+  }
+  const json document = json::parse(report_json(fit.result, fit.campaign));
+  const json rows = page_data(document, "outliers").at("rows");
+  const std::string summary = fit_summary_text(fit.result, fit.campaign);
+  for (const int channel : {0, 1, 2}) {
+    const auto k = static_cast<std::size_t>(channel);
+    EXPECT_EQ(rows.at(k).at("unit"), channel == 0 ? "µm" : "µrad");
+    EXPECT_EQ(page_data(document, "residuals").at("records").at("angle").at(k), channel == 0 ? 0 : 1);
+    EXPECT_THAT(summary, ::testing::ContainsRegex((channel == 0 ? " um +" : " urad +") +
+                                                  std::to_string(9 - channel) + "\\.0 "));
   }
 }
 

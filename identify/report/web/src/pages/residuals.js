@@ -12,10 +12,10 @@ class ResidualView {
     this.data = data;
     this.mode = 'w';
     this.instruments = [...new Set(data.setups.map((setup) => setup.instrument))];
-    this.units = [...new Set(data.setups.map((setup) => setup.unit))];
+    this.units = [...new Set([...data.records.angle.keys()].map((i) => this.unitOf(i)))];
   }
 
-  unitOf(i) { return this.data.setups[this.data.records.setup[i]].unit; }
+  unitOf(i) { return this.data.records.angle[i] ? 'µrad' : 'µm'; }
 
   /** Indices of the drawn readings that the chosen ordinate can show. */
   rows(x) {
@@ -46,7 +46,7 @@ class ResidualView {
   hover(i) {
     const { records, setups } = this.data;
     const setup = setups[records.setup[i]];
-    return `<b>${setup.name}</b> (${setup.instrument}), line ${records.file_line[i]}<br>residual ${fixed(records.residual[i], 2)} ${setup.unit}, σ ${fixed(records.sigma[i], 2)} ${setup.unit}, w ${fixed(records.w[i], 2)}`;
+    return `<b>${setup.name}</b> (${setup.instrument}), line ${records.file_line[i]}<br>residual ${fixed(records.residual[i], 2)} ${this.unitOf(i)}, σ ${fixed(records.sigma[i], 2)} ${this.unitOf(i)}, w ${fixed(records.w[i], 2)}`;
   }
 }
 

@@ -279,7 +279,7 @@ TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
   reversal.units = {"urad"};
   reversal.si_per_unit = {1e-6};
   reversal.offset = result.layout.size++;
-  reversal.guess = Eigen::VectorXd::Zero(1);
+  reversal.guess = reversal.prior_mean = reversal.prior_sigma = Eigen::VectorXd::Zero(1);
   result.layout.blocks.push_back(reversal);
   result.parameters.conservativeResize(result.layout.size);
   result.parameters[reversal.offset] = 8e-6;

@@ -263,7 +263,7 @@ std::string worst_text(const Campaign& campaign, std::span<const ComparedModel> 
       row.push_back(fixed_number(model.records[i].residual() * 1e6, 2));
     if (two) row.push_back(fixed_number((models[1].records[i].residual() - record.residual()) * 1e6, 2));
     row.push_back(fixed_number(record.sigma * 1e6, 2));
-    row.emplace_back(is_angle_channel(setup, channel) ? "urad" : "um");
+    row.push_back(residual_unit(setup, channel));
     for (const ComparedModel& model : models) {
       row.push_back(fixed_number(model.records[i].residual() / model.records[i].sigma, 1));
     }

@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "volcal/identify/report/residual_sample.h"
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
@@ -35,15 +39,16 @@ std::string reference_line(const FitResult& result) {
 /// Range of a function and its largest uncertainty where it was measured.
 void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
                       const Observability& error, TextTable& text) {
-  double low = 1e300, high = -1e300, largest_u = 0.0;
-  bool rotation = false;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double low = kNone, high = kNone, largest_u = kNone;
   for (const ErrorTableRow& row : table) {
     if (row.symbol != error.symbol || row.extrapolated) continue;
-    low = std::min(low, row.value);
-    high = std::max(high, row.value);
-    largest_u = std::max(largest_u, row.u);
-    rotation = row.rotation;
+    low = std::fmin(low, row.value);
+    high = std::fmax(high, row.value);
+    largest_u = std::fmax(largest_u, row.u);
   }
+  const auto symbol = ErrorSymbol::parse(error.symbol);
+  const bool rotation = symbol && is_rotation(symbol->component);
   const auto value = [](double si) { return fixed_number(si * 1e6, 2); };
   text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(low) : "-",
                 error.visible ? value(high) : "-", value(result.coverage_factor * error.u_rms),
@@ -110,26 +115,6 @@ std::string variance_table(const FitResult& result) {
   return text.text();
 }
 
-struct EdgeUnit {
-  double si;
-  std::string name;
-};
-
-EdgeUnit edge_unit(const NoiseRow& row, const std::string& instrument) {
-  const std::string unit = instrument == "angle" ? "urad" : "um";
-  if (row.unit == "m or rad") return {1e-6, unit};
-  if (row.unit == "m/m") return {1e-6, unit + "/m"};
-  return {1.0, row.unit == "1" ? "" : row.unit};
-}
-
-std::string noise_name(const std::string& term) {
-  if (term == "white") return "independent, times the stated sigma";
-  if (term == "wander") return "slow wander";
-  if (term == "tau") return "  its correlation time";
-  if (term == "line") return "offset of a line";
-  return "in proportion to length";
-}
-
 std::string noise_table_text(const NoiseSummary& noise) {
   if (!noise.estimated) return "Noise: readings taken as independent; nothing else was looked for.\n";
   if (!noise.more_than_white)
@@ -149,19 +134,19 @@ std::string noise_table_text(const NoiseSummary& noise) {
   for (const NoiseRow& row : noise.rows) {
     if (row.value == 0.0) continue;
     const std::string& instrument = noise.instruments[row.instrument];
-    const EdgeUnit unit = edge_unit(row, instrument);
+    const EdgeNoise edge = edge_noise(row, instrument);
     const bool of_term = std::isfinite(row.likelihood_ratio) && row.term != "tau";
-    text.add_row({instrument, noise_name(row.term), short_number(row.value / unit.si, 3),
-                  short_number(row.low / unit.si, 2) + " .. " + short_number(row.high / unit.si, 2),
-                  unit.name, of_term ? fixed_number(row.likelihood_ratio, 1) : ""});
+    text.add_row({instrument, edge.meaning, short_number(edge.value, 3),
+                  short_number(edge.low, 2) + " .. " + short_number(edge.high, 2), edge.unit,
+                  of_term ? fixed_number(row.likelihood_ratio, 1) : ""});
   }
   return text.text();
 }
 
-std::string outliers_table(const FitResult& result) {
+std::string outliers_table(const FitResult& result, const Campaign& campaign) {
   std::vector<const ResidualRecord*> flagged;
   for (const ResidualRecord& record : result.residuals) {
-    if (record.flagged || record.removed) flagged.push_back(&record);
+    if (report::is_suspect(record)) flagged.push_back(&record);
   }
   if (flagged.empty()) return {};
   std::ranges::sort(flagged, std::greater<>(), [](const ResidualRecord* r) { return std::abs(r->w); });
@@ -176,7 +161,8 @@ std::string outliers_table(const FitResult& result) {
   for (std::size_t i = 0; i < std::min(kListedOutliers, flagged.size()); ++i) {
     const ResidualRecord& record = *flagged[i];
     text.add_row({result.setups[record.setup].name, std::to_string(record.source_line),
-                  fixed_number(record.residual() * 1e6, 2), result.setups[record.setup].reading_unit,
+                  fixed_number(record.residual() * 1e6, 2),
+                  residual_unit(campaign.setups[record.setup], static_cast<std::size_t>(record.channel)),
                   fixed_number(record.w, 1), fixed_number(record.redundancy, 2),
                   record.removed ? "removed" : "kept"});
   }
@@ -215,8 +201,9 @@ std::string rank_text(const FitResult& result) {
 
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result, campaign) + reference_line(result);
-  for (const std::string& part : {errors_table(result), setups_table(result), variance_table(result),
-                                  noise_table_text(result.noise), outliers_table(result), notes(result)}) {
+  for (const std::string& part :
+       {errors_table(result), setups_table(result), variance_table(result), noise_table_text(result.noise),
+        outliers_table(result, campaign), notes(result)}) {
     if (!part.empty()) text += "\n" + part;
   }
   return text;

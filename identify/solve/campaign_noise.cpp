@@ -57,7 +57,7 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
     const Setup& setup = model.campaign().setups[setup_index];
     const Readings& readings = setup.readings;
     if (!removed.empty() && removed[i]) noise.data.sigma[i] = std::numeric_limits<double>::infinity();
-    noise.data.length.push_back(model.bound(setup_index).noise_length(row, 0));
+    noise.data.length.push_back(model.bound(setup_index).noise_length(row, channel));
     const std::int32_t run = readings.run.empty() ? 0 : readings.run[row];
     const auto [found, is_new] =
         sequence_of.try_emplace({setup_index, run, channel}, noise.data.sequences.size());

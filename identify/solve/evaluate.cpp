@@ -7,6 +7,7 @@
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/residuals.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
@@ -154,11 +155,6 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
 
 namespace {
 
-bool is_angle(const Campaign& campaign, const ResidualRecord& record) {
-  const std::string& instrument = campaign.setups[record.setup].instrument;
-  return instrument == "angle" || (instrument == "laser-tracker" && record.channel > 0);
-}
-
 struct Spread {
   double lengths = 0.0, angles = 0.0, max_length = 0.0, max_angle = 0.0;
   std::size_t length_count = 0, angle_count = 0;
@@ -166,16 +162,20 @@ struct Spread {
 
 /// RMS and largest |e|: the channels of a vector reading are one value.
 Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& records) {
+  const std::vector<std::vector<bool>> angles = angle_channels(campaign);
+  const auto is_angle = [&](const ResidualRecord& record) {
+    return angles[record.setup][static_cast<std::size_t>(record.channel)];
+  };
   Spread spread;
   for (std::size_t i = 0; i < records.size();) {
     double squares = 0.0;
     const ResidualRecord& first = records[i];
-    const bool angle = is_angle(campaign, first);
+    const bool angle = is_angle(first);
     do {
       squares += records[i].residual() * records[i].residual();
       ++i;
     } while (i < records.size() && records[i].setup == first.setup && records[i].row == first.row &&
-             is_angle(campaign, records[i]) == angle);
+             is_angle(records[i]) == angle);
     (angle ? spread.angles : spread.lengths) += squares;
     (angle ? spread.max_angle : spread.max_length) =
         std::max(angle ? spread.max_angle : spread.max_length, std::sqrt(squares));

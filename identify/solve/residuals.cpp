@@ -5,6 +5,7 @@
 #include <map>
 #include <thread>
 
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/normal.h"
 
 namespace volcal {
@@ -36,10 +37,6 @@ double variance_of(const SparseRow& row, const Eigen::MatrixXd& covariance) {
     sum += part * row.value[j];
   }
   return sum;
-}
-
-std::string residual_unit(const Campaign& campaign, std::size_t setup) {
-  return campaign.setups[setup].instrument == "angle" ? "urad" : "um";
 }
 
 }  // namespace
@@ -127,13 +124,15 @@ std::vector<std::size_t> worst_outliers(const std::vector<ResidualRecord>& recor
 std::vector<SetupSummary> setup_summaries(const Campaign& campaign,
                                           const std::vector<ResidualRecord>& records,
                                           const std::vector<double>& stated_sigma) {
+  const std::vector<std::vector<bool>> is_angle = angle_channels(campaign);
   std::vector<SetupSummary> summaries(campaign.setups.size());
+  std::vector<std::size_t> averaged(campaign.setups.size(), 0);
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Setup& setup = campaign.setups[i];
     summaries[i].name = setup.name;
     summaries[i].instrument = setup.instrument;
     summaries[i].tool = campaign.machine.tools[setup.tool].name;
-    summaries[i].reading_unit = residual_unit(campaign, i);
+    summaries[i].reading_unit = residual_unit(setup, 0);
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
     const ResidualRecord& record = records[i];
@@ -143,17 +142,15 @@ std::vector<SetupSummary> setup_summaries(const Campaign& campaign,
     ++summary.observations;
     summary.chi2 += residual * residual / (stated_sigma[i] * stated_sigma[i]);
     summary.redundancy += record.redundancy;
-    // An angle channel of a tracker has no place in a mean of lengths.
-    if (record.channel > 0 && campaign.setups[record.setup].instrument == "laser-tracker") continue;
+    const std::vector<bool>& of_setup = is_angle[record.setup];
+    if (of_setup[static_cast<std::size_t>(record.channel)] != of_setup[0]) continue;
+    ++averaged[record.setup];
     summary.rms_residual += residual * residual;
     summary.max_residual = std::max(summary.max_residual, std::abs(residual));
   }
-  for (SetupSummary& summary : summaries) {
-    if (summary.observations == 0) continue;
-    const double lengths = summary.instrument == "laser-tracker"
-                               ? static_cast<double>(summary.observations) / 3.0
-                               : static_cast<double>(summary.observations);
-    summary.rms_residual = std::sqrt(summary.rms_residual / lengths);
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    if (averaged[i] > 0)
+      summaries[i].rms_residual = std::sqrt(summaries[i].rms_residual / static_cast<double>(averaged[i]));
   }
   return summaries;
 }

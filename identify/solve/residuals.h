@@ -28,7 +28,9 @@ std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const st
 std::vector<std::size_t> worst_outliers(const std::vector<ResidualRecord>& records, double nearly,
                                         double most);
 
-/// Chi-squared, redundancy, RMS and largest residual per setup. `stated_sigma` per observation.
+/// Chi-squared, redundancy, RMS and largest residual per setup; the last two over the channels of the first
+/// one's unit (of a tracker the lengths). `stated_sigma` per observation. Throws InputError for an unknown
+/// instrument.
 std::vector<SetupSummary> setup_summaries(const Campaign& campaign,
                                           const std::vector<ResidualRecord>& records,
                                           const std::vector<double>& stated_sigma);

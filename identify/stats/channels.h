@@ -1,6 +1,9 @@
 #pragma once
 /// What the channels of a setup's readings are.
 
+#include <string>
+#include <vector>
+
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
@@ -10,5 +13,11 @@ namespace volcal {
 std::string channel_column(const Setup& setup, std::size_t channel);
 /// True when the channel is an angle (rad), false when it is a length (m).
 bool is_angle_channel(const Setup& setup, std::size_t channel);
+/// The same of every channel that was read, by setup and channel.
+std::vector<std::vector<bool>> angle_channels(const Campaign& campaign);
+/// Edge unit of a channel's residuals: "urad" or "um".
+std::string residual_unit(const Setup& setup, std::size_t channel);
+/// Of any reading of an instrument: "um", "urad", or "um or urad" of one that reads both and of one unknown.
+std::string residual_units(const std::string& instrument);
 
 }  // namespace volcal

@@ -297,13 +297,7 @@ const Breakdown* Comparison::find(const std::string& by) const {
 
 Comparison compare(const Campaign& campaign, std::span<const ResidualRecord> records,
                    const ComparisonOptions& options) {
-  std::vector<std::vector<bool>> is_angle;
-  for (const Setup& setup : campaign.setups) {
-    is_angle.emplace_back();
-    for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel) {
-      is_angle.back().push_back(is_angle_channel(setup, channel));
-    }
-  }
+  const std::vector<std::vector<bool>> is_angle = angle_channels(campaign);
   Comparison comparison;
   comparison.total.label = "all";
   for (const ResidualRecord& record : records) {

@@ -10,8 +10,10 @@ namespace volcal::report {
 Json added_variable_page(const DiagnosisInput& input) {
   const AddedVariableFigure& leading = input.diagnosis.figures.leading;
   const double unit = leading.si_per_unit;
-  const bool alternative = std::ranges::find(input.diagnosis.one_of, leading.label, &EffectFinding::label) !=
-                           input.diagnosis.one_of.end();
+  const auto holds_leading = [&](const std::vector<EffectFinding>* set) {
+    return std::ranges::find(*set, leading.label, &EffectFinding::label) != set->end();
+  };
+  const bool alternative = std::ranges::any_of(sets_of_alternatives(input.diagnosis), holds_leading);
   return {{"label", leading.label},
           {"unit", shown_unit(leading.unit)},
           {"accepted", leading.accepted},

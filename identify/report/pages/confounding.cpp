@@ -29,7 +29,9 @@ Place place_of(const Diagnosis& diagnosis, const EffectName& name) {
   for (const auto* list : {&diagnosis.effects, &diagnosis.model_changes}) {
     if (const EffectFinding* finding = find_in(*list, name)) return {"added", finding};
   }
-  if (const EffectFinding* finding = find_in(diagnosis.one_of, name)) return {"alternative", finding};
+  for (const auto* set : sets_of_alternatives(diagnosis)) {
+    if (const EffectFinding* finding = find_in(*set, name)) return {"alternative", finding};
+  }
   for (const auto* list : {&diagnosis.ranking, &diagnosis.not_visible}) {
     if (const EffectFinding* finding = find_in(*list, name)) return {"candidate", finding};
   }

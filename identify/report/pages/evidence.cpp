@@ -22,10 +22,12 @@ Json evidence_page(const DiagnosisInput& input) {
   const Diagnosis& diagnosis = input.diagnosis;
   std::vector<EffectFinding> added = diagnosis.effects;
   added.insert(added.end(), diagnosis.model_changes.begin(), diagnosis.model_changes.end());
+  Json alternatives = Json::array();
+  for (const auto* set : sets_of_alternatives(diagnosis)) alternatives.push_back(list(*set));
   return {{"threshold", rounded(log10_family_risk(), 4)},
           {"families", diagnosis.families},
           {"added", list(added)},
-          {"alternatives", list(diagnosis.one_of)},
+          {"alternatives", std::move(alternatives)},
           {"ranking", list(diagnosis.ranking)}};
 }
 

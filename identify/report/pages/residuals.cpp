@@ -1,5 +1,6 @@
 /// Normalised residuals against everything recorded: positions of the axes, time, setup.
-/// Means and histogram are over all readings; the points drawn are a sample when there are very many.
+/// Means are over all readings but the suspect, the histogram over all; the points drawn are a sample when
+/// there are very many.
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/residual_sample.h"
+#include "volcal/identify/stats/channels.h"
 
 namespace volcal::report {
 namespace {
@@ -21,9 +23,7 @@ constexpr int kHistogramBins = 40;
 double nan() { return std::numeric_limits<double>::quiet_NaN(); }
 
 /// Readings that means are taken over: those with a residual of their own, suspect ones left out.
-bool counts(const ResidualRecord& record) {
-  return !record.removed && !record.flagged && record.redundancy > 0.0;
-}
+bool counts(const ResidualRecord& record) { return !is_suspect(record) && record.redundancy > 0.0; }
 
 /// Mean of w in equal bins of an abscissa, with the number of readings in each.
 Json binned_mean(const std::vector<double>& abscissa, const std::vector<ResidualRecord>& records) {
@@ -101,27 +101,27 @@ Json plots(const PageInput& input, const std::vector<std::size_t>& drawn) {
   return list;
 }
 
-Json drawn_records(const FitResult& result, const std::vector<std::size_t>& drawn) {
+Json drawn_records(const PageInput& input, const std::vector<std::size_t>& drawn) {
+  const std::vector<std::vector<bool>> is_angle = angle_channels(input.campaign);
   Json setup = Json::array();
   Json line = Json::array();
   Json residual = Json::array();
   Json sigma = Json::array();
   Json w = Json::array();
   Json flag = Json::array();
+  Json angle = Json::array();
   for (const std::size_t i : drawn) {
-    const ResidualRecord& record = result.residuals[i];
+    const ResidualRecord& record = input.result.residuals[i];
     setup.push_back(record.setup);
+    angle.push_back(is_angle[record.setup][static_cast<std::size_t>(record.channel)] ? 1 : 0);
     line.push_back(record.source_line);
     residual.push_back(rounded(record.residual() * kPerMicro, 3));
     sigma.push_back(rounded(record.sigma * kPerMicro, 3));
     w.push_back(rounded(record.w, 3));
     flag.push_back(record.removed ? 2 : record.flagged ? 1 : 0);
   }
-  return {{"setup", std::move(setup)},
-          {"file_line", std::move(line)},
-          {"residual", std::move(residual)},
-          {"sigma", std::move(sigma)},
-          {"w", std::move(w)},
+  return {{"setup", std::move(setup)},       {"file_line", std::move(line)}, {"angle", std::move(angle)},
+          {"residual", std::move(residual)}, {"sigma", std::move(sigma)},    {"w", std::move(w)},
           {"flag", std::move(flag)}};
 }
 
@@ -157,7 +157,6 @@ Json by_setup(const PageInput& input) {
     rows.push_back({{"name", result.setups[i].name},
                     {"instrument", result.setups[i].instrument},
                     {"station", options.text("station").value_or("")},
-                    {"unit", shown_unit(result.setups[i].reading_unit)},
                     {"mean_w", rounded(count[i] > 0 ? sum[i] / count[i] : nan(), 3)},
                     {"rms_w", rounded(count[i] > 0 ? std::sqrt(square[i] / count[i]) : nan(), 4)},
                     {"count", count[i]}});
@@ -173,7 +172,7 @@ Json residuals_page(const PageInput& input) {
   return {{"total", result.residuals.size()},
           {"drawn", drawn.size()},
           {"critical", rounded(result.outlier_critical_value, 4)},
-          {"records", drawn_records(result, drawn)},
+          {"records", drawn_records(input, drawn)},
           {"plots", plots(input, drawn)},
           {"setups", by_setup(input)},
           {"histogram", histogram(result.residuals)}};

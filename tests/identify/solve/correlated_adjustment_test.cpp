@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <set>
 
+#include "tests/support/campaigns.h"
 #include "tests/support/noise_campaigns.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/resolution.h"
@@ -226,6 +227,22 @@ TEST(CampaignNoise, SampleHoldsWholeSequencesOfEveryInstrument) {
   EXPECT_EQ(groups.size(), 2U);
   EXPECT_EQ(counted, sample.places.size());
   EXPECT_EQ(sampled(all, all.places.size()).places.size(), all.places.size());
+}
+
+/// Noise in proportion to length belongs to the distances of a tracker, not to its angles.
+TEST(CampaignNoise, AnglesOfATrackerHaveNoLength) {
+  std::mt19937_64 generator(5);
+  const Campaign campaign = testing_support::random_campaign(generator, 4);
+  const MeasurementModel model(campaign, testing_support::rich_model(campaign.machine));
+  const std::vector<double> sigma(observation_places(model).size(), 1e-6);
+  const CampaignNoise noise = campaign_noise(model, sigma, {});
+  std::size_t angles = 0;
+  for (std::size_t i = 0; i < noise.places.size(); ++i) {
+    const bool angle = noise.places[i].channel > 0;
+    angles += angle ? 1 : 0;
+    EXPECT_EQ(noise.data.length[i] == 0.0, angle) << i;
+  }
+  EXPECT_EQ(angles, 8U);
 }
 
 /// Share of the table's values whose U95 holds the truth.

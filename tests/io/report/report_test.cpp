@@ -10,10 +10,13 @@
 #include <set>
 #include <sstream>
 
+#include "tests/io/report/drawing.h"
 #include "tests/io/report/synthetic_fit.h"
 #include "volcal/identify/report/correlation.h"
+#include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/residual_sample.h"
+#include "volcal/model/functions/registry.h"
 
 namespace volcal {
 namespace {
@@ -156,6 +159,43 @@ TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
   }
 }
 
+/// |w| > 3.29 has a chance of 0.0010019 for one reading; 1 - (1 - 0.0010019)^1402 for any of 1,402.
+TEST_F(ReportTest, ChanceOfAnySuspectIsThatOfAllReadings) {
+  const json data = page_data(*document_, "outliers");
+  ASSERT_EQ(data.at("observations"), 1402);
+  EXPECT_NEAR(data.at("chance").get<double>(), 0.755, 1e-9);
+}
+
+TEST(ReportSummary, CountsRemovedReadingsAmongTheSuspect) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (ResidualRecord& record : fit.result.residuals) record.flagged = record.removed = false;
+  fit.result.residuals[3].removed = true;
+  fit.result.residuals[5].flagged = true;
+  const json document = json::parse(report_json(fit.result, fit.campaign));
+  EXPECT_EQ(page_data(document, "outliers").at("suspect"), 2);
+  EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("label"), "Suspect readings");
+  EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("value"), "2");
+}
+
+/// The uncertainty of another tool's error says nothing about the error shown.
+TEST(ReportSummary, ErrorAndUncertaintyAreOfOneTool) {
+  const test::SyntheticFit fit = test::synthetic_fit();
+  const ReportOptions options;
+  report::PageInput input(fit.result, fit.campaign, options);
+  input.volume.resize(2);
+  input.volume[0].tool = "worst";
+  input.volume[0].error_w = {{3e-6, 4e-6, 0.0}};
+  input.volume[0].u_w = {{1e-6, 0.0, 0.0}};
+  input.volume[1].tool = "vaguest";
+  input.volume[1].error_w = {{2e-6, 0.0, 0.0}};
+  input.volume[1].u_w = {{0.0, 9e-6, 0.0}};
+  const report::Json figures = report::summary_page(input).at("figures");
+  EXPECT_EQ(figures.at(0).at("value"), "5.0");
+  EXPECT_EQ(figures.at(0).at("note"), "max 5.0 µm, tool worst");
+  EXPECT_EQ(figures.at(1).at("value"), "1.00");
+  EXPECT_EQ(figures.at(1).at("note"), "max 1.00 µm, tool worst");
+}
+
 TEST_F(ReportTest, HistogramHoldsEveryReading) {
   const json histogram = page_data(*document_, "residuals").at("histogram");
   std::size_t sum = 0;
@@ -175,9 +215,7 @@ TEST_F(ReportTest, NuisanceParametersAreInTheirEdgeUnit) {
 
 TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
   if (!report_available()) GTEST_SKIP() << how_to_get_report();
-  const auto path = std::filesystem::path(VOLCAL_BINARY_DIR) / "report_test.html";
-  write_report(fit_->result, fit_->campaign, path, {.date = "2024-05-17"});
-  const std::string page = file_text(path);
+  const std::string page = report_html(fit_->result, fit_->campaign, {.date = "2024-05-17"});
   EXPECT_EQ(page.find("@VOLCAL_REPORT_"), std::string::npos);
   EXPECT_NE(page.find("<title>VMC 800 &lt;x&gt; 500 &amp; 450"), std::string::npos);
   const std::string opening = "<script type=\"application/json\" id=\"volcal-data\">";
@@ -189,11 +227,109 @@ TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
   EXPECT_EQ(data.find('<'), std::string::npos);
 }
 
+/// Every section and control, without a browser; names of the user's are no markup.
+TEST(ReportDrawing, EverySectionDrawsItself) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (volcal::Setup& setup : fit.campaign.setups) {
+    if (setup.options.text("station")) setup.options.set("station", "<i>" + setup.name + "</i> & P");
+    setup.name = "<i>" + setup.name + "</i> & 2";
+  }
+  for (std::size_t k = 0; k < fit.result.setups.size(); ++k)
+    fit.result.setups[k].name = fit.campaign.setups[k].name;
+  for (ParameterBlock& block : fit.result.layout.blocks) {
+    if (block.name == "station P1") block.name = "station <i>P1</i>";
+  }
+  const test::Drawing drawing = test::draw_report(report_json(fit.result, fit.campaign));
+  if (!drawing.possible) GTEST_SKIP() << "Node.js is not installed";
+  EXPECT_EQ(drawing.exit_code, 0) << drawing.output;
+  EXPECT_THAT(drawing.output, ::testing::StartsWith("11 sections, "));
+}
+
+/// A machine with the name of a slot takes neither the data's place nor the title's.
+TEST_F(ReportTest, NamesOfSlotsAreText) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const std::string opening = "<script type=\"application/json\" id=\"volcal-data\">";
+  for (const std::string name : {"@VOLCAL_REPORT_DATA@", "@VOLCAL_REPORT_TITLE@"}) {
+    FitResult result = fit_->result;
+    result.machine.name = name;
+    const std::string page = report_html(result, fit_->campaign);
+    EXPECT_NE(page.find("<title>" + name + " \u2013 volcal report</title>"), std::string::npos);
+    const std::size_t from = page.find(opening) + opening.size();
+    const json data = json::parse(page.substr(from, page.find("</script", from) - from));
+    EXPECT_EQ(data.at("title"), name);
+  }
+}
+
 TEST_F(ReportTest, NeedsNoNetwork) {
   if (!report_available()) GTEST_SKIP() << how_to_get_report();
   const std::string page = report_html(fit_->result, fit_->campaign);
   for (const char* loading : {"<script src", "<link rel=\"stylesheet\"", "@import", "url(http"}) {
     EXPECT_EQ(page.find(loading), std::string::npos) << loading;
+  }
+}
+
+/// EAX has no function, but a reversal of 8 urad: half of it either way.
+TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  FitResult& result = fit.result;
+  ParameterBlock reversal;
+  reversal.kind = ParameterKind::Effect;
+  reversal.name = "reversal EAX";
+  reversal.labels = {""};
+  reversal.units = {"urad"};
+  reversal.si_per_unit = {1e-6};
+  reversal.offset = result.layout.size++;
+  reversal.guess = reversal.prior_mean = reversal.prior_sigma = Eigen::VectorXd::Zero(1);
+  result.layout.blocks.push_back(reversal);
+  result.parameters.conservativeResize(result.layout.size);
+  result.parameters[reversal.offset] = 8e-6;
+  result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));
+  const json function =
+      page_data(json::parse(report_json(result, fit.campaign)), "functions").at("functions").at(3);
+  ASSERT_EQ(function.at("symbol"), "EAX");
+  EXPECT_EQ(function.at("state"), "identified");
+  EXPECT_TRUE(function.at("knots").empty());
+  ASSERT_EQ(function.at("curves").size(), 2u);
+  EXPECT_EQ(function.at("curves").at(0).at("direction"), -1);
+  EXPECT_EQ(function.at("curves").at(0).at("value").at(40), -4.0);
+  EXPECT_EQ(function.at("curves").at(1).at("value").at(0), 4.0);
+}
+
+/// Z was parked between the table's positions: nothing of its errors was measured where the table looks.
+TEST(FitSummary, AnAxisParkedOffTheGridHasNoValuesButItsUnits) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (FunctionSummary& function : fit.result.functions) {
+    if (function.symbol.axis == AxisName::Z) function.measured_min = function.measured_max = -0.12345;
+  }
+  const std::string text = fit_summary_text(fit.result, fit.campaign);
+  EXPECT_THAT(text, ::testing::ContainsRegex("ECZ +urad +- +- +0\\.00 +- .*NOT VISIBLE"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("EXZ +um +- +- +0\\.59 +- "));
+  EXPECT_THAT(text, ::testing::ContainsRegex("EAY +urad +-?[0-9.]+ +[0-9.]+ +0\\.59 +[0-9.]+ "));
+}
+
+/// A tracker whose every channel is suspect: a length, an azimuth, an elevation.
+TEST(ReportOfATracker, ReadingsHaveTheUnitOfTheirChannel) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  volcal::Setup& tracker = fit.campaign.setups[0];
+  tracker.instrument = "laser-tracker";
+  tracker.readings.value.resize(3, tracker.readings.value[0]);
+  const ResidualRecord first = fit.result.residuals.front();
+  fit.result.residuals.assign(3, first);
+  for (int channel = 0; channel < 3; ++channel) {
+    ResidualRecord& record = fit.result.residuals[static_cast<std::size_t>(channel)];
+    record.channel = channel;
+    record.w = 9.0 - channel;
+    record.flagged = true;
+  }
+  const json document = json::parse(report_json(fit.result, fit.campaign));
+  const json rows = page_data(document, "outliers").at("rows");
+  const std::string summary = fit_summary_text(fit.result, fit.campaign);
+  for (const int channel : {0, 1, 2}) {
+    const auto k = static_cast<std::size_t>(channel);
+    EXPECT_EQ(rows.at(k).at("unit"), channel == 0 ? "µm" : "µrad");
+    EXPECT_EQ(page_data(document, "residuals").at("records").at("angle").at(k), channel == 0 ? 0 : 1);
+    EXPECT_THAT(summary, ::testing::ContainsRegex((channel == 0 ? " um +" : " urad +") +
+                                                  std::to_string(9 - channel) + "\\.0 "));
   }
 }
 
@@ -234,7 +370,38 @@ TEST(ErrorCorrelation, OfTwoScalarsIsTheAbsoluteCorrelation) {
                           std::sqrt(result.covariance(blocks[0].offset, blocks[0].offset) *
                                     result.covariance(blocks[1].offset, blocks[1].offset));
   EXPECT_NEAR(correlation.value(17, 18), expected, 1e-12);
-  EXPECT_TRUE((correlation.value.array() >= 0.0).all() && (correlation.value.array() <= 1.0).all());
+}
+
+/// Two functions that are straight lines between values at both ends of the travel. With the samples t = 0,
+/// .1
+/// ... 1 the rows (1 - t, t) have M = R^T R = [3.85 1.65; 1.65 3.85]. Own covariances are unit matrices, and
+/// the values at the start alone correlate, by .6: tr(S_fg S_gf) = .36 * 3.85^2 = 5.3361,
+/// tr(S_ff^2) = |M|^2 = 35.09; sqrt(5.3361 / 35.09) = .389960.
+TEST(ErrorCorrelation, OfTwoFunctionsByHand) {
+  FitResult result;
+  Axis axis;
+  axis.name = AxisName::X;
+  axis.travel_max = 1.0;
+  result.machine.axes = {axis};
+  FunctionSpec line;
+  line.degree = 1;
+  line.knots = KnotChoice::Explicit;
+  line.breakpoints = {0.0, 1.0};
+  FunctionGroup group;
+  group.axis = AxisName::X;
+  group.basis = find_basis("bspline")->make(line, axis);
+  group.symbols = {{Component::X, AxisName::X}, {Component::Y, AxisName::X}};
+  ASSERT_LT((group.basis->row(0.3) - Eigen::Vector2d(0.7, 0.3)).norm(), 1e-15);
+  result.covariance = Eigen::MatrixXd::Identity(4, 4);
+  const int f = group.index(0, 0), g = group.index(0, 1);
+  result.covariance(f, g) = result.covariance(g, f) = 0.6;
+  result.layout.groups = {group};
+  result.layout.size = result.layout.function_size = 4;
+  const report::ErrorCorrelation correlation = report::error_correlation(result);
+  ASSERT_EQ(correlation.symbol.size(), 2u);
+  EXPECT_NEAR(correlation.value(0, 1), 0.389960, 1e-6);
+  EXPECT_EQ(correlation.value(0, 1), correlation.value(1, 0));
+  EXPECT_EQ(correlation.value(0, 0), 1.0);
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ class MadeUpTree(unittest.TestCase):
 
     def test_solver_in_physics(self):
         self.assert_rejected("model/effects/a.h", '#include "volcal/identify/solve/fit.h"',
-                             "model may not include identify")
+                             "model may not include solve")
         self.assert_rejected("model/effects/a.h", "#include <ceres/ceres.h>", "<ceres/ceres.h>")
 
     def test_spaces_do_not_hide_an_include(self):
@@ -74,8 +74,33 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("sim/a.cpp", '#include "volcal/identify/io/text_file.h"', "sim may not include io")
         self.assert_rejected("sim/a.cpp", "#include <ceres/jet.h>", "<ceres/jet.h>")
 
+    def test_noise_below_stats_below_solve_below_criticism(self):
+        self.assert_accepted("identify/criticism/a.h", '#include "volcal/identify/solve/fit.h"',
+                             '#include "volcal/identify/noise/noise_model.h"')
+        self.assert_accepted("identify/stats/a.h", '#include "volcal/identify/solve/result.h"')
+        self.assert_rejected("identify/stats/b.h", '#include "volcal/identify/criticism/diagnosis.h"',
+                             "stats may not include criticism")
+        self.assert_rejected("identify/stats/b.h", '#include "volcal/identify/solve/fit.h"',
+                             "stats may not include solve")
+
+    def test_criticism_in_solve(self):
+        self.assert_rejected("identify/solve/a.h", '#include "volcal/identify/criticism/diagnosis.h"',
+                             "solve may not include criticism")
+
+    def test_physics_in_noise(self):
+        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/stats/normal.h"',
+                             "noise may not include stats")
+
+    def test_noise_in_dense_matrices(self):
+        self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',
+                             "numeric may not include noise")
+
+    def test_tables_in_criticism(self):
+        self.assert_rejected("identify/criticism/a.h", '#include "volcal/identify/tables/error_tables.h"',
+                             "criticism may not include tables")
+
     def test_sim_in_identify(self):
-        self.assert_rejected("identify/stats/a.cpp", '#include "volcal/sim/study.h"', "identify may not include sim")
+        self.assert_rejected("identify/stats/a.cpp", '#include "volcal/sim/study.h"', "stats may not include sim")
 
     def test_only_the_study_in_io(self):
         self.assert_rejected("identify/io/a.cpp", '#include "volcal/sim/truth.h"', "io may not include sim")

@@ -115,6 +115,29 @@ TEST_F(CriticismStudyFolder, GoesOnWhereItWasInterrupted) {
   EXPECT_EQ(kept().size(), 5U);
 }
 
+/// One campaign for a closer look is the one that the study counts.
+TEST_F(CriticismStudyFolder, WritesOneCampaign) {
+  const std::string one = (scratch_.path() / "one").string();
+  const auto written = run_program("study criticism --one listed:0 --readings 400 -o " + one);
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
+  EXPECT_THAT(written.output, HasSubstr("volcal diagnose"));
+  const json hidden = json::parse(content(std::filesystem::path(one) / "truth" / "hidden.json"));
+  const auto counted = run_program("study criticism --rows listed -n 1 --readings 400 --json");
+  ASSERT_EQ(counted.exit_code, 0) << counted.errors;
+  const json record = json::parse(counted.output).at("campaigns").at(0);
+  EXPECT_NEAR(record.at("hidden").at(0).at("rms_um").get<double>(),
+              hidden.at("effects").at(0).at("rms_um").get<double>(), 1e-3);
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(one) / "campaign.toml"));
+  for (const char* wrong : {"listed", "listed:x", "gremlins:1", "listed:-1"}) {
+    const auto refused = run_program(std::string("study criticism --one ") + wrong + " -o " + one);
+    EXPECT_EQ(refused.exit_code, 2) << wrong;
+    EXPECT_THAT(refused.errors, HasSubstr("listed:11")) << wrong;
+  }
+  const auto nowhere = run_program("study criticism --one listed:0");
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.errors, HasSubstr("-o FOLDER"));
+}
+
 TEST_F(CriticismStudyFolder, RefusesCampaignsOfAnotherRun) {
   ASSERT_EQ(study("-n 1 -o " + output_).exit_code, 0);
   const auto again = study("-n 1 -o " + output_);

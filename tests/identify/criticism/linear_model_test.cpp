@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "tests/support/hidden_studies.h"
+#include "volcal/identify/solve/adjustment.h"
 
 namespace volcal {
 namespace {
@@ -35,6 +38,35 @@ TEST(LinearModel, TakesUpReadingsAndLeavesThemOutAgain) {
   model.return_to_fit();
   EXPECT_THAT(model.removed(), ElementsAre(4U, 9U, 20U));
   EXPECT_TRUE(std::isinf(sigma[4]) && std::isinf(sigma[9]) && std::isinf(sigma[20]));
+}
+
+/// Residuals that follow a wave along X of 3 um: the functions of X may be rougher than without it, and what
+/// a column without prior explains asks for no roughness.
+TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
+  const testing_support::FittedStudy study(testing_support::hiding({}, {7, 4, 4}));
+  LinearModel model(study.simulated.campaign, study.result);
+  const auto roughness = [&](const Eigen::VectorXd& residual, bool explained) {
+    model.return_to_fit();
+    Projector projector = testing_support::white_projector(model, residual);
+    if (explained) projector.accept(residual);
+    model.smooth(projector.gram(), projector.observations());
+    const auto term =
+        std::ranges::find(model.smoothing(), *ErrorSymbol::parse("EXX"), &SmoothingTerm::symbol);
+    return 1.0 / std::sqrt(term->lambda);
+  };
+  Eigen::VectorXd wave = model.direction(0);
+  for (Eigen::Index i = 0; i < wave.size(); ++i) {
+    const auto& [setup, row, channel] = model.observations()[static_cast<std::size_t>(i)];
+    wave[i] *= 3e-6 * std::sin(25.0 * study.simulated.campaign.setups[setup].readings.position[0][row]);
+  }
+  std::mt19937_64 random(8);
+  const Eigen::VectorXd noise = testing_support::white_residual(model, random);
+  const double rough = roughness(wave + noise, false);
+  EXPECT_GT(rough, 1.3 * roughness(noise, false));
+  EXPECT_LT(roughness(wave + 1e-3 * noise, true), rough);
+  const auto as_fitted = study.result.adjustment->smoothing.front().lambda;
+  model.return_to_fit();
+  EXPECT_EQ(model.smoothing().front().lambda, as_fitted);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
 
@@ -131,6 +132,62 @@ TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {
   const FitResult removed = fit(simulated.campaign, spline_model(5), options);
   EXPECT_TRUE(record_of(removed).removed);
   EXPECT_NEAR(record_of(removed).residual(), 20e-6, 4e-6);
+}
+
+/// More of one setup than rounds of one each would remove; a quarter of a setup is the most.
+TEST(Fit, RemovesManyOutliersOfOneSetup) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  auto& value = simulated.campaign.setups[2].readings.value[0];
+  for (std::size_t row = 3; row < 3 + 22 * 6; row += 6) value[row] += row % 4 == 1 ? 60e-6 : -45e-6;
+  FitOptions options;
+  options.outliers = OutlierPolicy::Remove;
+  const FitResult result = fit(simulated.campaign, spline_model(5), options);
+  for (const ResidualRecord& record : result.residuals) {
+    const bool wrong = record.setup == 2 && record.row >= 3 && record.row < 3 + 22 * 6 && record.row % 6 == 3;
+    EXPECT_TRUE(!wrong || record.removed) << "row " << record.row;
+  }
+  EXPECT_LE(std::ranges::count_if(result.residuals, &ResidualRecord::removed), 24);
+  EXPECT_NEAR(result.sigma0, 1.0, 0.1);
+}
+
+/// The centre of a ball-bar circle is believed to 0.1 mm unless the campaign says otherwise.
+TEST(Fit, SaysThatAGuessIsContradicted) {
+  auto study = small_study(0, small_tracking());
+  study.measurements.emplace_back().settings = sim::BallBarCircles{};
+  auto simulated = sim::simulate(study);
+  const auto bar = std::ranges::find(simulated.campaign.setups, "ball-bar", &Setup::instrument);
+  ASSERT_NE(bar, simulated.campaign.setups.end());
+  const auto told = [&] {
+    const FitResult result = fit(simulated.campaign, spline_model(4));
+    return std::ranges::count_if(result.messages, [&](const std::string& message) {
+      return message.starts_with(bar->name + ": centre x: estimated 30") &&
+             message.find("times its default standard deviation of 0.1 mm") != std::string::npos;
+    });
+  };
+  EXPECT_EQ(told(), 0);
+  Eigen::Vector3d centre = *bar->options.vector("centre");
+  centre.x() += 30e-3;
+  bar->options.set("centre", centre);
+  EXPECT_EQ(told(), 1);
+}
+
+/// What no reading sees has the uncertainty of the wide prior, whatever the choice of knots.
+TEST(Fit, AnInvisibleFunctionIsNotMadeKnownBySmoothing) {
+  auto study = small_study(0, small_tracking());
+  auto& tracking = std::get<sim::Tracking>(study.measurements[0].settings);
+  tracking.runs.clear();
+  for (const char* station : {"P1", "P2", "P3", "P4"}) tracking.runs.push_back({station, "short"});
+  const FitResult result = fit(sim::simulate(study).campaign, ModelSpec{});
+  ASSERT_FALSE(figure_of(result, "ECZ").visible);
+  ASSERT_TRUE(figure_of(result, "EXX").visible);
+  for (const ErrorTableRow& row : error_table(result)) {
+    if (row.symbol == "ECZ" && std::abs(row.position - result.machine.axis(AxisName::Z).home) > 0.1) {
+      EXPECT_GT(row.u, 50e-6) << row.position;
+    }
+    if (row.symbol == "EXX") {
+      EXPECT_LT(row.u, 2e-6) << row.position;
+    }
+  }
 }
 
 TEST(Fit, RollOfTheLastAxisNeedsASidewaysTool) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -15,6 +16,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/residual_writer.h"
 #include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/io/text_file.h"
 #include "volcal/identify/report/comparison_report.h"
 #include "volcal/identify/solve/evaluate.h"
 
@@ -50,6 +52,11 @@ bool predicts_errors(const ModelSpec& model) {
 /// A result, a model file, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
   if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
+  if (!std::filesystem::exists(argument)) {
+    throw InputError(
+        {argument, 0}, "there is no such result or model",
+        missing_remedy(argument, "give a result folder of volcal fit, a model.toml, or the word nominal"));
+  }
   if (is_result(argument) || std::filesystem::is_directory(argument)) {
     const FitResult result = read_result(argument);
     if (const std::string difference = machine_difference(result.machine, campaign.machine);
@@ -103,6 +110,7 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
 }
 
 int run(const Arguments& arguments) {
+  if (!arguments.output.empty()) require_output_folder(arguments.output);
   const Campaign campaign = read_campaign(arguments.campaign);
   ComparisonOptions comparison;
   comparison.worst = arguments.worst;
@@ -147,9 +155,11 @@ std::function<int()> define(CLI::App& app) {
       "-o,--output", arguments->output,
       "folder for residuals.csv (of two models residuals_A.csv and residuals_B.csv), comparison.txt and "
       "comparison.json");
-  app.add_option("--worst", arguments->worst, "readings listed")->capture_default_str();
+  app.add_option("--worst", arguments->worst, "readings listed")
+      ->check(not_negative())
+      ->capture_default_str();
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   app.add_flag("--held-out", arguments->heldout,
                "fit the models anew without every fifth line and judge them on those lines");
   app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");

@@ -8,6 +8,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/effect_list.h"
 #include "volcal/identify/cli/named_effect.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/left_out.h"
@@ -93,6 +94,7 @@ int run(const Arguments& arguments) {
     throw InputError({}, "no campaign is given",
                      "volcal diagnose CAMPAIGN.toml -o DIR, --show DIR, or --list");
   }
+  if (!arguments.output.empty()) require_output_folder(arguments.output);
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model = given_model(arguments, campaign);
   DiagnoseOptions options;
@@ -134,7 +136,7 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("-o,--output", arguments->output,
                  "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   app.add_flag("--auto", arguments->climb,
                "tell everything that was found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,

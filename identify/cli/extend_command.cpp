@@ -8,6 +8,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/named_effect.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"
@@ -150,7 +151,7 @@ std::function<int()> define(CLI::App& app) {
                  "folder that volcal diagnose wrote, to choose effects from");
   app.add_option("--rank", arguments->rank,
                  "place in the diagnosis: what it added or could not tell apart first, then its ranking")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   app.add_flag("--accepted", arguments->accepted, "all effects that the diagnosis added");
   app.add_option("--campaign", arguments->campaign,
                  "campaign.toml, for effects of temperatures, stations, setups and tools");

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
@@ -50,6 +52,7 @@ FitOptions fit_options(const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
+  require_output_folder(arguments.output);
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model =
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
@@ -91,7 +94,7 @@ std::function<int()> define(CLI::App& app) {
          "what is supported; white: independent readings")
       ->check(CLI::IsMember({"auto", "white"}));
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,
                "do not estimate variance components nor correlated noise");
   app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/readings_reader.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/instruments/registry.h"
@@ -48,11 +50,21 @@ std::string machine_toml(const Structure& structure) {
          "0.0, -200.0]\n";
 }
 
-std::string commented_setup(const InstrumentSchema& schema) {
+/// Columns of the commanded positions, in the order X Y Z A B C.
+std::string position_columns(const Structure& structure) {
+  std::string text;
+  for (const AxisName axis : kAllAxes) {
+    if (std::ranges::find(structure.joints, axis, &Joint::axis) == structure.joints.end()) continue;
+    text += (text.empty() ? "" : ",") + axis_column(axis);
+  }
+  return text;
+}
+
+std::string commented_setup(const InstrumentSchema& schema, const std::string& positions) {
   std::string text = fmt::format(
       "\n# {}\n# reading: {}\n#[[setups]]\n#name = \"{}-1\"\n#instrument = \"{}\"\n#data = \"{}-1.csv\"  # "
-      "columns: x_mm,y_mm,z_mm",
-      schema.summary, schema.equation, schema.name, schema.name, schema.name);
+      "columns: {}",
+      schema.summary, schema.equation, schema.name, schema.name, schema.name, positions);
   for (const ColumnSchema& column : schema.column_sets.front()) text += "," + column.column;
   text += "\n#tool = \"short\"\n";
   for (const KeySchema& key : schema.keys) {
@@ -70,14 +82,16 @@ std::string commented_setup(const InstrumentSchema& schema) {
   return text + " }\n";
 }
 
-std::string campaign_toml() {
+std::string campaign_toml(const Structure& structure) {
   std::string text =
       "# The campaign: what was measured. Take the comment marks off a setup and name its CSV file.\n"
       "format = \"volcal-campaign-1\"\n"
       "machine = \"machine.toml\"\n"
       "[noise]\n"
       "repeatability_um = 0.5  # of the machine, k = 1, per component along the reading\n";
-  for (const Instrument* instrument : instruments()) text += commented_setup(instrument->schema());
+  for (const Instrument* instrument : instruments()) {
+    text += commented_setup(instrument->schema(), position_columns(structure));
+  }
   return text;
 }
 
@@ -103,7 +117,7 @@ int run(const Arguments& arguments) {
   AtomicFolder folder(arguments.output);
   folder.write("machine.toml", machine_toml(structure));
   folder.write("model.toml", kModelToml);
-  folder.write("campaign.toml", campaign_toml());
+  folder.write("campaign.toml", campaign_toml(structure));
   folder.commit();
   fmt::print(
       "written: {0}/machine.toml, {0}/model.toml, {0}/campaign.toml\n"

@@ -13,21 +13,56 @@
 
 namespace {
 
-/// What is wrong with a command line, and a remedy.
-std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  if (first.empty() || first.front() == '-') return error.what();
+/// Nothing when `word` is one of the names.
+std::string unknown_word(const std::string& what, const std::string& word, const std::string& where,
+                         const std::vector<std::string>& names) {
+  if (std::ranges::find(names, word) != names.end()) return "";
+  return "there is no " + what + " \"" + where + word + "\"; " +
+         volcal::suggest_name(word, names, what + "s");
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-  if (std::ranges::find(names, first) != names.end()) return error.what();
-  return "there is no command \"" + first + "\"; " + volcal::suggest_name(first, names, "commands");
+  return names;
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// What is wrong with a command line, and a remedy: the first command, study or long option that does not
+/// exist, or else what the parser says.
+std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const CLI::App* current = &app;
+  std::string path;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--") break;
+    if (word.starts_with("--")) {
+      const std::string problem =
+          unknown_word("option", word.substr(0, word.find('=')), "", names_of_options(*current));
+      if (!problem.empty()) return problem;
+    } else if (const auto names = names_of_commands(*current); !word.starts_with("-") && !names.empty()) {
+      const std::string problem = unknown_word("command", word, path, names);
+      if (!problem.empty()) return problem;
+      current = current->get_subcommand(word);
+      path += word + " ";
+    }
+  }
+  return error.what();
 }
 
 int run(int argc, char** argv) {
   using volcal::cli::commands;
   CLI::App app{
       "volcal: identify the geometric errors of a machine tool from indirect measurements, with "
-      "uncertainty."};
+      "uncertainty.",
+      "volcal"};
   app.set_version_flag("--version", VOLCAL_VERSION);
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);

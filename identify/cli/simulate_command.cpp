@@ -7,6 +7,7 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/io/study_reader.h"
@@ -48,7 +49,8 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("-o,--output", arguments->output, "folder for campaign.toml, its CSV files and truth/")
       ->required();
   app.add_option("--seed", arguments->seed,
-                 "instead of the study's seed; same seed, same readings to the bit");
+                 "instead of the study's seed; same seed, same readings to the bit")
+      ->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run(*arguments); };
 }

@@ -19,7 +19,7 @@ std::function<int()> define(CLI::App& app) {
   }
   return [&app, work] {
     if (!app.get_subcommands().empty()) return work->at(app.get_subcommands().front())();
-    fmt::print(stderr, "volcal study: name a study\n\n{}", app.help());
+    fmt::print(stderr, "volcal study: name a study\n\n{}", app.help("volcal"));
     return kBadInput;
   };
 }

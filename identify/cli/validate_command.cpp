@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
@@ -109,8 +110,8 @@ std::function<int()> define(CLI::App& app) {
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml with readings that the fit did not use")
       ->required();
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--threads", arguments->threads, "0 = all")->check(CLI::NonNegativeNumber);
+      ->check(positive());
+  app.add_option("--threads", arguments->threads, "0 = all")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run(*arguments); };
 }

@@ -62,14 +62,15 @@ void flush_tree(const fs::path& folder) {
   flush(folder.string());
 }
 
-void write_all(const std::string& path, const std::string& content) {
+/// `shown`: what the message calls the file.
+void write_all(const std::string& path, const std::string& content, const std::string& shown) {
   const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (!file.open()) fail_system(path, "creating the file");
+  if (!file.open()) fail_system(shown, "creating the file");
   std::size_t done = 0;
   while (done < content.size()) {
     const auto count = ::write(file.number(), content.data() + done, content.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_system(path, "writing");
+    if (count < 0) fail_system(shown, "writing");
     done += static_cast<std::size_t>(count);
   }
 }
@@ -172,7 +173,7 @@ void AtomicFolder::create_temporary() {
     temporary_ = fresh_name(target_);
     if (::mkdir(temporary_.c_str(), 0777) != 0) {
       if (errno == EEXIST) continue;
-      fail_system(temporary_, "creating the folder");
+      fail_system(target_, "creating the folder");
     }
     lock_ = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     struct stat status {};
@@ -180,7 +181,7 @@ void AtomicFolder::create_temporary() {
     if (lock_ >= 0) ::close(lock_);
     lock_ = -1;
   }
-  fail(temporary_, "creating a temporary folder failed");
+  fail(target_, "creating a temporary folder beside it failed");
 }
 
 AtomicFolder::~AtomicFolder() {
@@ -190,7 +191,7 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::write(const std::string& name, const std::string& content) const {
-  write_all(path(name), content);
+  write_all(path(name), content, target_ + "/" + name);
 }
 
 void AtomicFolder::carry_over_user_files() const {
@@ -210,7 +211,7 @@ void AtomicFolder::write_list() const {
   std::ranges::sort(names);
   std::string text;
   for (const std::string& name : names) text += name + "\n";
-  write_all(path(kList), text);
+  write_all(path(kList), text, target_ + "/" + kList);
 }
 
 void AtomicFolder::exchange() const {
@@ -243,24 +244,6 @@ void AtomicFolder::commit() {
   std::error_code error;
   fs::remove_all(temporary_, error);
   flush(fs::path(target_).parent_path().string());
-}
-
-void write_file_atomically(const std::string& path, const std::string& content) {
-  const fs::path target = fs::absolute(path).lexically_normal();
-  std::error_code error;
-  if (fs::is_directory(target, error)) fail(path, "a directory of this name exists");
-  if (!target.parent_path().empty()) fs::create_directories(target.parent_path(), error);
-  if (error) fail(target.parent_path().string(), "creating the folder failed: " + error.message());
-  const std::string temporary = fresh_name(target);
-  try {
-    write_all(temporary, content);
-    flush(temporary);
-    if (::rename(temporary.c_str(), target.c_str()) != 0) fail_system(path, "renaming the file");
-  } catch (...) {
-    ::unlink(temporary.c_str());
-    throw;
-  }
-  flush(target.parent_path().string());
 }
 
 }  // namespace volcal

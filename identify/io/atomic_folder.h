@@ -1,5 +1,5 @@
 #pragma once
-/// Result folders and files that are either the old ones or the new ones, never half, also when the program
+/// Result folders that are either the old ones or the new ones, never half, also when the program
 /// is killed while it writes.
 ///
 /// A folder is written under a temporary name beside its target, flushed to the disk and exchanged with the
@@ -47,9 +47,5 @@ class AtomicFolder {
 /// Throws what AtomicFolder would throw for this target, before a long computation is lost to it. Writes
 /// nothing.
 void require_output_folder(const std::string& target);
-
-/// Writes a file under a temporary name, flushes it and renames it. Throws InputError when the system
-/// refuses.
-void write_file_atomically(const std::string& path, const std::string& content);
 
 }  // namespace volcal

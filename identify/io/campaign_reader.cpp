@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::int64_t kMostSkippedRows = 100000;
 constexpr double kLargestRepeatability_um = 1e3;
+constexpr const char* kNoSetups =
+    "add a [[setups]] table for each measurement; in the file of volcal init, take the comment marks off one";
 
 std::vector<std::string> instrument_names() {
   std::vector<std::string> names;
@@ -59,7 +61,9 @@ class CampaignReader {
     root_.text("name");
     noise_ = root_.table("noise");
     if (noise_) repeatability_ = read_repeatability(*noise_).value_or(0.0);
-    for (const TomlTable& table : root_.required_tables("setups")) declared_.push_back(read_setup(table));
+    for (const TomlTable& table : root_.required_tables("setups", kNoSetups))
+      declared_.push_back(read_setup(table));
+    reject_readings_given_twice();
     if (noise_) know_all_noise_keys();
     document_.reject_unknown();
   }
@@ -96,6 +100,26 @@ class CampaignReader {
     read_columns(table, declared.mapping);
     declared.format = read_format(table);
     return declared;
+  }
+
+  /// Two setups that read the same columns of the same file with the same instrument, tool and station would
+  /// count every reading twice.
+  void reject_readings_given_twice() const {
+    for (auto one = declared_.begin(); one != declared_.end(); ++one) {
+      const auto twin = std::find_if(declared_.begin(), one, [&](const DeclaredSetup& other) {
+        return other.setup.data == one->setup.data && other.setup.instrument == one->setup.instrument &&
+               other.setup.tool == one->setup.tool && other.mapping.file_name == one->mapping.file_name &&
+               other.setup.options.text("station") == one->setup.options.text("station") &&
+               other.setup.options.vector("station") == one->setup.options.vector("station");
+      });
+      if (twin == one) continue;
+      throw InputError(
+          one->data_place,
+          "setup \"" + printable(one->setup.name) + "\" reads " + one->setup.data + ", as setup \"" +
+              printable(twin->setup.name) + "\" (line " + std::to_string(twin->setup.source_line) +
+              ") does with the same instrument, tool and station: its readings would count twice",
+          "name the file of this setup, or remove one of the two setups");
+    }
   }
 
   std::string read_name(const TomlTable& table) {

@@ -223,6 +223,10 @@ Diagnosis diagnosis_from_json(const std::string& text, const std::string& file) 
 Diagnosis read_diagnosis(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError({path, 0}, "there is no such diagnosis",
+                     missing_remedy(path, "give the folder that volcal diagnose wrote with -o"));
+  }
   const bool folder = fs::is_directory(path, error);
   const std::string file = folder ? (fs::path(path) / "diagnosis.json").string() : path;
   if (folder && !fs::exists(file, error)) {

@@ -16,11 +16,8 @@ constexpr double kTravelMargin = 0.05;  // share of the travel that commanded po
 constexpr double kUnitSlip = 20.0;      // a position this many times beyond the travel may be in another unit
 constexpr double kColdest_degC = -60.0;
 constexpr double kHottest_degC = 300.0;
-
-std::string axis_column(AxisName axis) {
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-  return std::string(1, letter) + (is_rotary(axis) ? "_deg" : "_mm");
-}
+constexpr double kShopColdest_degC = -20.0;  // some value of a channel lies between these two
+constexpr double kShopHottest_degC = 60.0;
 
 std::string direction_column(AxisName axis) {
   const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
@@ -299,7 +296,7 @@ class ReadingsReader {
       for (double& value : values) value *= factor->second;
     }
     if (const auto channel = temperature_channel(column); !channel.empty()) {
-      check_range(column, values, kColdest_degC, kHottest_degC, "a temperature of the shop is expected");
+      check_temperatures(column, values);
       readings_.temperature[channel] = std::move(values);
     } else if (column == "line") {
       readings_.line = integers(column, values);
@@ -380,6 +377,17 @@ class ReadingsReader {
     }
   }
 
+  /// A hot spindle leaves the range of a shop now and then, degF and K always.
+  void check_temperatures(const std::string& column, const std::vector<double>& values) const {
+    check_range(column, values, kColdest_degC, kHottest_degC, "a temperature of the shop is expected");
+    const auto [coldest, hottest] = std::ranges::minmax(values);
+    if (coldest <= kShopHottest_degC && hottest >= kShopColdest_degC) return;
+    fail(0,
+         column + " is " + shown(coldest) + " to " + shown(hottest) + ": no value lies within " +
+             shown(kShopColdest_degC) + " to " + shown(kShopHottest_degC) + " degC",
+         hottest > 200.0 ? "in K? write degC: subtract 273.15" : "in degF? write degC: (F - 32) / 1.8");
+  }
+
   void check_travel(const std::string& column, const Axis& axis, const std::vector<double>& values) const {
     const double margin = kTravelMargin * axis.travel();
     const auto outside = [&](double q) {
@@ -446,6 +454,11 @@ class ReadingsReader {
 };
 
 }  // namespace
+
+std::string axis_column(AxisName axis) {
+  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
+  return std::string(1, letter) + (is_rotary(axis) ? "_deg" : "_mm");
+}
 
 std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument) {
   std::vector<std::string> names;

@@ -20,6 +20,8 @@ struct ColumnMapping {
   SourcePlace scale_place;
 };
 
+/// Column of the commanded position of an axis: "x_mm", "a_deg".
+std::string axis_column(AxisName axis);
 /// Standard column names that a setup of this machine and instrument understands; temperatures,
 /// T_<channel>_degC, come on top.
 std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument);
@@ -29,7 +31,8 @@ std::string sigma_column(const InstrumentSchema& instrument);
 std::string temperature_channel(const std::string& column);
 
 /// Converts the file to SI. Throws InputError: missing, repeated or ambiguous columns, positions more than 5
-/// % outside the travel, implausible readings, directions other than -1, 0, 1, line numbers that are no
+/// % outside the travel, implausible readings, temperatures all outside -20 to 60 degC,
+/// directions other than -1, 0, 1, line numbers that are no
 /// integers.
 Readings read_readings(const CsvTable& table, const ColumnMapping& mapping, const Machine& machine,
                        const InstrumentSchema& instrument);

@@ -43,6 +43,10 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
 FitResult read_result(const std::string& path) {
   const std::string file = json_path(path);
   std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError({path, 0}, "there is no such result",
+                     missing_remedy(path, "give the folder that volcal fit wrote with -o"));
+  }
   if (fs::is_directory(path, error) && !fs::exists(file, error)) {
     throw InputError({path, 0}, "the folder holds no result.json", "give a folder that volcal fit wrote");
   }

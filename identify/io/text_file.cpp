@@ -17,21 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string near_file(const fs::path& path) {
-  std::error_code error;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (!fs::is_directory(folder, error)) return "the folder " + folder.string() + " does not exist either";
-  std::vector<std::string> names;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    names.push_back(entry->path().filename().string());
-  }
-  std::ranges::sort(names);
-  if (const auto near = nearest_name(path.filename().string(), names)) {
-    return "did you mean \"" + *near + "\"?";
-  }
-  return "paths inside a file are relative to that file";
-}
-
 std::string read_all(const std::string& path, const SourcePlace& place) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
@@ -62,14 +47,24 @@ void require_text(const std::string& text, const std::string& file) {
     throw InputError({file, static_cast<int>(line)}, "the file is binary (it holds NUL bytes)",
                      "give the text file that the instrument exports");
   }
+  if (text.find('\n') == std::string::npos && text.find_last_not_of('\r') > text.find('\r')) {
+    throw InputError({file, 1}, "its lines end in CR alone, as on old Macintoshes",
+                     "save it again with line ends LF or CRLF");
+  }
 }
 
 std::string read_text_file(const std::string& path, const SourcePlace& named_at) {
   const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status))
-    throw InputError(place, "file does not exist: " + printable(path), near_file(path));
+  if (!fs::exists(status)) {
+    if (named_at.file.empty()) {
+      throw InputError(place, "the file does not exist",
+                       missing_remedy(path, "give its path; it is relative to the folder you are in"));
+    }
+    throw InputError(place, "file does not exist: " + printable(path),
+                     missing_remedy(path, "paths inside a file are relative to that file"));
+  }
   if (fs::is_directory(status)) {
     throw InputError(place, path + " is a directory, a file is expected", "name the file inside it");
   }
@@ -83,6 +78,21 @@ std::string read_text_file(const std::string& path, const SourcePlace& named_at)
     throw InputError({path, 0}, "the file is empty", "export it again or name another file");
   }
   return text;
+}
+
+std::string missing_remedy(const std::string& path, const std::string& otherwise) {
+  std::error_code error;
+  fs::path missing(path);
+  if (!missing.has_filename()) missing = missing.parent_path();
+  const fs::path folder = missing.has_parent_path() ? missing.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) return "the folder " + folder.string() + " does not exist either";
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  std::ranges::sort(names);
+  const auto near = nearest_name(missing.filename().string(), names);
+  return near ? "did you mean \"" + *near + "\"?" : otherwise;
 }
 
 std::string resolve_path(const std::string& from, const std::string& file) {

@@ -1,5 +1,6 @@
 #pragma once
-/// Whole text files, with the errors a user can mend: missing, a directory, empty, binary, UTF-16.
+/// Whole text files, with the errors a user can mend: missing, a directory, empty, binary, UTF-16,
+/// lines that end in CR alone.
 
 #include <string>
 
@@ -16,8 +17,13 @@ std::string read_text_file(const std::string& path, const SourcePlace& named_at 
 /// InputError.
 void write_text_file(const std::string& path, const std::string& text);
 
-/// Throws InputError when `text` cannot be a text file (NUL bytes, UTF-16); `file` names it in the message.
+/// Throws InputError when `text` cannot be a text file of lines (NUL bytes, UTF-16, lines that end in CR
+/// alone); `file` names it in the message.
 void require_text(const std::string& text, const std::string& file);
+
+/// What to do about a file or folder that does not exist: the name meant, the folder that is missing too, or
+/// `otherwise`.
+std::string missing_remedy(const std::string& path, const std::string& otherwise);
 
 /// Path that `file` names in a line of `from`: relative paths count from the folder of `from`.
 std::string resolve_path(const std::string& from, const std::string& file);

@@ -153,7 +153,7 @@ void TomlTable::fail(std::string_view key, const std::string& problem, const std
   throw InputError(place(key), problem, remedy);
 }
 
-void TomlTable::fail_missing(std::string_view key) const {
+void TomlTable::fail_missing(std::string_view key, const std::string& remedy) const {
   std::vector<std::string> unknown;
   for (const auto& [present, child] : node_->entries) {
     if (!node_->knows(present)) unknown.push_back(present);
@@ -169,8 +169,9 @@ void TomlTable::fail_missing(std::string_view key) const {
   }
   const std::string_view unit = unit_of_key(key).suffix;
   const std::string where = path_.empty() ? "at the top of the file" : "in " + path_;
-  throw InputError(place(), "key " + wanted + " is missing " + where,
-                   "add " + wanted + (unit.empty() ? "" : ", in " + std::string(unit)));
+  throw InputError(
+      place(), "key " + wanted + " is missing " + where,
+      !remedy.empty() ? remedy : "add " + wanted + (unit.empty() ? "" : ", in " + std::string(unit)));
 }
 
 void TomlTable::fail_type(std::string_view key, const TomlNode& node, const std::string& expected) const {
@@ -312,10 +313,6 @@ double TomlTable::required_number(std::string_view key, NumberLimits limits) con
   return or_missing(number(key, limits), *this, key);
 }
 
-std::int64_t TomlTable::required_integer(std::string_view key, std::int64_t min, std::int64_t max) const {
-  return or_missing(integer(key, min, max), *this, key);
-}
-
 std::string TomlTable::required_text(std::string_view key) const { return or_missing(text(key), *this, key); }
 
 std::vector<double> TomlTable::required_numbers(std::string_view key, NumberLimits limits) const {
@@ -328,9 +325,9 @@ Eigen::Vector3d TomlTable::required_vector3(std::string_view key) const {
 
 TomlTable TomlTable::required_table(std::string_view key) const { return or_missing(table(key), *this, key); }
 
-std::vector<TomlTable> TomlTable::required_tables(std::string_view key) const {
+std::vector<TomlTable> TomlTable::required_tables(std::string_view key, const std::string& remedy) const {
   auto all = tables(key);
-  if (all.empty()) fail_missing(key);
+  if (all.empty()) fail_missing(key, remedy);
   return all;
 }
 

@@ -66,12 +66,12 @@ class TomlTable {
 
   // The same, with an error when the key is absent.
   double required_number(std::string_view key, NumberLimits limits = {}) const;
-  std::int64_t required_integer(std::string_view key, std::int64_t min, std::int64_t max) const;
   std::string required_text(std::string_view key) const;
   std::vector<double> required_numbers(std::string_view key, NumberLimits limits = {}) const;
   Eigen::Vector3d required_vector3(std::string_view key) const;
   TomlTable required_table(std::string_view key) const;
-  std::vector<TomlTable> required_tables(std::string_view key) const;
+  /// `remedy`: instead of "add KEY".
+  std::vector<TomlTable> required_tables(std::string_view key, const std::string& remedy = "") const;
 
   /// Text that must be one of `choices`.
   std::optional<std::string> choice(std::string_view key, const std::vector<std::string>& choices) const;
@@ -81,8 +81,9 @@ class TomlTable {
 
   /// Throws InputError at a key (or at this table when the key is absent).
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& remedy) const;
-  /// Throws "KEY is missing", or names the unknown key that was probably meant to be it.
-  [[noreturn]] void fail_missing(std::string_view key) const;
+  /// Throws "KEY is missing", or names the unknown key that was probably meant to be it. `remedy`:
+  /// instead of "add KEY".
+  [[noreturn]] void fail_missing(std::string_view key, const std::string& remedy = "") const;
 
  private:
   detail::TomlNode* find(std::string_view key) const;

@@ -52,6 +52,8 @@ std::string syntax_remedy(const std::string& description) {
       description.find("duplicate") != std::string::npos) {
     return "each key and each table may appear once; remove one of the two";
   }
+  if (description.find("utf-8") != std::string::npos)
+    return "save the file as UTF-8, or write names without accents";
   return "TOML syntax: key = value, texts in double quotes, decimal point, arrays as [1.0, 2.0]";
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/closed_loop.h"
 #include "volcal/identify/cli/studies/studies.h"
@@ -210,9 +211,11 @@ std::function<int()> define(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   ClosedLoopOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns, "structures take turns")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
-  app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
+  app.add_option("--seed", options.seed, "of the first campaign, the others follow")
+      ->check(not_negative())
+      ->capture_default_str();
   app.add_flag("--fixed", options.fixed_knots,
                "fit five fixed sets of knot intervals too and compare with the best of them");
   app.add_option(
@@ -222,8 +225,7 @@ std::function<int()> define(CLI::App& app) {
       ->check(CLI::IsMember({"white", "correlated"}))
       ->capture_default_str();
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run(*arguments); };
 }

@@ -180,15 +180,5 @@ TEST(AtomicFolder, SurvivesKill) {
   EXPECT_EQ(entries(scratch.path()), 1U) << "temporary folders of killed runs remain";
 }
 
-TEST(AtomicFile, ReplacesTheContentAsAWhole) {
-  const ScratchFolder scratch;
-  const std::string path = (scratch.path() / "out" / "program.nc").string();
-  write_file_atomically(path, "G0 X1\n");
-  write_file_atomically(path, "G0 X2\n");
-  EXPECT_EQ(slurp(path), "G0 X2\n");
-  EXPECT_EQ(entries(scratch.path() / "out"), 1U);
-  EXPECT_THAT(refusal([&] { write_file_atomically(scratch.path().string(), ""); }), HasSubstr("directory"));
-}
-
 }  // namespace
 }  // namespace volcal

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/stats/channels.h"
@@ -36,15 +37,16 @@ std::string reference_line(const FitResult& result) {
 /// Range of a function and its largest uncertainty where it was measured.
 void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
                       const Observability& error, TextTable& text) {
-  double low = 1e300, high = -1e300, largest_u = 0.0;
-  bool rotation = false;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  double low = kNone, high = kNone, largest_u = kNone;
   for (const ErrorTableRow& row : table) {
     if (row.symbol != error.symbol || row.extrapolated) continue;
-    low = std::min(low, row.value);
-    high = std::max(high, row.value);
-    largest_u = std::max(largest_u, row.u);
-    rotation = row.rotation;
+    low = std::fmin(low, row.value);
+    high = std::fmax(high, row.value);
+    largest_u = std::fmax(largest_u, row.u);
   }
+  const auto symbol = ErrorSymbol::parse(error.symbol);
+  const bool rotation = symbol && is_rotation(symbol->component);
   const auto value = [](double si) { return fixed_number(si * 1e6, 2); };
   text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(low) : "-",
                 error.visible ? value(high) : "-", value(result.coverage_factor * error.u_rms),

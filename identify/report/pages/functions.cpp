@@ -49,9 +49,11 @@ void add_curves(const FunctionRows& rows, AxisName axis, Json& json) {
   for (const auto& [direction, list] : rows.by_direction) json["curves"].push_back(curve(direction, list));
 }
 
+/// None for an error that is nothing but its reversal.
 void add_knots(const FitResult& result, ErrorSymbol symbol, Json& json) {
-  const FunctionSpec& spec = result.identified.function(symbol);
-  json["knots"] = rounded_array(spec.breakpoints, position_factor(symbol.axis), 7);
+  std::vector<double> knots;
+  if (result.layout.find(symbol)) knots = result.identified.function(symbol).breakpoints;
+  json["knots"] = rounded_array(knots, position_factor(symbol.axis), 7);
 }
 
 Json function_json(const FitResult& result, ErrorSymbol symbol, const FunctionRows* rows) {
@@ -62,7 +64,7 @@ Json function_json(const FitResult& result, ErrorSymbol symbol, const FunctionRo
   json["unit"] = is_rotation(symbol.component) ? "µrad" : "µm";
   json["meaning"] = meaning(symbol);
   const Observability* error = find_observability(result, symbol.name());
-  if (rows == nullptr || !result.layout.find(symbol)) {
+  if (rows == nullptr) {
     json["state"] = "off";
     return json;
   }

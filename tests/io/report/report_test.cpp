@@ -198,6 +198,45 @@ TEST_F(ReportTest, NeedsNoNetwork) {
   }
 }
 
+/// EAX has no function, but a reversal of 8 urad: half of it either way.
+TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  FitResult& result = fit.result;
+  ParameterBlock reversal;
+  reversal.kind = ParameterKind::Effect;
+  reversal.name = "reversal EAX";
+  reversal.labels = {""};
+  reversal.units = {"urad"};
+  reversal.si_per_unit = {1e-6};
+  reversal.offset = result.layout.size++;
+  reversal.guess = reversal.prior_mean = reversal.prior_sigma = Eigen::VectorXd::Zero(1);
+  result.layout.blocks.push_back(reversal);
+  result.parameters.conservativeResize(result.layout.size);
+  result.parameters[reversal.offset] = 8e-6;
+  result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));
+  const json function =
+      page_data(json::parse(report_json(result, fit.campaign)), "functions").at("functions").at(3);
+  ASSERT_EQ(function.at("symbol"), "EAX");
+  EXPECT_EQ(function.at("state"), "identified");
+  EXPECT_TRUE(function.at("knots").empty());
+  ASSERT_EQ(function.at("curves").size(), 2u);
+  EXPECT_EQ(function.at("curves").at(0).at("direction"), -1);
+  EXPECT_EQ(function.at("curves").at(0).at("value").at(40), -4.0);
+  EXPECT_EQ(function.at("curves").at(1).at("value").at(0), 4.0);
+}
+
+/// Z was parked between the table's positions: nothing of its errors was measured where the table looks.
+TEST(FitSummary, AnAxisParkedOffTheGridHasNoValuesButItsUnits) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (FunctionSummary& function : fit.result.functions) {
+    if (function.symbol.axis == AxisName::Z) function.measured_min = function.measured_max = -0.12345;
+  }
+  const std::string text = fit_summary_text(fit.result, fit.campaign);
+  EXPECT_THAT(text, ::testing::ContainsRegex("ECZ +urad +- +- +0\\.00 +- .*NOT VISIBLE"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("EXZ +um +- +- +0\\.59 +- "));
+  EXPECT_THAT(text, ::testing::ContainsRegex("EAY +urad +-?[0-9.]+ +[0-9.]+ +0\\.59 +[0-9.]+ "));
+}
+
 /// A tracker whose every channel is suspect: a length, an azimuth, an elevation.
 TEST(ReportOfATracker, ReadingsHaveTheUnitOfTheirChannel) {
   test::SyntheticFit fit = test::synthetic_fit();

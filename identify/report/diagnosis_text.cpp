@@ -8,6 +8,7 @@
 
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/noise_words.h"
 
 namespace volcal {
 namespace {
@@ -120,14 +121,11 @@ std::string noise_text(const Diagnosis& diagnosis) {
                    {"", Align::Left}},
                   "Noise (restricted maximum likelihood)");
   for (const NoiseRow& row : diagnosis.noise) {
-    const bool is_length = row.unit == "m or rad" || row.unit == "m/m";
-    const double unit = is_length ? kMicro : 1.0;
-    const std::string name = row.unit == "m or rad" ? "um or urad"
-                             : row.unit == "m/m"    ? "um/m"
-                             : row.unit == "1"      ? ""
-                                                    : row.unit;
-    table.add_row({diagnosis.noise_instruments[row.instrument], row.term, edge(row.value, unit),
-                   fmt::format("{} .. {}", edge(row.low, unit), edge(row.high, unit)), name, row.remark});
+    const std::string& instrument = diagnosis.noise_instruments[row.instrument];
+    const EdgeNoise noise = edge_noise(row, instrument);
+    table.add_row({instrument, noise.meaning, short_number(noise.value, 3),
+                   fmt::format("{} .. {}", short_number(noise.low, 3), short_number(noise.high, 3)),
+                   noise.unit, row.remark});
   }
   return table.text();
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/tables/error_tables.h"
 
@@ -113,26 +114,6 @@ std::string variance_table(const FitResult& result) {
   return text.text();
 }
 
-struct EdgeUnit {
-  double si;
-  std::string name;
-};
-
-EdgeUnit edge_unit(const NoiseRow& row, const std::string& instrument) {
-  const std::string unit = instrument == "angle" ? "urad" : "um";
-  if (row.unit == "m or rad") return {1e-6, unit};
-  if (row.unit == "m/m") return {1e-6, unit + "/m"};
-  return {1.0, row.unit == "1" ? "" : row.unit};
-}
-
-std::string noise_name(const std::string& term) {
-  if (term == "white") return "independent, times the stated sigma";
-  if (term == "wander") return "slow wander";
-  if (term == "tau") return "  its correlation time";
-  if (term == "line") return "offset of a line";
-  return "in proportion to length";
-}
-
 std::string noise_table_text(const NoiseSummary& noise) {
   if (!noise.estimated) return "Noise: readings taken as independent; nothing else was looked for.\n";
   if (!noise.more_than_white)
@@ -152,11 +133,11 @@ std::string noise_table_text(const NoiseSummary& noise) {
   for (const NoiseRow& row : noise.rows) {
     if (row.value == 0.0) continue;
     const std::string& instrument = noise.instruments[row.instrument];
-    const EdgeUnit unit = edge_unit(row, instrument);
+    const EdgeNoise edge = edge_noise(row, instrument);
     const bool of_term = std::isfinite(row.likelihood_ratio) && row.term != "tau";
-    text.add_row({instrument, noise_name(row.term), short_number(row.value / unit.si, 3),
-                  short_number(row.low / unit.si, 2) + " .. " + short_number(row.high / unit.si, 2),
-                  unit.name, of_term ? fixed_number(row.likelihood_ratio, 1) : ""});
+    text.add_row({instrument, edge.meaning, short_number(edge.value, 3),
+                  short_number(edge.low, 2) + " .. " + short_number(edge.high, 2), edge.unit,
+                  of_term ? fixed_number(row.likelihood_ratio, 1) : ""});
   }
   return text.text();
 }

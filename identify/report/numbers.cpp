@@ -39,6 +39,7 @@ std::string axis_letter(AxisName axis) { return std::string(1, letter_of(axis));
 std::string shown_unit(const std::string& edge_unit) {
   std::string shown = edge_unit;
   if (shown.starts_with("um") || shown.starts_with("urad")) shown.replace(0, 1, "µ");
+  if (const std::size_t at = shown.find(" or urad"); at != std::string::npos) shown.replace(at + 4, 1, "µ");
   const std::size_t first = shown.find('/');
   const std::size_t second = first == std::string::npos ? first : shown.find('/', first + 1);
   if (second != std::string::npos) {

@@ -1,9 +1,12 @@
 #include "volcal/identify/solve/verdict.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
@@ -27,14 +30,16 @@ void report_stated_sigma(FitResult& result) {
 }
 
 /// "slow wander of 0.41 um over 580 s", empty for what stands in no sentence of its own.
-std::string noise_phrase(const FitResult& result, const NoiseRow& row) {
-  const std::string unit = result.noise.instruments[row.instrument] == "angle" ? "urad" : "um";
-  std::ostringstream text;
-  text.precision(2);
-  if (row.term == "wander") text << "slow wander of " << row.value * 1e6 << " " << unit;
-  if (row.term == "line") text << "offsets of lines of " << row.value * 1e6 << " " << unit;
-  if (row.term == "per_metre") text << row.value * 1e6 << " " << unit << "/m in proportion to length";
-  return text.str();
+std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
+  const EdgeNoise edge = edge_noise(row, noise.instruments[row.instrument]);
+  if (row.term == "line") return fmt::format("offsets of lines of {:.2g} {}", edge.value, edge.unit);
+  if (row.term == "per_metre") return fmt::format("{:.2g} {} in proportion to length", edge.value, edge.unit);
+  if (row.term != "wander") return {};
+  const auto tau = std::ranges::find_if(noise.rows, [&](const NoiseRow& other) {
+    return other.term == "tau" && other.instrument == row.instrument;
+  });
+  return fmt::format("slow wander of {:.2g} {}", edge.value, edge.unit) +
+         (tau == noise.rows.end() ? "" : fmt::format(" over {:.0f} s", tau->value));
 }
 
 void report_noise(FitResult& result) {
@@ -42,7 +47,7 @@ void report_noise(FitResult& result) {
     std::string phrases;
     for (const NoiseRow& row : result.noise.rows) {
       if (row.instrument != g || row.value == 0.0) continue;
-      const std::string phrase = noise_phrase(result, row);
+      const std::string phrase = noise_phrase(result.noise, row);
       if (!phrase.empty()) phrases += (phrases.empty() ? "" : ", ") + phrase;
     }
     if (phrases.empty()) continue;

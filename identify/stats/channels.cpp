@@ -5,6 +5,14 @@
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
+namespace {
+
+bool is_angle_column(const std::string& column) {
+  const std::string_view unit = unit_of_key(column).suffix;
+  return unit == "urad" || unit == "mrad" || unit == "rad" || unit == "deg";
+}
+
+}  // namespace
 
 std::string channel_column(const Setup& setup, std::size_t channel) {
   const Instrument* instrument = find_instrument(setup.instrument);
@@ -17,9 +25,7 @@ std::string channel_column(const Setup& setup, std::size_t channel) {
 }
 
 bool is_angle_channel(const Setup& setup, std::size_t channel) {
-  const std::string column = channel_column(setup, channel);
-  const std::string_view unit = unit_of_key(column).suffix;
-  return unit == "urad" || unit == "mrad" || unit == "rad" || unit == "deg";
+  return is_angle_column(channel_column(setup, channel));
 }
 
 std::vector<std::vector<bool>> angle_channels(const Campaign& campaign) {
@@ -34,6 +40,16 @@ std::vector<std::vector<bool>> angle_channels(const Campaign& campaign) {
 
 std::string residual_unit(const Setup& setup, std::size_t channel) {
   return is_angle_channel(setup, channel) ? "urad" : "um";
+}
+
+std::string residual_units(const std::string& instrument) {
+  const Instrument* known = find_instrument(instrument);
+  if (known == nullptr) return "um or urad";
+  bool length = false, angle = false;
+  for (const auto& columns : known->schema().column_sets) {
+    for (const auto& each : columns) (is_angle_column(each.column) ? angle : length) = true;
+  }
+  return angle && length ? "um or urad" : angle ? "urad" : "um";
 }
 
 }  // namespace volcal

@@ -17,5 +17,7 @@ bool is_angle_channel(const Setup& setup, std::size_t channel);
 std::vector<std::vector<bool>> angle_channels(const Campaign& campaign);
 /// Edge unit of a channel's residuals: "urad" or "um".
 std::string residual_unit(const Setup& setup, std::size_t channel);
+/// Of any reading of an instrument: "um", "urad", or "um or urad" of one that reads both and of one unknown.
+std::string residual_units(const std::string& instrument);
 
 }  // namespace volcal

@@ -51,7 +51,7 @@ TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
   const auto run = fit("");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("Noise by restricted maximum likelihood"));
-  EXPECT_THAT(run.output, HasSubstr("slow wander"));
+  EXPECT_THAT(run.output, ::testing::ContainsRegex("slow wander of [0-9.]+ um over [0-9]+ s"));
   EXPECT_THAT(run.output, HasSubstr("its noise is not independent"));
   const auto noise = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("noise");
   EXPECT_TRUE(noise.at("more_than_white").get<bool>());

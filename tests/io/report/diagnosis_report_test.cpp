@@ -234,7 +234,7 @@ TEST_F(DiagnosisReport, MapMemoryMdbAndNoise) {
   EXPECT_FALSE(detectable.at("rows").at(2).at("visible").get<bool>());
   const json noise = page("noise_model");
   EXPECT_EQ(noise.at("rows").at(1).at("value"), 0.5);
-  EXPECT_EQ(noise.at("rows").at(1).at("unit"), "µm or µrad");
+  EXPECT_EQ(noise.at("rows").at(1).at("unit"), "µm");
   EXPECT_EQ(noise.at("removed_readings"), 3);
 }
 

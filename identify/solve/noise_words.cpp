@@ -1,0 +1,31 @@
+#include "volcal/identify/solve/noise_words.h"
+
+#include "volcal/identify/stats/channels.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kMicro = 1e-6;
+
+std::string meaning(const std::string& term) {
+  if (term == "white") return "independent, times the stated sigma";
+  if (term == "wander") return "slow wander";
+  if (term == "tau") return "correlation time of the wander";
+  if (term == "line") return "offset that the readings of a line share";
+  return "independent, in proportion to length";
+}
+
+std::string unit_of(const NoiseRow& row, const std::string& instrument) {
+  if (row.unit == "m or rad") return residual_units(instrument);
+  if (row.unit == "m/m") return "um/m";
+  return row.unit == "1" ? "" : row.unit;
+}
+
+}  // namespace
+
+EdgeNoise edge_noise(const NoiseRow& row, const std::string& instrument) {
+  const double si = row.unit == "m or rad" || row.unit == "m/m" ? kMicro : 1.0;
+  return {row.value / si, row.low / si, row.high / si, unit_of(row, instrument), meaning(row.term)};
+}
+
+}  // namespace volcal

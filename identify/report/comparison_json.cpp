@@ -147,7 +147,7 @@ Json worst_json(const Campaign& campaign, const ComparedModel& model) {
     const auto channel = static_cast<std::size_t>(record.channel);
     const bool angle = is_angle_channel(setup, channel);
     worst.push_back({{"setup", setup.name},
-                     {"row", record.source_line},
+                     {"line", record.source_line},
                      {"column", channel_column(setup, channel)},
                      {angle ? "residual_urad" : "residual_um", micro(record.residual())},
                      {angle ? "sigma_urad" : "sigma_um", micro(record.sigma)},
@@ -194,7 +194,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
                                 {"total", cell_json(model.comparison.total)},
                                 {"by", breakdowns_json(model.comparison)}});
   }
-  return json.dump(2) + '\n';
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "volcal/identify/report/residual_sample.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/stats/channels.h"
@@ -145,7 +146,7 @@ std::string noise_table_text(const NoiseSummary& noise) {
 std::string outliers_table(const FitResult& result, const Campaign& campaign) {
   std::vector<const ResidualRecord*> flagged;
   for (const ResidualRecord& record : result.residuals) {
-    if (record.flagged || record.removed) flagged.push_back(&record);
+    if (report::is_suspect(record)) flagged.push_back(&record);
   }
   if (flagged.empty()) return {};
   std::ranges::sort(flagged, std::greater<>(), [](const ResidualRecord* r) { return std::abs(r->w); });

@@ -8,7 +8,7 @@
 namespace volcal::report {
 
 inline constexpr double kPerMicro = 1e6;  ///< um per m, urad per rad
-inline constexpr double kMillimetre = 1e3;
+inline constexpr double kPerMilli = 1e3;  ///< mm per m
 
 /// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
 Json rounded(double value, int digits = 5);

@@ -1,6 +1,5 @@
 #include "volcal/identify/report/report.h"
 
-#include <fstream>
 #include <stdexcept>
 
 #include "volcal/identify/report/page.h"
@@ -73,7 +72,8 @@ std::string document(const std::string& title, std::string_view subtitle, const 
 
 std::string filled_page(const std::string& title, const std::string& json) {
   if (!report_available()) throw std::runtime_error(std::string(how_to_get_report()));
-  return fill(fill(report::page_template(), kTitleSlot, html_text(title)), kDataSlot, without_markup(json));
+  // The title stands first on the page: filled last, its slot is found before any text of the user's.
+  return fill(fill(report::page_template(), kDataSlot, without_markup(json)), kTitleSlot, html_text(title));
 }
 
 }  // namespace
@@ -108,15 +108,6 @@ std::string report_html(const FitResult& result, const Campaign& campaign, const
 std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {
   return filled_page(campaign.machine.name + " \u2013 volcal diagnosis",
                      report_json(diagnosis, campaign, options));
-}
-
-void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,
-                  const ReportOptions& options) {
-  const std::string page = report_html(result, campaign, options);
-  std::ofstream file(path, std::ios::binary);
-  file.write(page.data(), static_cast<std::streamsize>(page.size()));
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string());
 }
 
 }  // namespace volcal

@@ -6,7 +6,6 @@
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
 /// its data and one JavaScript renderer; page.h and web/src/pages.js are the two registration tables.
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -35,8 +34,5 @@ std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign,
                         const ReportOptions& options = {});
 std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign,
                         const ReportOptions& options = {});
-/// Writes report_html() to a file. Throws std::runtime_error also when the file cannot be written.
-void write_report(const FitResult& result, const Campaign& campaign, const std::filesystem::path& path,
-                  const ReportOptions& options = {});
 
 }  // namespace volcal

@@ -13,12 +13,14 @@ constexpr std::size_t kWorst = 300;  ///< largest |w| that are always shown
 
 }  // namespace
 
+bool is_suspect(const ResidualRecord& record) { return record.flagged || record.removed; }
+
 std::vector<std::size_t> residual_sample(const std::vector<ResidualRecord>& residuals, std::size_t limit) {
   std::vector<std::size_t> order(residuals.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (residuals.size() <= limit) return order;
 
-  const auto marked = [&](std::size_t i) { return residuals[i].flagged || residuals[i].removed; };
+  const auto marked = [&](std::size_t i) { return is_suspect(residuals[i]); };
   const auto flagged = static_cast<std::size_t>(std::ranges::count_if(order, marked));
   const std::size_t kept = std::min(limit / 2, flagged + kWorst);
   const auto worse = [&](std::size_t a, std::size_t b) {

@@ -7,6 +7,9 @@
 
 namespace volcal::report {
 
+/// Found by the outlier test: flagged, or taken out of the adjustment.
+bool is_suspect(const ResidualRecord& record);
+
 /// Indices of at most `limit` residuals, ascending: all of them when they fit; else the flagged and the
 /// largest ones (at most half of the limit) and an even pseudo-random choice of the rest, the same on every
 /// run.

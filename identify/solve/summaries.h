@@ -18,7 +18,7 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
 
 /// Root mean square standard uncertainty of a function over its measured travel, or of a scalar parameter, by
 /// the layout and covariance of the result; m or rad.
-double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& symbol);
+double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& name);
 
 /// `spec` with explicit knots and the values of `parameters`; can be loaded again.
 ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,

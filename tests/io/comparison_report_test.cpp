@@ -172,6 +172,20 @@ TEST(ComparisonJson, HoldsTheSameFiguresAndNullForUndefinedOnes) {
   EXPECT_NEAR(line.at("model").at("B_um").get<double>(), 2.0, 1e-6);
   EXPECT_TRUE(line.at("readings").at("R_um").is_null());
   EXPECT_NEAR(model.at("worst_readings").at(0).at("standardized").get<double>(), 10.0, 1e-6);
+  EXPECT_EQ(model.at("worst_readings").at(0).at("line"), 322);  // reading 320 of the file, below its head
+}
+
+/// A name in another encoding than UTF-8 does not cost the figures.
+TEST(ComparisonJson, ReplacesBytesThatAreNoText) {
+  Campaign campaign = campaign_of_two_setups();
+  campaign.setups[0].name =
+      "S\xFC"
+      "d";
+  const std::vector<ComparedModel> models = {compared_model("result", campaign, records_of(campaign, 10.0))};
+  const auto json = nlohmann::json::parse(comparison_json(campaign, models));
+  EXPECT_EQ(json.at("models").at(0).at("worst_readings").at(0).at("setup"),
+            "S\xEF\xBF\xBD"
+            "d");
 }
 
 }  // namespace

@@ -2,14 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/residual_sample.h"
 #include "volcal/identify/stats/channels.h"
 
 namespace volcal::report {
 namespace {
 
 constexpr std::size_t kListed = 200;
+
+/// Chance that the test suspects any reading of a right model with right noise.
+double chance_of_any(const FitResult& result) {
+  const double of_one = std::erfc(result.outlier_critical_value / std::numbers::sqrt2);
+  return -std::expm1(static_cast<double>(result.residuals.size()) * std::log1p(-of_one));
+}
 
 }  // namespace
 
@@ -18,7 +26,7 @@ Json outliers_page(const PageInput& input) {
   std::vector<const ResidualRecord*> suspects;
   std::size_t removed = 0;
   for (const ResidualRecord& record : result.residuals) {
-    if (record.flagged || record.removed) suspects.push_back(&record);
+    if (is_suspect(record)) suspects.push_back(&record);
     if (record.removed) ++removed;
   }
   std::ranges::stable_sort(suspects, std::greater<>(),
@@ -40,6 +48,7 @@ Json outliers_page(const PageInput& input) {
                     {"removed", record.removed}});
   }
   return {{"critical", rounded(result.outlier_critical_value, 4)},
+          {"chance", rounded(chance_of_any(result), 3)},
           {"observations", result.residuals.size()},
           {"suspect", suspects.size()},
           {"removed", removed},

@@ -15,7 +15,7 @@ Json residual_vectors_page(const DiagnosisInput& input) {
   const DiagnosisFigures& figures = input.diagnosis.figures;
   Json means = Json::array();
   for (const ResidualVector& vector : figures.vectors) {
-    means.push_back({{"point_mm", rounded_vector(vector.point_w, kMillimetre, 6)},
+    means.push_back({{"point_mm", rounded_vector(vector.point_w, kPerMilli, 6)},
                      {"given_um", rounded_vector(vector.given_w, kPerMicro, 4)},
                      {"reached_um", rounded_vector(vector.reached_w, kPerMicro, 4)},
                      {"u_um", rounded(vector.u * kPerMicro, 3)},
@@ -27,7 +27,7 @@ Json residual_vectors_page(const DiagnosisInput& input) {
     const double squares = drawn.direction_w.squaredNorm();
     if (drawn.angle || squares == 0.0) continue;
     const Eigen::Vector3d along = drawn.direction_w / squares;
-    single.push_back({{"point_mm", rounded_vector(drawn.point_w, kMillimetre, 6)},
+    single.push_back({{"point_mm", rounded_vector(drawn.point_w, kPerMilli, 6)},
                       {"given_um", rounded_vector(along * drawn.given, kPerMicro, 3)},
                       {"reached_um", rounded_vector(along * drawn.reached, kPerMicro, 3)},
                       {"setup", input.campaign.setups[drawn.setup].name}});

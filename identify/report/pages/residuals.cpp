@@ -1,5 +1,6 @@
 /// Normalised residuals against everything recorded: positions of the axes, time, setup.
-/// Means and histogram are over all readings; the points drawn are a sample when there are very many.
+/// Means are over all readings but the suspect, the histogram over all; the points drawn are a sample when
+/// there are very many.
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +23,7 @@ constexpr int kHistogramBins = 40;
 double nan() { return std::numeric_limits<double>::quiet_NaN(); }
 
 /// Readings that means are taken over: those with a residual of their own, suspect ones left out.
-bool counts(const ResidualRecord& record) {
-  return !record.removed && !record.flagged && record.redundancy > 0.0;
-}
+bool counts(const ResidualRecord& record) { return !is_suspect(record) && record.redundancy > 0.0; }
 
 /// Mean of w in equal bins of an abscissa, with the number of readings in each.
 Json binned_mean(const std::vector<double>& abscissa, const std::vector<ResidualRecord>& records) {

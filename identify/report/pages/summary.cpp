@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/residual_sample.h"
 #include "volcal/identify/report/text_tables.h"
 
 namespace volcal::report {
@@ -47,7 +48,7 @@ Json invisible_errors(const FitResult& result) {
 
 Json figures(const PageInput& input) {
   const FitResult& result = input.result;
-  const auto flagged = std::ranges::count_if(result.residuals, &ResidualRecord::flagged);
+  const auto suspect = std::ranges::count_if(result.residuals, is_suspect);
   Json list = Json::array();
   const auto add = [&](const char* label, const std::string& value, const std::string& unit,
                        const std::string& note) {
@@ -57,16 +58,15 @@ Json figures(const PageInput& input) {
     const auto worst = std::ranges::max_element(input.volume, {}, &ToolVolume::error_rms);
     add("Volumetric error now", fmt::format("{:.1f}", worst->error_rms() * kPerMicro), "µm RMS",
         fmt::format("max {:.1f} µm, tool {}", worst->error_max() * kPerMicro, worst->tool));
-    const auto vaguest = std::ranges::max_element(input.volume, {}, &ToolVolume::u_rms);
-    add("Its uncertainty", fmt::format("{:.2f}", vaguest->u_rms() * kPerMicro), "µm RMS, k = 1",
-        fmt::format("max {:.2f} µm, tool {}", vaguest->u_max() * kPerMicro, vaguest->tool));
+    add("Its uncertainty", fmt::format("{:.2f}", worst->u_rms() * kPerMicro), "µm RMS, k = 1",
+        fmt::format("max {:.2f} µm, tool {}", worst->u_max() * kPerMicro, worst->tool));
   }
   add("Scatter / stated noise σ₀", fmt::format("{:.3f}", result.sigma0), "", "1 = as stated");
   add("χ² / degrees of freedom", fmt::format("{:.3f}", result.dof > 0 ? result.chi2 / result.dof : 0.0), "",
       fmt::format("{:.0f} / {:.0f}", result.chi2, result.dof));
   add("Observations", count_number(static_cast<long long>(result.residuals.size())), "",
       fmt::format("in {} setups", result.setups.size()));
-  add("Suspect readings", count_number(flagged), "",
+  add("Suspect readings", count_number(suspect), "",
       fmt::format("|w| > {:.2f}", result.outlier_critical_value));
   return list;
 }

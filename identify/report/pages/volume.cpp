@@ -44,11 +44,11 @@ Json tool_json(const ToolVolume& volume) {
   Json extrapolated = Json::array();
   for (const bool outside : volume.extrapolated) extrapolated.push_back(outside ? 1 : 0);
   return {{"name", volume.tool},
-          {"point_mm", points_json(volume.point_w, kMillimetre, 7)},
+          {"point_mm", points_json(volume.point_w, kPerMilli, 7)},
           {"error_um", points_json(volume.error_w, kPerMicro, 4)},
           {"u_um", points_json(volume.u_w, kPerMicro, 3)},
           {"extrapolated", std::move(extrapolated)},
-          {"corner_mm", points_json(volume.corner_w, kMillimetre, 7)},
+          {"corner_mm", points_json(volume.corner_w, kPerMilli, 7)},
           {"components", component_ranges(volume)},
           {"error_rms_um", rounded(volume.error_rms() * kPerMicro, 4)},
           {"error_max_um", rounded(volume.error_max() * kPerMicro, 4)},
@@ -67,11 +67,11 @@ Json named_points(const FitResult& result) {
     if (block.name.starts_with(station)) {
       list.push_back({{"name", block.name.substr(station.size())},
                       {"kind", "station"},
-                      {"point_mm", rounded_vector(point_w, kMillimetre, 7)}});
+                      {"point_mm", rounded_vector(point_w, kPerMilli, 7)}});
     } else if (block.name.ends_with(centre)) {
       list.push_back({{"name", block.name.substr(0, block.name.size() - centre.size())},
                       {"kind", "centre"},
-                      {"point_mm", rounded_vector(point_w, kMillimetre, 7)}});
+                      {"point_mm", rounded_vector(point_w, kPerMilli, 7)}});
     }
   }
   return list;
@@ -97,7 +97,7 @@ Json setup_json(const Setup& setup, const KinematicChain& chain, const Machine& 
       position[index_of(axis.name)] = readings.position[index_of(axis.name)][row];
     }
     points.push_back(
-        rounded_vector(chain.nominal_point_w(position, machine.tools[setup.tool].offset), kMillimetre, 6));
+        rounded_vector(chain.nominal_point_w(position, machine.tools[setup.tool].offset), kPerMilli, 6));
   }
   return {{"name", setup.name},
           {"instrument", setup.instrument},

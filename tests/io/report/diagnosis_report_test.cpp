@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/io/report/drawing.h"
 #include "tests/support/hand_made_diagnosis.h"
 #include "volcal/identify/report/page.h"
 
@@ -53,7 +54,12 @@ class DiagnosisReport : public ::testing::Test {
     VariableFigure time{.name = "time", .categories = {}, .drawn = {60.0, 120.0}, .given = {}, .reached = {}};
     time.given[0] = {{90.0}, {1.5e-6}, {0.25e-6}, {2}};
     time.reached[0] = {{90.0}, {0.5e-6}, {0.25e-6}, {2}};
-    figures.variables = {time};
+    VariableFigure elevation{
+        .name = "elevation", .categories = {}, .drawn = {0.5, -0.25}, .given = {}, .reached = {}};
+    VariableFigure run = elevation, tool = elevation;
+    run.name = "run";
+    tool.name = "tool long";
+    figures.variables = {time, elevation, run, tool};
     figures.vectors = {{{0.5, 0.25, 0.125}, {1e-6, 2e-6, 2e-6}, {0.0, 0.0, 1e-6}, 0.3e-6, 40}};
     figures.generic.variables = {"x", "time"};
     for (int d = 0; d < 4; ++d) {
@@ -189,6 +195,12 @@ TEST_F(DiagnosisReport, PlotsAreInEdgeUnits) {
   EXPECT_EQ(against.at("variables").at(0).at("length").at("given").at("mean").at(0), 1.5);
   EXPECT_EQ(against.at("variables").at(0).at("length").at("reached").at("noise").at(0), 0.25);
   EXPECT_FALSE(against.at("variables").at(0).contains("angle"));
+  const json& elevation = against.at("variables").at(1);
+  EXPECT_EQ(elevation.at("title"), "Elevation of the beam");
+  EXPECT_EQ(elevation.at("unit"), "deg");
+  EXPECT_NEAR(elevation.at("x").at(0).get<double>(), 28.648, 1e-9);  // 0.5 rad
+  EXPECT_EQ(against.at("variables").at(2).at("title"), "Run");
+  EXPECT_EQ(against.at("variables").at(3).at("title"), "Tool long");
   EXPECT_EQ(against.at("records").at("held_out"), (json{0, 1}));
   EXPECT_EQ(against.at("records").at("reached").at(0), -1.0);
 }
@@ -236,6 +248,27 @@ TEST_F(DiagnosisReport, MapMemoryMdbAndNoise) {
   EXPECT_EQ(noise.at("rows").at(1).at("value"), 0.5);
   EXPECT_EQ(noise.at("rows").at(1).at("unit"), "µm");
   EXPECT_EQ(noise.at("removed_readings"), 3);
+}
+
+/// Every section and control, without a browser; names of the user's are no markup.
+TEST_F(DiagnosisReport, EverySectionDrawsItself) {
+  campaign_.setups[0].name = "<i>S1</i> & 2";
+  campaign_.setups[1].name = "<i>S2</i>";
+  diagnosis_.figures.leading.unit = "<i>um</i>";
+  VariableFigure setup{.name = "setup",
+                       .categories = {"<i>S1</i> & 2", "<i>S2</i>"},
+                       .drawn = {0.0, 1.0},
+                       .given = {},
+                       .reached = {}};
+  VariableFigure temperature = diagnosis_.figures.variables.front();
+  temperature.name = "T_<i>spindle</i>";
+  diagnosis_.figures.variables.insert(diagnosis_.figures.variables.end(), {setup, temperature});
+  for (EffectFinding& effect : diagnosis_.ranking) effect.label += " <i>x</i>";
+  diagnosis_.ladder.back().added = "<i>reversal</i> EXX";
+  const test::Drawing drawing = test::draw_report(report_json(diagnosis_, campaign_));
+  if (!drawing.possible) GTEST_SKIP() << "Node.js is not installed";
+  EXPECT_EQ(drawing.exit_code, 0) << drawing.output;
+  EXPECT_THAT(drawing.output, ::testing::StartsWith("10 sections, "));
 }
 
 TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {

@@ -10,11 +10,13 @@
 #include <set>
 #include <sstream>
 
+#include "tests/io/report/drawing.h"
 #include "tests/io/report/synthetic_fit.h"
 #include "volcal/identify/report/correlation.h"
 #include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/residual_sample.h"
+#include "volcal/model/functions/registry.h"
 
 namespace volcal {
 namespace {
@@ -157,6 +159,43 @@ TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
   }
 }
 
+/// |w| > 3.29 has a chance of 0.0010019 for one reading; 1 - (1 - 0.0010019)^1402 for any of 1,402.
+TEST_F(ReportTest, ChanceOfAnySuspectIsThatOfAllReadings) {
+  const json data = page_data(*document_, "outliers");
+  ASSERT_EQ(data.at("observations"), 1402);
+  EXPECT_NEAR(data.at("chance").get<double>(), 0.755, 1e-9);
+}
+
+TEST(ReportSummary, CountsRemovedReadingsAmongTheSuspect) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (ResidualRecord& record : fit.result.residuals) record.flagged = record.removed = false;
+  fit.result.residuals[3].removed = true;
+  fit.result.residuals[5].flagged = true;
+  const json document = json::parse(report_json(fit.result, fit.campaign));
+  EXPECT_EQ(page_data(document, "outliers").at("suspect"), 2);
+  EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("label"), "Suspect readings");
+  EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("value"), "2");
+}
+
+/// The uncertainty of another tool's error says nothing about the error shown.
+TEST(ReportSummary, ErrorAndUncertaintyAreOfOneTool) {
+  const test::SyntheticFit fit = test::synthetic_fit();
+  const ReportOptions options;
+  report::PageInput input(fit.result, fit.campaign, options);
+  input.volume.resize(2);
+  input.volume[0].tool = "worst";
+  input.volume[0].error_w = {{3e-6, 4e-6, 0.0}};
+  input.volume[0].u_w = {{1e-6, 0.0, 0.0}};
+  input.volume[1].tool = "vaguest";
+  input.volume[1].error_w = {{2e-6, 0.0, 0.0}};
+  input.volume[1].u_w = {{0.0, 9e-6, 0.0}};
+  const report::Json figures = report::summary_page(input).at("figures");
+  EXPECT_EQ(figures.at(0).at("value"), "5.0");
+  EXPECT_EQ(figures.at(0).at("note"), "max 5.0 µm, tool worst");
+  EXPECT_EQ(figures.at(1).at("value"), "1.00");
+  EXPECT_EQ(figures.at(1).at("note"), "max 1.00 µm, tool worst");
+}
+
 TEST_F(ReportTest, HistogramHoldsEveryReading) {
   const json histogram = page_data(*document_, "residuals").at("histogram");
   std::size_t sum = 0;
@@ -176,9 +215,7 @@ TEST_F(ReportTest, NuisanceParametersAreInTheirEdgeUnit) {
 
 TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
   if (!report_available()) GTEST_SKIP() << how_to_get_report();
-  const auto path = std::filesystem::path(VOLCAL_BINARY_DIR) / "report_test.html";
-  write_report(fit_->result, fit_->campaign, path, {.date = "2024-05-17"});
-  const std::string page = file_text(path);
+  const std::string page = report_html(fit_->result, fit_->campaign, {.date = "2024-05-17"});
   EXPECT_EQ(page.find("@VOLCAL_REPORT_"), std::string::npos);
   EXPECT_NE(page.find("<title>VMC 800 &lt;x&gt; 500 &amp; 450"), std::string::npos);
   const std::string opening = "<script type=\"application/json\" id=\"volcal-data\">";
@@ -188,6 +225,39 @@ TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
   const std::string data = page.substr(from, page.find("</script", from) - from);
   EXPECT_EQ(json::parse(data), *document_);
   EXPECT_EQ(data.find('<'), std::string::npos);
+}
+
+/// Every section and control, without a browser; names of the user's are no markup.
+TEST(ReportDrawing, EverySectionDrawsItself) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  for (volcal::Setup& setup : fit.campaign.setups) {
+    if (setup.options.text("station")) setup.options.set("station", "<i>" + setup.name + "</i> & P");
+    setup.name = "<i>" + setup.name + "</i> & 2";
+  }
+  for (std::size_t k = 0; k < fit.result.setups.size(); ++k)
+    fit.result.setups[k].name = fit.campaign.setups[k].name;
+  for (ParameterBlock& block : fit.result.layout.blocks) {
+    if (block.name == "station P1") block.name = "station <i>P1</i>";
+  }
+  const test::Drawing drawing = test::draw_report(report_json(fit.result, fit.campaign));
+  if (!drawing.possible) GTEST_SKIP() << "Node.js is not installed";
+  EXPECT_EQ(drawing.exit_code, 0) << drawing.output;
+  EXPECT_THAT(drawing.output, ::testing::StartsWith("11 sections, "));
+}
+
+/// A machine with the name of a slot takes neither the data's place nor the title's.
+TEST_F(ReportTest, NamesOfSlotsAreText) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const std::string opening = "<script type=\"application/json\" id=\"volcal-data\">";
+  for (const std::string name : {"@VOLCAL_REPORT_DATA@", "@VOLCAL_REPORT_TITLE@"}) {
+    FitResult result = fit_->result;
+    result.machine.name = name;
+    const std::string page = report_html(result, fit_->campaign);
+    EXPECT_NE(page.find("<title>" + name + " \u2013 volcal report</title>"), std::string::npos);
+    const std::size_t from = page.find(opening) + opening.size();
+    const json data = json::parse(page.substr(from, page.find("</script", from) - from));
+    EXPECT_EQ(data.at("title"), name);
+  }
 }
 
 TEST_F(ReportTest, NeedsNoNetwork) {
@@ -300,7 +370,38 @@ TEST(ErrorCorrelation, OfTwoScalarsIsTheAbsoluteCorrelation) {
                           std::sqrt(result.covariance(blocks[0].offset, blocks[0].offset) *
                                     result.covariance(blocks[1].offset, blocks[1].offset));
   EXPECT_NEAR(correlation.value(17, 18), expected, 1e-12);
-  EXPECT_TRUE((correlation.value.array() >= 0.0).all() && (correlation.value.array() <= 1.0).all());
+}
+
+/// Two functions that are straight lines between values at both ends of the travel. With the samples t = 0,
+/// .1
+/// ... 1 the rows (1 - t, t) have M = R^T R = [3.85 1.65; 1.65 3.85]. Own covariances are unit matrices, and
+/// the values at the start alone correlate, by .6: tr(S_fg S_gf) = .36 * 3.85^2 = 5.3361,
+/// tr(S_ff^2) = |M|^2 = 35.09; sqrt(5.3361 / 35.09) = .389960.
+TEST(ErrorCorrelation, OfTwoFunctionsByHand) {
+  FitResult result;
+  Axis axis;
+  axis.name = AxisName::X;
+  axis.travel_max = 1.0;
+  result.machine.axes = {axis};
+  FunctionSpec line;
+  line.degree = 1;
+  line.knots = KnotChoice::Explicit;
+  line.breakpoints = {0.0, 1.0};
+  FunctionGroup group;
+  group.axis = AxisName::X;
+  group.basis = find_basis("bspline")->make(line, axis);
+  group.symbols = {{Component::X, AxisName::X}, {Component::Y, AxisName::X}};
+  ASSERT_LT((group.basis->row(0.3) - Eigen::Vector2d(0.7, 0.3)).norm(), 1e-15);
+  result.covariance = Eigen::MatrixXd::Identity(4, 4);
+  const int f = group.index(0, 0), g = group.index(0, 1);
+  result.covariance(f, g) = result.covariance(g, f) = 0.6;
+  result.layout.groups = {group};
+  result.layout.size = result.layout.function_size = 4;
+  const report::ErrorCorrelation correlation = report::error_correlation(result);
+  ASSERT_EQ(correlation.symbol.size(), 2u);
+  EXPECT_NEAR(correlation.value(0, 1), 0.389960, 1e-6);
+  EXPECT_EQ(correlation.value(0, 1), correlation.value(1, 0));
+  EXPECT_EQ(correlation.value(0, 0), 1.0);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ export function el(tag, attributes = {}, children = []) {
   return node;
 }
 
-const minus = (text) => text.replace('-', '−');
+const minus = (text) => text.replaceAll('-', '−');
 
 /** Number with fixed decimals and a true minus sign; an en dash when there is none. */
 export function fixed(value, decimals) {

@@ -25,7 +25,10 @@ function markCurrentSection(nav, sections) {
   const update = () => {
     const reached = sections.filter((node) => node.getBoundingClientRect().top < 120);
     const current = (reached.at(-1) ?? sections[0]).id;
-    for (const [id, link] of links) link.toggleAttribute('aria-current', id === current);
+    for (const [id, link] of links) {
+      if (id === current) link.setAttribute('aria-current', 'true');
+      else link.removeAttribute('aria-current');
+    }
   };
   addEventListener('scroll', update, { passive: true });
   update();

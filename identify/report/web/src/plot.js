@@ -63,6 +63,33 @@ export const commonLayout = () => ({
 /** Height of a picture in space: a scene is drawn to the height, so that a narrow one must be low to show its edges. */
 export const sceneHeight = (node) => Math.round(Math.min(520, Math.max(320, 0.92 * node.clientWidth)));
 
+/** Text that is not the report's own (names of setups, stations, tools): the plot library would read markup in it. */
+export const plain = (text) => String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;');
+
+/** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
+export const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
+
+export const norm = (v) => Math.hypot(...v);
+
+/** One coordinate of points; a missing point is a gap. */
+export const column = (points, i) => points.map((point) => (point === null ? null : point[i]));
+
+/** Separate segments as one polyline with gaps. */
+export function segments(pairs) {
+  const ends = pairs.flatMap(([from, to]) => [from, to, null]);
+  return { x: column(ends, 0), y: column(ends, 1), z: column(ends, 2) };
+}
+
+/** Light to strong shades for sizes up to `largest`. */
+export const sizeShades = (largest) => ({ colorscale: [0, 1, 2, 3].map((k) => [k / 3, color(`size-${k}`)]), cmin: 0, cmax: largest });
+
+export const colorBar = (title, x) => ({
+  title: { text: title, side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x, outlinewidth: 0, tickfont: { size: 10, color: color('text') },
+});
+
+/** Layout of a plot with its legend in one line above. */
+export const legendAbove = () => ({ showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } } });
+
 /** Layout of a two-dimensional plot with titled axes. */
 export function layout2d({ x, y, height, margin = {}, ...rest }) {
   return {

@@ -1,5 +1,5 @@
 import { el, note, significant } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { addPlot, layout2d, legendAbove, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 function partialPlot(data) {
@@ -7,7 +7,8 @@ function partialPlot(data) {
   const ends = [Math.min(...data.driver), Math.max(...data.driver)];
   const size = Math.max(Math.min(5, Math.max(...data.residual.map(Math.abs))), ...mean.mean.map((value, k) => Math.abs(value) + 2 * mean.noise[k]));
   const line = (slope) => ends.map((x) => slope * x);
-  const per = data.unit === '' ? '' : ` per ${data.unit}`;
+  const unit = plain(data.unit);
+  const per = unit === '' ? '' : ` per ${unit}`;
   return {
     data: [
       { x: data.driver, y: data.residual, type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.4, color: series(0) }, name: 'readings', hovertemplate: `partial driver %{x:.3g}<br>partial residual %{y:.2f} σ<extra></extra>` },
@@ -15,14 +16,14 @@ function partialPlot(data) {
         x: [...ends, ...[...ends].reverse()], y: [...line(data.amplitude - data.U95), ...line(data.amplitude + data.U95).reverse()],
         type: 'scatter', mode: 'lines', fill: 'toself', fillcolor: transparent(color('bad'), 0.18), line: { width: 0 }, hoverinfo: 'skip', name: '± U95',
       },
-      { x: ends, y: line(data.amplitude), type: 'scatter', mode: 'lines', line: { color: color('bad'), width: 2 }, name: `slope ${significant(data.amplitude)} ${data.unit}`, hoverinfo: 'skip' },
+      { x: ends, y: line(data.amplitude), type: 'scatter', mode: 'lines', line: { color: color('bad'), width: 2 }, name: `slope ${significant(data.amplitude)} ${unit}`, hoverinfo: 'skip' },
       {
         x: mean.centre, y: mean.mean, error_y: { type: 'data', array: mean.noise.map((u) => 2 * u), color: color('text'), thickness: 1.2, width: 3 }, type: 'scatter', mode: 'markers', marker: { size: 7, color: color('text') },
         text: mean.count, name: 'means ± 2 standard deviations', hovertemplate: 'mean of %{text} readings: %{y:.3f} σ<extra></extra>',
       },
     ],
     layout: layout2d({
-      height: 430, margin: { t: 34 }, showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } }, hovermode: 'closest',
+      height: 430, margin: { t: 34 }, ...legendAbove(), hovermode: 'closest',
       x: { title: `partial driver [σ${per}]` }, y: { title: 'partial residual [σ]', range: [-1.05 * size, 1.05 * size] },
     }),
   };

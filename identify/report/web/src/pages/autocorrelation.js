@@ -1,9 +1,9 @@
-import { el, note } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { el, note, significant } from '../dom.js';
+import { addPlot, layout2d, legendAbove } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 function correlationPlot(one) {
-  const gap = one.gap_s.map((seconds) => (seconds === null ? '' : `, ${seconds < 120 ? `${seconds.toPrecision(2)} s` : `${(seconds / 60).toPrecision(2)} min`} apart`));
+  const gap = one.gap_s.map((seconds) => (seconds === null ? '' : `, ${seconds < 120 ? `${significant(seconds, 2)} s` : `${significant(seconds / 60, 2)} min`} apart`));
   const trace = (key, name, shade, more) => ({
     x: one.lag, y: one[key], text: gap, type: 'scatter', mode: 'lines+markers', name, line: { color: shade, width: 1.8, ...more }, marker: { size: 6, color: shade },
     hovertemplate: `${name}: %{y:.3f}<br>lag %{x} readings%{text}<extra></extra>`,
@@ -16,7 +16,7 @@ function correlationPlot(one) {
       trace('whitened', 'after whitening', series(0), {}),
     ],
     layout: layout2d({
-      height: 350, margin: { t: 34 }, showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } }, hovermode: 'closest',
+      height: 350, margin: { t: 34 }, ...legendAbove(), hovermode: 'closest',
       x: { title: 'lag [readings]', type: 'log', tickvals: one.lag, zeroline: false }, y: { title: 'autocorrelation [–]' },
     }),
   };

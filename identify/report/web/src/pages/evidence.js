@@ -1,5 +1,5 @@
 import { bar, el, fixed, longTable, note, significant, table } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { addPlot, layout2d, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const rows = (effects) => effects.flatMap((effect) => (effect.amplitudes.length === 0
@@ -30,13 +30,13 @@ function evidencePlot(data, effects) {
   return {
     data: [{
       x: shown.map((effect) => -effect.log10_p), y, type: 'scatter', mode: 'markers', marker: { size: 14, color: transparent(color('text'), 0) },
-      text: shown.map((effect) => `${effect.label} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible ${fixed(100 * effect.visible_fraction, 0)} %`),
+      text: shown.map((effect) => `${plain(effect.label)} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible ${fixed(100 * effect.visible_fraction, 0)} %`),
       hovertemplate: '%{text}<extra></extra>',
     }],
     layout: layout2d({
       height: 76 + 20 * shown.length, margin: { l: 10, t: 26 }, hovermode: 'closest',
       x: { title: '−log10 p, family-wise', range: [0, 1.05 * most], zeroline: false },
-      y: { title: '', tickvals: y, ticktext: shown.map((effect) => effect.label), showgrid: false, zeroline: false, range: [-0.7, shown.length - 0.3] },
+      y: { title: '', tickvals: y, ticktext: shown.map((effect) => plain(effect.label)), showgrid: false, zeroline: false, range: [-0.7, shown.length - 0.3] },
       shapes: [
         ...shown.map((effect, k) => ({ type: 'rect', x0: 0, x1: -effect.log10_p, y0: k - 0.3, y1: k + 0.3, fillcolor: shadeOf(effect), line: { width: 0 }, layer: 'between' })),
         { type: 'line', x0: threshold, x1: threshold, yref: 'paper', y0: 0, y1: 1, line: { color: color('bad'), width: 1.2, dash: 'dash' } },

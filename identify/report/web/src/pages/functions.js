@@ -52,8 +52,8 @@ function functionPlot(f, axis, view, functions) {
   const y = { title: f.unit, nticks: 5 };
   if (view.scale === 'same') {
     const peers = functions.filter((g) => g.state === 'identified' && g.unit === f.unit);
-    const limit = 1.05 * Math.max(...peers.map(reach));
-    y.range = [-limit, limit];
+    const limit = 1.05 * Math.max(0, ...peers.map(reach));
+    if (limit > 0) y.range = [-limit, limit];
   }
   return {
     data: f.curves.flatMap((curve) => [bandTrace(f, curve, shade), ...lineTraces(f, curve, axis.unit, shade)]),

@@ -1,10 +1,9 @@
 import { count, fixed, longTable, note } from '../dom.js';
 
 export function renderOutliers(body, data) {
-  const expected = data.observations * 2 * (1 - normalCdf(data.critical));
   body.append(note(
-    `Baarda's w-test, |w| > ${fixed(data.critical, 2)}: ${count(data.suspect)} of ${count(data.observations)} readings; `,
-    `${fixed(expected, expected < 10 ? 1 : 0)} expected by chance.`,
+    `Baarda's w-test, |w| > ${fixed(data.critical, 2)}: ${count(data.suspect)} of ${count(data.observations)} readings. `,
+    `With a right model and right noise the chance that any is suspected is ${Number((100 * data.chance).toPrecision(2))} %.`,
     data.suspect === 0 ? '' : ` ${data.removed === 0 ? 'None' : count(data.removed)} ${data.removed === 1 ? 'was' : 'were'} taken out of the adjustment; the others are kept.`));
   if (data.rows.length === 0) return;
   body.append(longTable([
@@ -22,13 +21,4 @@ export function renderOutliers(body, data) {
   if (data.suspect > data.rows.length) {
     body.append(note(`The ${count(data.rows.length)} worst are listed; residuals.csv has all.`));
   }
-}
-
-/** Standard normal distribution function (Abramowitz and Stegun 7.1.26, error < 1.5e-7). */
-function normalCdf(z) {
-  const x = Math.abs(z) / Math.SQRT2;
-  const t = 1 / (1 + 0.3275911 * x);
-  const poly = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
-  const erf = 1 - poly * Math.exp(-x * x);
-  return z < 0 ? 0.5 * (1 - erf) : 0.5 * (1 + erf);
 }

@@ -1,9 +1,6 @@
 import { choice, count, el, fixed, note } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { addPlot, jitter, layout2d, legendAbove, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
-
-/** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
-const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
 
 const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', Y: 'displacement along Y', Z: 'displacement along Z' };
 
@@ -44,7 +41,7 @@ class VariableView {
 
   hover(i) {
     const { records, setups } = this.data;
-    return `<b>${setups[records.setup[i]]}</b>, line ${records.file_line[i]}${records.held_out[i] ? ', held out' : ''}<br>given ${fixed(records.given[i], 2)}, reached ${fixed(records.reached[i], 2)}, noise ${fixed(records.noise[i], 2)} ${this.unit()}`;
+    return `<b>${plain(setups[records.setup[i]])}</b>, line ${records.file_line[i]}${records.held_out[i] ? ', held out' : ''}<br>given ${fixed(records.given[i], 2)}, reached ${fixed(records.reached[i], 2)}, noise ${fixed(records.noise[i], 2)} ${this.unit()}`;
   }
 }
 
@@ -72,13 +69,13 @@ function means(view, model) {
 }
 
 function axisX(variable) {
-  const title = `${variable.title}${variable.unit ? ` [${variable.unit}]` : ''}`;
+  const title = `${plain(variable.title)}${variable.unit ? ` [${variable.unit}]` : ''}`;
   if (variable.name.startsWith('dir_')) return { title, zeroline: false, showgrid: false, tickvals: [-1, 0, 1], ticktext: ['towards −', 'unknown', 'towards +'], range: [-1.6, 1.6] };
   if (variable.categories.length === 0) return { title, zeroline: false };
   const step = Math.ceil(variable.categories.length / 50);
   const ticks = variable.categories.map((_, k) => k).filter((k) => k % step === 0);
   return {
-    title, tickvals: ticks, ticktext: ticks.map((k) => variable.categories[k]), zeroline: false, showgrid: false,
+    title, tickvals: ticks, ticktext: ticks.map((k) => plain(variable.categories[k])), zeroline: false, showgrid: false,
     tickangle: variable.categories.length > 12 ? -60 : 0, range: [-0.6, variable.categories.length - 0.4],
   };
 }
@@ -104,7 +101,7 @@ function meansPlot(view) {
   return {
     data,
     layout: layout2d({
-      height: 340, margin: { t: 30 }, showlegend: true, legend: { orientation: 'h', y: 1.01, yanchor: 'bottom', x: 0, font: { size: 11 } },
+      height: 340, margin: { t: 30 }, ...legendAbove(),
       x: axisX(view.variable), y: { title: `${view.kind.length === 1 ? `displacement along ${view.kind}` : 'mean residual'} [${view.unit()}]`, rangemode: 'tozero' }, hovermode: 'closest',
     }),
   };

@@ -1,9 +1,6 @@
 import { choice, el, fixed, note } from '../dom.js';
-import { addPlot, commonLayout, sceneHeight } from '../plot.js';
+import { addPlot, colorBar, column, commonLayout, norm, plain, sceneHeight, segments, sizeShades } from '../plot.js';
 import { color } from '../theme.js';
-
-const norm = (v) => Math.hypot(...v);
-const column = (points, i) => points.map((point) => point[i]);
 
 class VectorView {
   constructor(data) {
@@ -34,14 +31,13 @@ function traces(view, model) {
   const factor = 1e-3 * view.magnification();
   const tips = list.map((item, k) => item.point_mm.map((p, i) => p + factor * vectors[k][i]));
   const size = vectors.map(norm);
-  const scale = { colorscale: [0, 1, 2, 3].map((k) => [k / 3, color(`size-${k}`)]), cmin: 0, cmax: view.largest() };
-  const segments = [0, 1, 2].map((i) => list.flatMap((item, k) => [item.point_mm[i], tips[k][i], null]));
-  const text = list.map((item, k) => `at ${item.point_mm.map((v) => fixed(v, 0)).join(', ')} mm<br>${vectors[k].map((v, i) => `${'XYZ'[i]} ${fixed(v, 2)}`).join(', ')} µm, size ${fixed(size[k], 2)} µm<br>${item.readings ? `${item.readings} readings, u ${fixed(item.u_um, 2)} µm` : item.setup}`);
+  const scale = sizeShades(view.largest());
+  const text = list.map((item, k) => `at ${item.point_mm.map((v) => fixed(v, 0)).join(', ')} mm<br>${vectors[k].map((v, i) => `${'XYZ'[i]} ${fixed(v, 2)}`).join(', ')} µm, size ${fixed(size[k], 2)} µm<br>${item.readings ? `${item.readings} readings, u ${fixed(item.u_um, 2)} µm` : plain(item.setup)}`);
   return [
-    { x: segments[0], y: segments[1], z: segments[2], type: 'scatter3d', mode: 'lines', line: { width: 5, color: size.flatMap((s) => [s, s, s]), ...scale }, hoverinfo: 'skip', showlegend: false },
+    { ...segments(list.map((item, k) => [item.point_mm, tips[k]])), type: 'scatter3d', mode: 'lines', line: { width: 5, color: size.flatMap((s) => [s, s, s]), ...scale }, hoverinfo: 'skip', showlegend: false },
     {
       x: column(tips, 0), y: column(tips, 1), z: column(tips, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false, hovertemplate: '%{text}<extra></extra>',
-      marker: { size: 2.4, color: size, ...scale, colorbar: { title: { text: '|residual| [µm]', side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x: 0.9, outlinewidth: 0, tickfont: { size: 10, color: color('text') } } },
+      marker: { size: 2.4, color: size, ...scale, colorbar: colorBar('|residual| [µm]', 0.9) },
     },
   ];
 }

@@ -1,11 +1,8 @@
 import { choice, count, el, fixed, note } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { addPlot, jitter, layout2d, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kJitter = 0.32;
-
-/** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
-const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
 
 class ResidualView {
   constructor(data) {
@@ -27,7 +24,7 @@ class ResidualView {
 
   title() { return this.mode === 'w' ? 'w [–]' : `residual [${this.mode}]`; }
 
-  /** Twice the standard deviation: 2 for w, RMS of the stated σ otherwise. */
+  /** Twice the standard deviation: 2 for w, of the RMS of σ otherwise. */
   band() {
     if (this.mode === 'w') return 2;
     const rows = this.rows(this.data.records.w);
@@ -35,7 +32,7 @@ class ResidualView {
     return 2 * Math.sqrt(mean);
   }
 
-  /** Range that holds nearly all points and every flagged one. */
+  /** Range that holds every point and the band. */
   range() {
     const { records } = this.data;
     const values = this.rows(records.w).map((i) => Math.abs(this.ordinate(i)));
@@ -46,7 +43,7 @@ class ResidualView {
   hover(i) {
     const { records, setups } = this.data;
     const setup = setups[records.setup[i]];
-    return `<b>${setup.name}</b> (${setup.instrument}), line ${records.file_line[i]}<br>residual ${fixed(records.residual[i], 2)} ${this.unitOf(i)}, σ ${fixed(records.sigma[i], 2)} ${this.unitOf(i)}, w ${fixed(records.w[i], 2)}`;
+    return `<b>${plain(setup.name)}</b> (${setup.instrument}), line ${records.file_line[i]}<br>residual ${fixed(records.residual[i], 2)} ${this.unitOf(i)}, σ ${fixed(records.sigma[i], 2)} ${this.unitOf(i)}, w ${fixed(records.w[i], 2)}`;
   }
 }
 
@@ -100,7 +97,7 @@ function setupPlot(view) {
   const x = records.setup.map((setup, i) => setup + kJitter * jitter(i));
   const order = setups.map((_, k) => k);
   const step = Math.ceil(setups.length / 60);
-  const label = (k) => (setups[k].station && setups[k].station !== setups[k].name ? `${setups[k].name} · ${setups[k].station}` : setups[k].name);
+  const label = (k) => plain(setups[k].station && setups[k].station !== setups[k].name ? `${setups[k].name} · ${setups[k].station}` : setups[k].name);
   const ticks = order.filter((k) => k % step === 0);
   const rms = view.mode !== 'w' ? [] : [{
     x: order, y: setups.map((setup) => setup.rms_w), text: order.map(label), type: 'scatter', mode: 'markers', name: 'RMS of w',
@@ -150,7 +147,7 @@ export function renderResiduals(body, data) {
   }), legend(view));
   body.append(note('Reading minus prediction. w is the residual divided by its own standard deviation: with a right model and right noise it is standard normal everywhere. A mean that leaves zero by more than its bar shows an effect that the model lacks.'));
   if (data.drawn < data.total) {
-    body.append(note(`${count(data.drawn)} of ${count(data.total)} readings are drawn: the suspect and largest ones and an even choice of the others. Means and histogram use all of them.`));
+    body.append(note(`${count(data.drawn)} of ${count(data.total)} readings are drawn: the suspect and largest ones and an even choice of the others. The histogram counts all, means all but the suspect.`));
   }
   body.append(controls);
   const grid = el('div', { class: 'residuals' });

@@ -1,5 +1,5 @@
 import { decimalsFor, el, fixed, longTable, note, significant, table } from '../dom.js';
-import { addPlot, layout2d } from '../plot.js';
+import { addPlot, layout2d, legendAbove, plain } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kRaised = '⁰¹²³⁴⁵⁶⁷⁸⁹';
@@ -20,7 +20,7 @@ function broken(text) {
     if (lines.at(-1).length + word.length > 16 && lines.at(-1) !== '') lines.push('');
     lines[lines.length - 1] += (lines.at(-1) === '' ? '' : ' ') + word;
   }
-  return lines.join('<br>');
+  return lines.map(plain).join('<br>');
 }
 
 /** Systematic error above the noise floor after every step, with its interval, and what each step took away. */
@@ -43,7 +43,7 @@ function waterfall(ladder) {
     data: [{
       x, y: ladder.map((step) => step.systematic_um), type: 'scatter', mode: 'markers', marker: { size: 7, color: color('text') },
       error_y: { type: 'data', symmetric: false, array: high, arrayminus: low, color: color('text'), thickness: 1.4, width: 6 },
-      text: ladder.map((step) => `${stepName(step)}<br>systematic ${significant(step.systematic_um)} µm, 95 %: ${significant(step.systematic_low_um, 2)} … ${significant(step.systematic_high_um, 2)} µm`),
+      text: ladder.map((step) => `${plain(stepName(step))}<br>systematic ${significant(step.systematic_um)} µm, 95 %: ${significant(step.systematic_low_um, 2)} … ${significant(step.systematic_high_um, 2)} µm`),
       hovertemplate: '%{text}<extra></extra>',
     }],
     layout: layout2d({
@@ -58,14 +58,14 @@ function rmsPlot(ladder) {
   const x = ladder.map((_, k) => k);
   const line = (key, name, shade, symbol) => ({
     x, y: ladder.map((step) => step[key]), type: 'scatter', mode: 'lines+markers', name, line: { color: shade, width: 1.6 }, marker: { size: 8, symbol, color: shade },
-    text: ladder.map(stepName), hovertemplate: `%{text}<br>${name} %{y:.4g} µm<extra></extra>`,
+    text: ladder.map((step) => plain(stepName(step))), hovertemplate: `%{text}<br>${name} %{y:.4g} µm<extra></extra>`,
   });
   const floor = { ...line('noise_floor_um', 'noise floor', color('muted'), 'line-ew-open'), fill: 'tozeroy', fillcolor: transparent(color('muted'), 0.15) };
   const all = ladder.flatMap((step) => [step.rms_heldout_um, step.rms_fit_um, step.noise_floor_um]);
   return {
     data: [floor, line('rms_heldout_um', 'held-out lines', color('bad'), 'circle'), line('rms_fit_um', 'fitted readings', series(0), 'square')],
     layout: layout2d({
-      height: 330, showlegend: true, legend: { orientation: 'h', y: 1.02, yanchor: 'bottom', x: 0, font: { size: 11 } }, margin: { t: 34 },
+      height: 330, ...legendAbove(), margin: { t: 34 },
       x: stepAxis(ladder),
       y: { title: 'RMS of the residuals [µm]', range: [0.85 * Math.min(...all), 1.05 * Math.max(...all)] },
     }),

@@ -1,21 +1,8 @@
 import { choice, el, fixed, note, table } from '../dom.js';
-import { addPlot, commonLayout, sceneHeight } from '../plot.js';
+import { addPlot, colorBar, column, commonLayout, norm, plain, sceneHeight, segments, sizeShades } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
-
-const column = (points, i) => points.map((point) => (point === null ? null : point[i]));
-
-/** Separate segments as one polyline with gaps. */
-function segments(pairs) {
-  const line = { x: [], y: [], z: [] };
-  for (const [from, to] of pairs) {
-    kComponents.forEach((c, i) => line[c].push(from[i], to[i], null));
-  }
-  return line;
-}
-
-const norm = (v) => Math.hypot(...v);
 
 function edges(corners) {
   const pairs = [];
@@ -32,33 +19,26 @@ const boxTrace = (tool) => ({
   hoverinfo: 'skip', name: 'work volume', showlegend: false,
 });
 
-/** Light to strong shades for sizes. */
-const sizeScale = () => [0, 1, 2, 3].map((k) => [k / 3, color(`size-${k}`)]);
-
 function vectorTraces(tool, magnification) {
   const size = tool.error_um.map(norm);
   const tip = tool.point_mm.map((p, k) => p.map((v, i) => v + magnification * 1e-3 * tool.error_um[k][i]));
   const shades = size.flatMap((s) => [s, s, s]);
-  const scale = { colorscale: sizeScale(), cmin: 0, cmax: Math.max(...size) };
+  const scale = sizeShades(Math.max(...size));
   const text = tool.error_um.map((e, k) =>
     `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>EX ${fixed(e[0], 2)}, EY ${fixed(e[1], 2)}, EZ ${fixed(e[2], 2)} µm<br>|E| ${fixed(size[k], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
   return [
     { ...segments(tool.point_mm.map((p, k) => [p, tip[k]])), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
     {
       x: column(tip, 0), y: column(tip, 1), z: column(tip, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
-      marker: { size: 2, color: size, ...scale, colorbar: colorBar('|E| [µm]') }, hovertemplate: '%{text}<extra></extra>',
+      marker: { size: 2, color: size, ...scale, colorbar: colorBar('|E| [µm]', 0.88) }, hovertemplate: '%{text}<extra></extra>',
     },
   ];
 }
 
-const colorBar = (title) => ({
-  title: { text: title, side: 'right', font: { size: 11 } }, thickness: 10, len: 0.6, x: 0.88, outlinewidth: 0, tickfont: { size: 10, color: color('text') },
-});
-
 /** Crosses of half-width u along each axis, at the same magnification as the vectors. */
 function uncertaintyTraces(tool, magnification) {
   const size = tool.u_um.map(norm);
-  const scale = { colorscale: sizeScale(), cmin: 0, cmax: Math.max(...size) };
+  const scale = sizeShades(Math.max(...size));
   const pairs = tool.point_mm.flatMap((p, k) => kComponents.map((_, i) => {
     const half = magnification * 1e-3 * tool.u_um[k][i];
     return [p.map((v, j) => (j === i ? v - half : v)), p.map((v, j) => (j === i ? v + half : v))];
@@ -70,7 +50,7 @@ function uncertaintyTraces(tool, magnification) {
     { ...segments(pairs), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
     {
       x: column(tool.point_mm, 0), y: column(tool.point_mm, 1), z: column(tool.point_mm, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
-      marker: { size: 1.6, color: size, ...scale, colorbar: colorBar('u [µm]') }, hovertemplate: '%{text}<extra></extra>',
+      marker: { size: 1.6, color: size, ...scale, colorbar: colorBar('u [µm]', 0.88) }, hovertemplate: '%{text}<extra></extra>',
     },
   ];
 }
@@ -82,7 +62,7 @@ function setupTraces(data) {
     return ['path', 'points'].flatMap((form) => {
       const points = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm, null]);
       if (points.length === 0) return [];
-      const names = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm.map(() => setup.name), '']);
+      const names = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm.map(() => plain(setup.name)), '']);
       const shade = series(k);
       return [{
         x: column(points, 0), y: column(points, 1), z: column(points, 2), text: names, type: 'scatter3d', name: instrument, legendgroup: instrument,
@@ -99,7 +79,7 @@ function stationTraces(points, inLegend) {
     if (own.length === 0) return [];
     const at = own.map((point) => point.point_mm);
     return [{
-      x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => point.name), type: 'scatter3d',
+      x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => plain(point.name)), type: 'scatter3d',
       mode: kind === 'station' ? 'markers+text' : 'markers', textposition: 'top center', textfont: { size: 11, color: color('text') },
       marker: { size, symbol, color: color('text') }, name: kind === 'station' ? 'stations' : 'ball-bar centres', showlegend: inLegend,
       hovertemplate: '%{text}: %{x:.1f}, %{y:.1f}, %{z:.1f} mm<extra></extra>',
@@ -172,7 +152,7 @@ function slider(view, redraw) {
     redraw();
   });
   show();
-  return { node: el('label', { class: 'slider' }, [el('span', { class: 'muted' }, 'Magnification'), input, output]), show, input };
+  return el('label', { class: 'slider' }, [el('span', { class: 'muted' }, 'Magnification'), input, output]);
 }
 
 export function renderVolume(body, data) {
@@ -192,7 +172,6 @@ export function renderVolume(body, data) {
     captions[1].replaceChildren(el('strong', {}, 'After: '), `what perfect compensation is expected to leave, RMS ${fixed(tool.u_rms_um, 2)} µm, max ${fixed(tool.u_max_um, 2)} µm (k = 1)`);
     tables.replaceChildren(componentTable(tool));
   };
-  const control = slider(view, redraw);
   const controls = el('div', { class: 'controls' });
   if (data.tools.length > 1) {
     controls.append(choice('Tool', data.tools.map((tool, k) => [k, tool.name]), (k) => {
@@ -201,7 +180,7 @@ export function renderVolume(body, data) {
       redraw();
     }));
   }
-  controls.append(control.node);
+  controls.append(slider(view, redraw));
   const nodes = [el('div', { class: 'plot scene' }), el('div', { class: 'plot scene' })];
   const traces = [vectorTraces, uncertaintyTraces];
   const ready = [];

@@ -1,0 +1,28 @@
+// Draws every section of a report without a browser and uses every control: node draw.mjs REPORT.json
+import { readFile } from 'node:fs/promises';
+import { openPage } from './page_stub.mjs';
+
+const json = await readFile(process.argv[2], 'utf8');
+const view = openPage(json);
+await import('../src/main.js');
+await new Promise((resolve) => setTimeout(resolve, 0));
+
+const sections = JSON.parse(json).pages;
+const drawn = view.pages.querySelectorAll('section');
+if (drawn.length !== sections.length) throw new Error(`${drawn.length} of ${sections.length} sections are drawn`);
+for (const section of drawn) {
+  if (section.textContent.length < 40) throw new Error(`section ${section.id} is empty`);
+}
+
+for (const node of view.pages.descendants()) {
+  if (node.tag === 'button') node.dispatch('click');
+  if (node.tag === 'input') node.dispatch('input', Object.assign(node, { value: '0.5' }));
+  if (node.tag === 'select') {
+    for (const option of node.children) node.dispatch('change', Object.assign(node, { value: option.getAttribute('value') }));
+  }
+  if (node.tag === 'td') ['mouseover', 'click', 'mouseleave'].forEach((name) => node.dispatch(name));
+}
+for (const button of view.sections.querySelectorAll('button')) button.dispatch('click');
+for (const name of ['scroll', 'beforeprint', 'afterprint']) view.page.dispatch(name);
+await new Promise((resolve) => setTimeout(resolve, 0));
+console.log(`${drawn.length} sections, ${view.plots.length} plots`);

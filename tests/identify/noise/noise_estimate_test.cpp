@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/support/noise_campaigns.h"
+#include "tests/support/random_matrix.h"
 #include "volcal/identify/numeric/bounded_minimum.h"
 
 namespace volcal {
@@ -135,6 +136,18 @@ TEST(NoiseEstimate, TwoInstruments) {
               1e-6);
 }
 
+/// Noise in proportion to length, of lengths between half a metre and two, beside stated noise of its size.
+TEST(NoiseEstimate, FindsNoiseInProportionToLength) {
+  std::mt19937_64 generator(9);
+  const NoiseProblem problem = grid(generator, {1.0, 0.0, 60.0, 0.0, 0.5e-6}, {12, 5, 5}, 3);
+  const InstrumentNoise own = estimate_noise(problem).instruments[0];
+  ASSERT_TRUE(own.per_metre.on);
+  EXPECT_NEAR(own.parameters.per_metre, 0.5e-6, 0.1e-6);
+  EXPECT_LT(std::abs(std::log(own.parameters.per_metre / 0.5e-6)), 3.0 * own.log_uncertainty.per_metre);
+  EXPECT_NEAR(own.parameters.white, 1.0, 0.25);
+  EXPECT_FALSE(own.wander.on || own.line.on);
+}
+
 void expect_same_noise(const NoiseEstimate& a, const NoiseEstimate& b) {
   EXPECT_NEAR(a.log_likelihood, b.log_likelihood, 0.02);
   for (std::size_t g = 0; g < a.instruments.size(); ++g) {
@@ -152,7 +165,7 @@ TEST(NoiseEstimate, BeginsAtThePreviousEnd) {
   const NoiseEstimate before = estimate_noise(problem);
   const Eigen::Index p = problem.jacobian.cols();
   problem.jacobian.conservativeResize(Eigen::NoChange, p + 1);
-  problem.jacobian.col(p).setRandom();
+  problem.jacobian.col(p) = test::random_matrix(generator, problem.jacobian.rows(), 1);
   if (problem.prior_precision.size() > 0) {
     problem.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(p + 1, p + 1));
   }
@@ -170,6 +183,7 @@ TEST(NoiseEstimate, ATermThatComesOrGoesIsFound) {
   const NoiseEstimate of_white = estimate_noise(white), of_lines = estimate_noise(lines);
   ASSERT_TRUE(of_lines.instruments[0].line.on && !of_white.instruments[0].line.on);
   expect_same_noise(estimate_noise(lines, {}, &of_white), of_lines);
+  expect_same_noise(estimate_noise(white, {}, &of_lines), of_white);
 }
 
 /// Returns to the same points only start the search elsewhere.

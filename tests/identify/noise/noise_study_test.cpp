@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/support/noise_campaigns.h"
+#include "tests/support/random_matrix.h"
 #include "volcal/identify/noise/noise_estimate.h"
 
 namespace volcal {
@@ -92,18 +93,20 @@ TEST(NoiseStudy, WhiteStaysWhite) {
   std::mt19937_64 generator(2);
   NoiseProblem problem = campaign(generator);
   constexpr int kCampaigns = 200;
-  int white = 0, without_wander = 0, without_line = 0;
+  int white = 0, without_wander = 0, without_line = 0, without_per_metre = 0;
   for (int k = 0; k < kCampaigns; ++k) {
     problem.residual = test::draw_noise(problem.data, {{1.3, 0.0, 600.0, 0.0, 0.0}}, generator);
     const InstrumentNoise own = estimate_noise(problem).instruments[0];
     without_wander += !own.wander.on;
     without_line += !own.line.on;
-    white += !own.wander.on && !own.line.on;
+    without_per_metre += !own.per_metre.on;
+    white += !own.wander.on && !own.line.on && !own.per_metre.on;
   }
   RecordProperty("without_wander", without_wander);
   RecordProperty("without_line", without_line);
+  RecordProperty("without_per_metre", without_per_metre);
   RecordProperty("white", white);
-  EXPECT_GE(white, 190) << without_wander << ' ' << without_line;
+  EXPECT_GE(white, 190) << without_wander << ' ' << without_line << ' ' << without_per_metre;
 }
 
 /// Two-sided p of one more column, from the whitened model: the score after projection.
@@ -125,7 +128,7 @@ Eigen::VectorXd smooth_column(const NoiseProblem& problem, bool of_time, std::mt
   std::uniform_real_distribution<double> uniform;
   const double period = 200.0 + 1000.0 * uniform(generator),
                phase = 2.0 * std::numbers::pi * uniform(generator);
-  const Eigen::VectorXd mixture = Eigen::VectorXd::Random(problem.jacobian.cols());
+  const Eigen::VectorXd mixture = test::random_matrix(generator, problem.jacobian.cols(), 1);
   Eigen::VectorXd column(problem.jacobian.rows());
   for (const NoiseSequence& sequence : problem.data.sequences) {
     for (std::size_t k = 0; k < sequence.observation.size(); ++k) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tests/support/noise_campaigns.h"
+#include "tests/support/random_matrix.h"
 
 namespace volcal {
 namespace {
@@ -29,9 +30,9 @@ NoiseProblem two_instruments(std::mt19937_64& generator) {
   return problem;
 }
 
-void add_prior(NoiseProblem& problem) {
+void add_prior(NoiseProblem& problem, std::mt19937_64& generator) {
   const Eigen::Index p = problem.jacobian.cols();
-  const Eigen::MatrixXd root = Eigen::MatrixXd::Random(p, p) + 2.0 * Eigen::MatrixXd::Identity(p, p);
+  const Eigen::MatrixXd root = test::random_matrix(generator, p, p) + 2.0 * Eigen::MatrixXd::Identity(p, p);
   problem.prior_precision = 1e11 * root.transpose() * root;
   problem.prior_mean = Eigen::VectorXd::Constant(p, 2e-6);
 }
@@ -41,7 +42,7 @@ TEST(RestrictedLikelihood, EqualsDenseFormula) {
   NoiseProblem problem = two_instruments(generator);
   EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
               test::dense_log_likelihood(problem, kNoise), 1e-6);
-  add_prior(problem);
+  add_prior(problem, generator);
   EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
               test::dense_log_likelihood(problem, kNoise), 1e-6);
 }
@@ -50,7 +51,7 @@ TEST(RestrictedLikelihood, EqualsDenseFormula) {
 TEST(RestrictedLikelihood, SolutionIsGeneralisedLeastSquares) {
   std::mt19937_64 generator(2);
   NoiseProblem problem = two_instruments(generator);
-  add_prior(problem);
+  add_prior(problem, generator);
   RestrictedLikelihood likelihood(problem, 1);
   Eigen::MatrixXd gram = likelihood.prior().gram;
   for (std::size_t g = 0; g < 2; ++g) gram += likelihood.share(g, kNoise[g]).gram;

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <random>
+
+#include "tests/support/random_matrix.h"
 
 namespace volcal {
 namespace {
@@ -22,15 +25,22 @@ class TileKernelOn : public ::testing::TestWithParam<InstructionSet> {
 
   static int padded(int size) { return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment; }
 
+  MatrixXd random(Eigen::Index rows, Eigen::Index columns) {
+    return test::random_matrix(generator_, rows, columns);
+  }
+
   const TileKernel* kernel_ = nullptr;
+
+ private:
+  std::mt19937_64 generator_{1};
 };
 
 TEST_P(TileKernelOn, FormsAndAddsOuterProducts) {
   for (const int size : {1, 7, 8, 9, 25, 76, 90}) {
     for (const int observations : {1, 2, 48}) {
       const int stride = padded(size);
-      const MatrixXd rows = MatrixXd::Random(stride, observations);
-      const MatrixXd before = MatrixXd::Random(stride, stride);
+      const MatrixXd rows = random(stride, observations);
+      const MatrixXd before = random(stride, stride);
       for (const bool add : {false, true}) {
         MatrixXd product = before;
         kernel_->outer_upper(rows.data(), stride, size, observations, add, product.data());
@@ -48,7 +58,7 @@ TEST_P(TileKernelOn, Multiplies) {
       const int stride = padded(size + columns);
       const int observations = 7;
       // Elements past the last row of b are read, not used.
-      const MatrixXd a = MatrixXd::Random(stride, observations + 1);
+      const MatrixXd a = random(stride, observations + 1);
       const double* b = a.data() + size;
       MatrixXd product = MatrixXd::Constant(stride, padded(columns), 1e300);
       kernel_->multiply(a.data(), b, stride, size + columns, columns, observations, product.data());
@@ -63,8 +73,8 @@ TEST_P(TileKernelOn, Multiplies) {
 
 TEST_P(TileKernelOn, AddsBlocksAndLeavesTheRestAlone) {
   for (const int rows : {0, 1, 5, 8, 24, 27}) {
-    const MatrixXd from = MatrixXd::Random(32, 32);
-    const MatrixXd before = MatrixXd::Random(40, 40);
+    const MatrixXd from = random(32, 32);
+    const MatrixXd before = random(40, 40);
     for (const bool upper : {false, true}) {
       MatrixXd to = before;
       kernel_->add(from.data(), 32, rows, rows, upper, &to(1, 2), 40);

@@ -5,7 +5,7 @@ export function noiseTable(rows) {
   return table([
     { name: 'Instrument', align: 'left', cell: (row) => row.instrument },
     { name: 'Term', align: 'left', cell: (row) => row.term },
-    { name: '', align: 'left', cell: (row) => row.meaning },
+    { name: '', align: 'left', cell: (row) => row.meaning.replace('sigma', 'σ') },
     { name: 'Value', cell: (row) => (row.value === 0 ? 'off' : significant(row.value)) },
     { name: '95 % interval', cell: (row) => (row.low === null || row.value === 0 ? '–' : `${significant(row.low, 2)} … ${significant(row.high, 2)}`) },
     { name: 'Unit', align: 'left', cell: (row) => row.unit },

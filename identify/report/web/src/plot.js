@@ -66,6 +66,9 @@ export const sceneHeight = (node) => Math.round(Math.min(520, Math.max(320, 0.92
 /** Text that is not the report's own (names of setups, stations, tools): the plot library would read markup in it. */
 export const plain = (text) => String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;');
 
+/** The same for names beside the points of a scene, where entities are not read: a gap of no width ends every tag. */
+export const plainInScene = (text) => String(text).replaceAll('<', '<\u200b');
+
 /** Even pseudo-random number in -1..1 from an index, the same on every drawing. */
 export const jitter = (i) => (((i * 2654435761) >>> 0) / 2 ** 31) - 1;
 

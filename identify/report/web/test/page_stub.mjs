@@ -16,7 +16,7 @@ function checkPlot(value, path) {
     if (!Number.isFinite(value)) throw new Error(`${path} is ${value}`);
   } else if (typeof value === 'string') {
     if (wrong.test(value)) throw new Error(`${path} is "${value}"`);
-    if (value.replace(ownMarkup, '').includes('<')) throw new Error(`${path} has foreign markup: "${value}"`);
+    if (value.replace(ownMarkup, '').replaceAll('<\u200b', '').includes('<')) throw new Error(`${path} has foreign markup: "${value}"`);
   } else {
     for (const [key, each] of Object.entries(value)) checkPlot(each, `${path}.${key}`);
   }

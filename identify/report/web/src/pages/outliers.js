@@ -3,7 +3,7 @@ import { count, fixed, longTable, note } from '../dom.js';
 export function renderOutliers(body, data) {
   body.append(note(
     `Baarda's w-test, |w| > ${fixed(data.critical, 2)}: ${count(data.suspect)} of ${count(data.observations)} readings. `,
-    `With a right model and right noise the chance that any is suspected is ${Number((100 * data.chance).toPrecision(2))} %.`,
+    `With a right model and right noise the chance that any is suspected is ${Number((100 * data.chance).toPrecision(2))}\u00a0%.`,
     data.suspect === 0 ? '' : ` ${data.removed === 0 ? 'None' : count(data.removed)} ${data.removed === 1 ? 'was' : 'were'} taken out of the adjustment; the others are kept.`));
   if (data.rows.length === 0) return;
   body.append(longTable([

@@ -1,5 +1,5 @@
 import { choice, el, fixed, note, table } from '../dom.js';
-import { addPlot, colorBar, column, commonLayout, norm, plain, sceneHeight, segments, sizeShades } from '../plot.js';
+import { addPlot, colorBar, column, commonLayout, norm, plain, plainInScene, sceneHeight, segments, sizeShades } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
@@ -79,10 +79,10 @@ function stationTraces(points, inLegend) {
     if (own.length === 0) return [];
     const at = own.map((point) => point.point_mm);
     return [{
-      x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => plain(point.name)), type: 'scatter3d',
+      x: column(at, 0), y: column(at, 1), z: column(at, 2), text: own.map((point) => plainInScene(point.name)), customdata: own.map((point) => plain(point.name)), type: 'scatter3d',
       mode: kind === 'station' ? 'markers+text' : 'markers', textposition: 'top center', textfont: { size: 11, color: color('text') },
       marker: { size, symbol, color: color('text') }, name: kind === 'station' ? 'stations' : 'ball-bar centres', showlegend: inLegend,
-      hovertemplate: '%{text}: %{x:.1f}, %{y:.1f}, %{z:.1f} mm<extra></extra>',
+      hovertemplate: '%{customdata}: %{x:.1f}, %{y:.1f}, %{z:.1f} mm<extra></extra>',
     }];
   });
 }

@@ -12,4 +12,8 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${work}/build -G ${GENERATO
     -D CMAKE_PREFIX_PATH=${work}/prefix -D CMAKE_BUILD_TYPE=${BUILD_TYPE}
     -D CMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}")
 run(${CMAKE_COMMAND} --build ${work}/build)
-run(${work}/build/consumer)
+set(campaign ${CMAKE_CURRENT_LIST_DIR}/../../datasets/examples/structure-0)
+run(${work}/build/consumer ${campaign}/campaign.toml ${campaign}/truth/campaign.toml ${work}/result)
+if(NOT EXISTS ${work}/result/error_tables.csv)
+  message(FATAL_ERROR "consumer: no error tables")
+endif()

@@ -1,41 +1,36 @@
-// What a program of a third party does with the installed library: describe a machine, ask where its tool
-// really is when one axis tilts, and see that the exact and the first-order answer agree.
+// What a program of a third party does with the installed library: from a campaign to error tables.
 
-#include <cmath>
+#include <cstdlib>
+#include <exception>
 #include <iostream>
 
-#include "volcal/model/kinematics/chain.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/solve/fit.h"
 
-namespace {
-
-volcal::Machine milling_machine() {
-  volcal::Machine machine;
-  machine.structure = volcal::Structure::parse("w X' b Y Z t");
-  for (const volcal::Joint& joint : machine.structure.joints) {
-    machine.axes.push_back({.name = joint.axis, .travel_min = 0.0, .travel_max = 1.0});
+int main(int count, char** arguments) {
+  if (count != 4) {
+    std::cerr << "usage: consumer CAMPAIGN OTHER_CAMPAIGN RESULT\n";
+    return EXIT_FAILURE;
   }
-  return machine;
-}
+  try {
+    const volcal::Campaign campaign = volcal::read_campaign(arguments[1]);
+    volcal::FitOptions options;
+    options.noise = volcal::NoisePolicy::White;
+    const volcal::FitResult result = volcal::fit(campaign, volcal::ModelSpec{}, options);
+    volcal::write_result_folder(result, campaign, arguments[3]);
 
-}  // namespace
-
-int main() {
-  const volcal::Machine machine = milling_machine();
-  const volcal::KinematicChain chain(machine);
-
-  // Abbe: EBX = 10 urad at 0.5 m below the reference point moves the tool by -5 um in x.
-  volcal::PoseErrors<double> errors;
-  errors.motion[index_of(volcal::AxisName::X)][index_of(volcal::Component::B)] = 10e-6;
-  const volcal::AxisPosition position = {0.2, 0.3, 0.0};
-  const Eigen::Vector3d tool_offset(0.0, 0.0, -0.5);
-
-  const Eigen::Vector3d nominal = chain.nominal_point_w(position, tool_offset);
-  const Eigen::Vector3d first_order = chain.first_order(position, tool_offset, errors).displacement_w;
-  const Eigen::Vector3d exact = chain.exact_pose<double>(position, tool_offset, errors).point_w - nominal;
-
-  std::cout << machine.structure.code << ": EBX of 10 urad, tool 500 mm long: ex = " << exact.x() * 1e6
-            << " um\n";
-  const bool right = std::abs(first_order.x() + 5e-6) < 1e-12 && (exact - first_order).norm() < 1e-9;
-  std::cout << (right ? "consumer: volcal works\n" : "consumer: wrong displacement\n");
-  return right ? 0 : 1;
+    const volcal::Campaign unseen = volcal::read_campaign(arguments[2]);
+    const volcal::ValidationFigures figures = volcal::validate(unseen, result).figures;
+    std::cout << campaign.reading_count() << " readings, status " << to_string(result.status)
+              << "; RMS before " << figures.rms_before * 1e6 << " um, after " << figures.rms_after * 1e6
+              << " um\n";
+    const bool better = figures.rms_after < 0.05 * figures.rms_before;
+    std::cout << (better ? "consumer: volcal works\n" : "consumer: the errors were not found\n");
+    return better ? EXIT_SUCCESS : EXIT_FAILURE;
+  } catch (const std::exception& error) {  // bad input: file, line, problem and remedy
+    std::cerr << "error: " << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
 }

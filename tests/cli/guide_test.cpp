@@ -1,0 +1,90 @@
+/// docs/guides/from-a-campaign-to-tables.md quotes the program: its lines are those that the program prints,
+/// and its code is the one that tests/consumer runs.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+
+const fs::path kSource = VOLCAL_SOURCE_DIR;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// Lines of the fenced block of the guide that begins with `fence` and holds the line `with`.
+std::vector<std::string> block_of_guide(const std::string& fence, const std::string& with) {
+  std::vector<std::string> block;
+  bool open = false, inside = false;
+  for (const std::string& line : lines_of(content(kSource / "docs/guides/from-a-campaign-to-tables.md"))) {
+    if (line.starts_with("```")) {
+      for (const std::string& each : block) {
+        if (inside && each.find(with) != std::string::npos) return block;
+      }
+      open = !open;
+      inside = open && line == fence;
+      block.clear();
+    } else if (inside) {
+      block.push_back(line);
+    }
+  }
+  return {};
+}
+
+void expect_quoted(const std::vector<std::string>& block, const std::string& text) {
+  const auto printed = lines_of(text);
+  ASSERT_FALSE(block.empty());
+  for (const std::string& line : block) {
+    if (line == "  ...") continue;
+    const auto quoted = [&](const std::string& each) { return each.starts_with(line); };
+    EXPECT_TRUE(std::ranges::any_of(printed, quoted))
+        << "the guide quotes \"" << line << "\", the program prints\n"
+        << text;
+  }
+}
+
+std::string run(const std::string& arguments) {
+  const auto outcome = testing::run_program(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  return outcome.output;
+}
+
+TEST(Guide, QuotesWhatTheProgramPrints) {
+  const testing::ScratchFolder scratch;
+  const std::string demo = (kSource / "datasets/demo/campaign").string();
+  const std::string result = (scratch.path() / "result").string();
+  expect_quoted(block_of_guide("```", "Demo: cross-table"),
+                run("fit " + demo + "/campaign.toml --model " + demo + "/model.toml -o " + result));
+  const std::string validation = run("validate " + result + " " + demo + "/truth/campaign.toml");
+  expect_quoted(block_of_guide("```", "RMS before"), validation);
+  std::string comparison = run("compare " + demo + "/campaign.toml " + result);
+  ASSERT_TRUE(comparison.starts_with(result));
+  comparison.replace(0, result.size(), "out/demo/result");
+  expect_quoted(block_of_guide("```", "no failure found"), comparison);
+  expect_quoted(block_of_guide("```", "Circular tests"), comparison);
+}
+
+TEST(Guide, ShowsTheProgramThatTheConsumerTestRuns) {
+  const auto consumer = lines_of(content(kSource / "tests/consumer/main.cpp"));
+  const auto shown = block_of_guide("```cpp", "read_campaign");
+  ASSERT_FALSE(shown.empty());
+  EXPECT_THAT(consumer, ::testing::IsSupersetOf(shown));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -13,6 +13,7 @@ namespace volcal {
 namespace {
 
 constexpr double kSignificanceOfLackOfFit = 1e-3;
+constexpr double kUnitSlip = 100.0;
 constexpr double kContradicted = 5.0;       // standard deviations of a prior
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
 
@@ -26,6 +27,11 @@ void report_stated_sigma(FitResult& result) {
                                           : "its residuals scatter ")
          << component.scale << " times as much as its stated sigma; "
          << "weights and uncertainties use the estimated value";
+    if (component.scale > kUnitSlip) {
+      text
+          << "; is its noise stated in a unit 1000 times too small (nm for um)? check the noise table of its "
+             "setups and the unit of the readings";
+    }
     result.messages.push_back(text.str());
   }
 }

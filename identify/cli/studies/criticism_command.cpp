@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/criticism.h"
 #include "volcal/identify/cli/studies/criticism_campaign.h"
@@ -133,7 +134,7 @@ std::function<int()> define(CLI::App& app) {
       ->delimiter(',')
       ->check(CLI::IsMember(rows));
   app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
   app.add_option("--readings", options.readings, "of a campaign, about")
@@ -144,8 +145,7 @@ std::function<int()> define(CLI::App& app) {
   app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run(*arguments); };
 }

@@ -115,6 +115,17 @@ TEST(Fit, EstimatesAWrongStatedSigma) {
   EXPECT_NEAR(result.variance_components[0].scale, 2.0, 0.15);
   EXPECT_EQ(result.status, FitStatus::LackOfFit);
   EXPECT_NE(result.messages.front().find("laser-tracer"), std::string::npos);
+  EXPECT_EQ(result.messages.front().find("nm for um"), std::string::npos);
+}
+
+TEST(Fit, SuspectsTheUnitOfANoiseAThousandTimesTooSmall) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  for (volcal::Setup& setup : simulated.campaign.setups) {
+    setup.repeatability *= 1e-3;
+    for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 1e-3 * *setup.noise.number(key));
+  }
+  const FitResult result = fit(simulated.campaign, spline_model(5));
+  EXPECT_NE(result.messages.front().find("nm for um"), std::string::npos) << result.messages.front();
 }
 
 TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {

@@ -174,7 +174,11 @@ class Diagnostician {
     }
     Eigen::VectorXd shape = added.test.shape, shape_u = Eigen::VectorXd::Zero(shape.size());
     if (values.size() > family.amplitudes()) {
-      shape += values.tail(shape.size());
+      for (Eigen::Index k = 0; k < shape.size(); ++k) {
+        const EffectShape& own = family.effect->shapes()[static_cast<std::size_t>(k)];
+        const double moved = shape[k] + values.tail(shape.size())[k];
+        shape[k] = own.scan_min < own.scan_max ? std::clamp(moved, own.scan_min, own.scan_max) : moved;
+      }
       shape_u = u.tail(shape.size());
     }
     state_values(family, shape, shape_u, out);

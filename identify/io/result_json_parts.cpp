@@ -121,7 +121,8 @@ FunctionSpec function_from(const Json& json) {
   spec.coefficients = numbers_from(json.at("coefficients"));
   if (!find_basis(spec.basis))
     throw std::invalid_argument("basis \"" + printable(spec.basis) + "\" is not known");
-  if (std::abs(spec.degree) > kLargestDegree) throw std::invalid_argument("a degree is out of range");
+  if (spec.degree < -kLargestDegree || spec.degree > kLargestDegree)
+    throw std::invalid_argument("a degree is out of range");
   return spec;
 }
 

@@ -1,5 +1,6 @@
 // What the instrument does: length scale, dead path, stations that drift or are pushed, tool offsets,
 // ball-bars.
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -253,13 +254,29 @@ std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
       check_ball_bar);
 }
 
+/// A tenth of the travel of the others: a circle in another plane moves along an axis by its centre's error.
+bool moves_both(const Setup& setup, AxisName first, AxisName second) {
+  const auto travel = [&](AxisName axis) {
+    const auto& position = setup.readings.position[index_of(axis)];
+    if (position.empty()) return 0.0;
+    const auto [low, high] = std::ranges::minmax_element(position);
+    return *high - *low;
+  };
+  double largest = 0.0;
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z})
+    largest = std::max(largest, travel(axis));
+  return std::min(travel(first), travel(second)) > 0.1 * largest;
+}
+
 std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  if (ball_bar_lengths(campaign).empty()) return specs;
   const auto axes = linear_axes(campaign.machine);
   for (const AxisName first : axes) {
     for (const AxisName second : axes) {
-      if (first >= second) continue;
+      const bool measured = std::ranges::any_of(campaign.setups, [&](const Setup& setup) {
+        return is_ball_bar(setup) && moves_both(setup, first, second);
+      });
+      if (first >= second || !measured) continue;
       specs.push_back(effect_spec("servo-mismatch", {{"axis", std::string(1, letter_of(first))},
                                                      {"second_axis", std::string(1, letter_of(second))}}));
     }

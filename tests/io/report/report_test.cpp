@@ -104,7 +104,8 @@ TEST_F(ReportTest, FunctionValuesAreThoseOfTheBasisInMicrometres) {
 }
 
 TEST_F(ReportTest, MarksExtrapolatedPositions) {
-  for (const json& function : page_data(*document_, "functions").at("functions")) {
+  const json page = page_data(*document_, "functions");
+  for (const json& function : page.at("functions")) {
     if (function.at("state") != "identified") continue;
     const bool any =
         std::ranges::any_of(function.at("extrapolated"), [](const json& flag) { return flag == 1; });

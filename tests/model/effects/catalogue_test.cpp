@@ -146,6 +146,16 @@ TEST_F(Catalogue, AServoMismatchActsOnCirclesOfItsPlane) {
   EXPECT_NEAR(change(spec, kLag, "B1", 2), 0.0, 1e-10);
 }
 
+/// A circle in XY says nothing about Z, which moves by what the table is tilted.
+TEST_F(Catalogue, AServoMismatchIsLookedForInPlanesOfCircles) {
+  const EffectKind* kind = find_effect("servo-mismatch");
+  EXPECT_EQ(kind->candidates(campaign_).size(), 3U);
+  auto& z = campaign_.setups[index("B1")].readings.position[index_of(AxisName::Z)];
+  for (double& position : z) position *= 1e-3;
+  ASSERT_EQ(kind->candidates(campaign_).size(), 1U);
+  EXPECT_EQ(kind->make(kind->candidates(campaign_)[0], "model.toml")->name().target, "XY");
+}
+
 /// A beam of 1 mrad reads half a ppm too short; a path that runs backwards counts with its sign.
 TEST_F(Catalogue, ABeamThatIsNotParallelReadsTooShort) {
   const EffectSpec spec = effect_spec("beam-misalignment", {{"setup", std::string("D1")}});

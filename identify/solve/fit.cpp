@@ -24,6 +24,8 @@ namespace {
 constexpr double kImplausibleResidual = 0.02;  // nominal machine, share of the setup's extent
 constexpr double kFurthestStationMiss = 1.0;   // m
 constexpr int kEvidenceRounds = 2;
+// m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
+constexpr double kUnseenAmplitude = 1e-4;
 constexpr int kOutlierRounds = 60;
 constexpr double kMostOutliers = 0.25;  // of a setup: beyond, the model or the stated noise is wrong
 constexpr double kSurelyAsWell = 0.7;   // of the largest |w| of a setup: leaves in the same round
@@ -210,9 +212,13 @@ class Identification {
     base_prior_ = priors;
     hold_undetermined(wide);
     terms_ = smoothing_terms(model_, *datum_);
-    std::erase_if(terms_, [this](const SmoothingTerm& term) {  // nothing says how rough what is not seen is
-      return std::ranges::find(rank_.invisible_functions, term.symbol) != rank_.invisible_functions.end();
+    const auto unseen = std::ranges::stable_partition(terms_, [this](const SmoothingTerm& term) {
+      return std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
     });
+    std::vector<SmoothingTerm> held(unseen.begin(), unseen.end());
+    terms_.erase(unseen.begin(), unseen.end());
+    for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
+    add_smoothing(held, base_prior_);
   }
 
   /// The wide prior, where there is no other, on what the readings may not determine.

@@ -6,11 +6,6 @@
 #include "volcal/identify/solve/adjustment.h"
 
 namespace volcal {
-namespace {
-
-constexpr double kHeld = 1e-9;  // of the information of a parameter for itself
-
-}  // namespace
 
 LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
     : campaign_(campaign),
@@ -57,9 +52,6 @@ void LinearModel::smooth(const Eigen::MatrixXd& gram, std::size_t observations) 
   GaussianPrior prior = GaussianPrior::none(static_cast<int>(count));
   prior.precision.topLeftCorner(own, own) = base_prior_.precision;
   prior.mean.head(own) = base_prior_.mean;
-  // What neither readings nor priors determine stays where it is.
-  const Eigen::VectorXd held = kHeld * (gram.diagonal().head(count) + prior.precision.diagonal());
-  prior.precision.diagonal() += held;
   std::vector<SmoothingTerm> smoothing = smoothing_;
   maximise_evidence({equations}, from, prior, {.variance_components = false}, {1.0}, smoothing);
   set_smoothing(std::move(smoothing));

@@ -87,7 +87,7 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("identify/solve/a.h", '#include "volcal/identify/criticism/diagnosis.h"',
                              "solve may not include criticism")
 
-    def test_physics_in_noise(self):
+    def test_statistics_in_noise(self):
         self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/stats/normal.h"',
                              "noise may not include stats")
 

@@ -2,12 +2,14 @@
 /// Small simulated campaigns with effects hidden in them.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/families.h"
+#include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/sim/reference_machines.h"
@@ -46,6 +48,19 @@ struct FittedStudy {
   FitResult result;
   LinearModel model;
 };
+
+/// A campaign with nothing hidden, and its recorded variables; made once per program.
+inline const LinearModel& model_of_nothing_hidden() {
+  static const FittedStudy fitted(hiding({}, {5, 4, 3}));
+  return fitted.model;
+}
+inline const std::vector<ScanVariable>& variables_of_nothing_hidden() {
+  static const std::vector<ScanVariable> all = scan_variables(model_of_nothing_hidden());
+  return all;
+}
+inline const Eigen::VectorXd& value_of_variable(const std::string& name) {
+  return std::ranges::find(variables_of_nothing_hidden(), name, &ScanVariable::name)->value;
+}
 
 /// Families of a kind; `target` empty = all.
 inline std::vector<Family> families_of(const LinearModel& model, const std::string& kind,

@@ -13,34 +13,25 @@ namespace volcal {
 namespace {
 
 using testing_support::families_of;
+using testing_support::model_of_nothing_hidden;
+using testing_support::value_of_variable;
+using testing_support::variables_of_nothing_hidden;
 using testing_support::white_projector;
 using testing_support::white_residual;
 
-const LinearModel& model() {
-  static const testing_support::FittedStudy fitted(testing_support::hiding({}, {5, 4, 3}));
-  return fitted.model;
-}
-
-const std::vector<ScanVariable>& variables() {
-  static const std::vector<ScanVariable> all = scan_variables(model());
-  return all;
-}
-
 class Constancy : public ::testing::Test {
  protected:
-  Constancy() : families_(families_of(model(), "reversal", "EXX")) {}
+  Constancy() : families_(families_of(model_of_nothing_hidden(), "reversal", "EXX")) {}
 
   /// Of a reversal of 2 um in the model, the residuals being `rest`.
   ConstancyTest test(const Eigen::VectorXd& rest) const {
-    Projector projector = white_projector(model(), rest);
+    Projector projector = white_projector(model_of_nothing_hidden(), rest);
     projector.accept(moved());
-    return least_constant(families_.at(0), 2e-6 * moved(), variables(), projector);
+    return least_constant(families_.at(0), 2e-6 * moved(), variables_of_nothing_hidden(), projector);
   }
 
-  Eigen::VectorXd moved() const { return family_columns(model(), families_.at(0), Eigen::VectorXd()); }
-
-  static const Eigen::VectorXd& value(const std::string& name) {
-    return std::ranges::find(variables(), name, &ScanVariable::name)->value;
+  Eigen::VectorXd moved() const {
+    return family_columns(model_of_nothing_hidden(), families_.at(0), Eigen::VectorXd());
   }
 
   std::vector<Family> families_;
@@ -51,7 +42,7 @@ TEST_F(Constancy, KeepsItsProbability) {
   constexpr int kDraws = 60;
   int below_fifth = 0;
   for (int draw = 0; draw < kDraws; ++draw)
-    below_fifth += test(white_residual(model(), random)).log10_p < std::log10(0.2) ? 1 : 0;
+    below_fifth += test(white_residual(model_of_nothing_hidden(), random)).log10_p < std::log10(0.2) ? 1 : 0;
   RecordProperty("below_fifth", below_fifth);
   EXPECT_LE(below_fifth, 0.2 * kDraws + 3.1 * std::sqrt(0.2 * 0.8 * kDraws));
   EXPECT_GE(below_fifth, 3);
@@ -59,22 +50,22 @@ TEST_F(Constancy, KeepsItsProbability) {
 
 TEST_F(Constancy, OfTheSameAmplitudeEverywhere) {
   std::mt19937_64 random(6);
-  EXPECT_GT(test(white_residual(model(), random) + 3e-6 * moved()).log10_p, -1.5);
+  EXPECT_GT(test(white_residual(model_of_nothing_hidden(), random) + 3e-6 * moved()).log10_p, -1.5);
 }
 
 /// Backlash that begins in the middle of the travel is no reversal of one size.
 TEST_F(Constancy, SeesAKinkAlongTheTravel) {
   std::mt19937_64 random(6);
-  const Eigen::VectorXd kink = moved().cwiseProduct(value("x").cwiseMax(0.0));
-  const ConstancyTest varies = test(white_residual(model(), random) + 3e-6 * kink);
+  const Eigen::VectorXd kink = moved().cwiseProduct(value_of_variable("x").cwiseMax(0.0));
+  const ConstancyTest varies = test(white_residual(model_of_nothing_hidden(), random) + 3e-6 * kink);
   EXPECT_EQ(varies.variable, "x");
   EXPECT_LT(varies.log10_p, -6.0);
 }
 
 TEST_F(Constancy, SeesWhatElseAnAmplitudeDependsOn) {
   std::mt19937_64 random(6);
-  const ConstancyTest varies =
-      test(white_residual(model(), random) + 1.5e-6 * moved().cwiseProduct(value("T_column")));
+  const ConstancyTest varies = test(white_residual(model_of_nothing_hidden(), random) +
+                                    1.5e-6 * moved().cwiseProduct(value_of_variable("T_column")));
   EXPECT_EQ(varies.variable, "T_column");
   EXPECT_LT(varies.log10_p, -4.0);
 }

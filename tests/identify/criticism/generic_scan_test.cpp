@@ -13,25 +13,15 @@
 namespace volcal {
 namespace {
 
+using testing_support::model_of_nothing_hidden;
+using testing_support::value_of_variable;
+using testing_support::variables_of_nothing_hidden;
 using testing_support::white_projector;
 using testing_support::white_residual;
 
-const LinearModel& model() {
-  static const testing_support::FittedStudy fitted(testing_support::hiding({}, {5, 4, 3}));
-  return fitted.model;
-}
-
-const std::vector<ScanVariable>& variables() {
-  static const std::vector<ScanVariable> all = scan_variables(model());
-  return all;
-}
-
-const Eigen::VectorXd& value(const std::string& name) {
-  return std::ranges::find(variables(), name, &ScanVariable::name)->value;
-}
-
 std::vector<GenericTest> scanned(const Eigen::VectorXd& residual) {
-  return generic_scan(model(), variables(), white_projector(model(), residual), 2);
+  return generic_scan(model_of_nothing_hidden(), variables_of_nothing_hidden(),
+                      white_projector(model_of_nothing_hidden(), residual), 2);
 }
 
 bool holds(const std::vector<GenericTest>& tests, const std::vector<std::string>& names,
@@ -43,7 +33,7 @@ bool holds(const std::vector<GenericTest>& tests, const std::vector<std::string>
 
 TEST(GenericScan, LooksForWhatCouldHaveAReason) {
   std::mt19937_64 random(3);
-  const std::vector<GenericTest> tests = scanned(white_residual(model(), random));
+  const std::vector<GenericTest> tests = scanned(white_residual(model_of_nothing_hidden(), random));
   for (const char* along : {"X", "Y", "Z"}) {
     EXPECT_TRUE(holds(tests, {"dir_x", "z"}, along));
     EXPECT_TRUE(holds(tests, {"T_column"}, along));
@@ -61,9 +51,12 @@ TEST(GenericScan, LooksForWhatCouldHaveAReason) {
 
 TEST(GenericScan, FindsAProductOfTwoVariables) {
   std::mt19937_64 random(4);
-  const Eigen::VectorXd moved =
-      model().direction(0).cwiseProduct(value("T_column")).cwiseProduct(value("dir_y"));
-  const std::vector<GenericTest> tests = scanned(white_residual(model(), random) + 0.5e-6 * moved);
+  const Eigen::VectorXd moved = model_of_nothing_hidden()
+                                    .direction(0)
+                                    .cwiseProduct(value_of_variable("T_column"))
+                                    .cwiseProduct(value_of_variable("dir_y"));
+  const std::vector<GenericTest> tests =
+      scanned(white_residual(model_of_nothing_hidden(), random) + 0.5e-6 * moved);
   const auto least = std::ranges::min_element(tests, {}, &GenericTest::log10_p);
   EXPECT_THAT(least->variables, ::testing::UnorderedElementsAre("T_column", "dir_y"));
   EXPECT_EQ(least->direction, "X");

@@ -46,6 +46,38 @@ class SetupSummaries : public ::testing::Test {
   Campaign campaign_;
 };
 
+std::vector<ResidualRecord> flagged_records(const std::vector<double>& w, std::size_t setup,
+                                            std::size_t removed) {
+  std::vector<ResidualRecord> records;
+  for (std::size_t i = 0; i < w.size(); ++i) {
+    ResidualRecord record;
+    record.setup = setup;
+    record.row = i;
+    record.w = w[i];
+    record.flagged = std::abs(w[i]) > 4.0;
+    record.removed = i < removed;
+    records.push_back(record);
+  }
+  return records;
+}
+
+/// Of w = 9, -8, 5 the first two leave with a share of 0.7; the 12 that is out already counts for nothing.
+TEST(WorstOutliers, LeaveWithThoseOfNearlyTheirSize) {
+  auto records = flagged_records({12.0, 9.0, 1.0, -8.0, 5.0, 0.5, 0.2, 0.1}, 0, 1);
+  EXPECT_EQ(worst_outliers(records, 0.7, 0.25), (std::vector<std::size_t>{1, 3}));
+  EXPECT_EQ(worst_outliers(records, 1.0, 0.25), (std::vector<std::size_t>{1}));
+  const auto other = flagged_records({4.5, 0.0}, 1, 0);
+  records.insert(records.end(), other.begin(), other.end());
+  EXPECT_EQ(worst_outliers(records, 0.7, 0.25), (std::vector<std::size_t>{1, 3, 8})) << "setup by setup";
+}
+
+/// Two of eight are a quarter and may go on; three are more.
+TEST(WorstOutliers, StopWhereTooMuchOfASetupHasLeft) {
+  const std::vector<double> w = {12.0, 12.0, 12.0, 9.0, 0.3, 0.5, 0.2, 0.1};
+  EXPECT_EQ(worst_outliers(flagged_records(w, 0, 2), 0.7, 0.25), (std::vector<std::size_t>{2, 3}));
+  EXPECT_TRUE(worst_outliers(flagged_records(w, 0, 3), 0.7, 0.25).empty());
+}
+
 /// Lengths of 3, 4 and 5 um and angles, of which some are removed: sqrt((9 + 16 + 25) / 3) um.
 TEST_F(SetupSummaries, OfATrackerAreMeansOfItsLengths) {
   const auto summaries = of({{0, 0, 0, 3e-6},

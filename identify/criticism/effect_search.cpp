@@ -28,6 +28,7 @@ constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival,
 constexpr double kLessProbable = 0.1;    // share of log10 p, family-wise; components cost probability
 constexpr int kMostChanges = 4;
 constexpr int kNoiseRounds = 2;
+constexpr double kSameLogLambda = 0.5;  // a quarter of an amplitude, less than evidence knows of one
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
@@ -37,6 +38,13 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
 
 bool near(const FamilyTest& own, const FamilyTest& other) {
   return own.gain - other.gain < kToldApart || own.score.lm - other.score.lm < kSameLikelihood;
+}
+
+/// Nothing that the noise would notice.
+bool alike(const std::vector<SmoothingTerm>& smoothing, const std::vector<SmoothingTerm>& other) {
+  return std::ranges::equal(smoothing, other, [](const SmoothingTerm& a, const SmoothingTerm& b) {
+    return a.shape == b.shape && std::abs(std::log(a.lambda / b.lambda)) < kSameLogLambda;
+  });
 }
 
 }  // namespace
@@ -80,7 +88,7 @@ void EffectSearch::start() {
 }
 
 /// Noise of all readings, then smoothing under it by those that are not held out, as the projector that
-/// chooses; twice, since either takes the other's part.
+/// chooses; twice where the smoothing changes, since either takes the other's part.
 void EffectSearch::find_noise() {
   NoiseOptions noise;
   noise.threads = options_.threads;
@@ -91,7 +99,9 @@ void EffectSearch::find_noise() {
     noise_ = noise_estimate_->parameters();
     projector_ = projector_without(std::nullopt);
     if (model_.smoothing().empty()) return;
+    const std::vector<SmoothingTerm> before = model_.smoothing();
     model_.smooth(projector_->gram(), projector_->observations());
+    if (alike(before, model_.smoothing())) break;
   }
   projector_ = projector_without(std::nullopt);
 }

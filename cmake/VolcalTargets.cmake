@@ -20,6 +20,25 @@ function(volcal_compile_options target)
   endif()
 endfunction()
 
+# With VOLCAL_UNITY_BUILD the files of a folder are compiled together, a dozen at a time, so that the headers
+# they share are read once. Names in unnamed namespaces are therefore unique within a folder.
+function(volcal_unity_build target)
+  if(NOT VOLCAL_UNITY_BUILD)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  foreach(source IN LISTS sources)
+    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
+    cmake_path(GET folder PARENT_PATH folder)
+    string(MAKE_C_IDENTIFIER ${folder} folder)
+    math(EXPR count "${count_${folder}} + 0")
+    math(EXPR dozen "${count} / 12")
+    math(EXPR count_${folder} "${count} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${dozen})
+  endforeach()
+endfunction()
+
 # Sources named *_avx2.cpp and *_avx512.cpp are compiled for these instruction sets (x86-64 only); the
 # program chooses between them at run time. Everything else runs on any processor of the architecture.
 # Such a file holds plain loops or intrinsics and includes no header with inline code that others share:
@@ -59,6 +78,7 @@ function(volcal_add_library name)
     add_library(${target} STATIC ${sources})
     volcal_instruction_sets(${sources})
     volcal_compile_options(${target})
+    volcal_unity_build(${target})
     target_link_libraries(${target} PUBLIC ${layer_PUBLIC} PRIVATE ${layer_PRIVATE})
     set(scope PUBLIC)
   else()

@@ -1,14 +1,13 @@
 #include "volcal/sim/datum.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <stdexcept>
+
+#include "volcal/sim/transforms.h"
 
 namespace volcal::sim {
 namespace {
-
-constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
-
-Eigen::Vector3d unit(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
 void require_linear(ErrorSymbol symbol) {
   if (is_rotary(symbol.axis)) {

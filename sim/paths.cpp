@@ -7,8 +7,6 @@
 namespace volcal::sim {
 namespace {
 
-constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
-
 /// Direction of approach after a move; where an axis rests, the last one stays.
 void approach(const CommandedPoint& from, CommandedPoint& to) {
   constexpr double kResting = 1e-12;

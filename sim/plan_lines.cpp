@@ -2,11 +2,10 @@
 
 #include "volcal/sim/paths.h"
 #include "volcal/sim/plan_tools.h"
+#include "volcal/sim/transforms.h"
 
 namespace volcal::sim {
 namespace {
-
-constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
 
 template <class Settings>
 SetupPlan new_plan(const std::string& name, const std::string& instrument, const Settings& settings,
@@ -25,8 +24,6 @@ void check_line(const Settings& settings, const PlanContext& context) {
   context.require_at_least(settings.points, 2, "points");
   context.require_at_least(settings.runs, 1, "runs");
 }
-
-Eigen::Vector3d unit(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
 void require_linear(AxisName axis, const PlanContext& context) {
   if (is_rotary(axis)) context.fail(std::string("axis ") + letter_of(axis) + " is rotary", "use X, Y or Z");

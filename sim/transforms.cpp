@@ -15,6 +15,8 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
 
 }  // namespace
 
+Eigen::Vector3d unit(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
+
 Eigen::Matrix4d translation(const Eigen::Vector3d& v) {
   Eigen::Matrix4d t = Eigen::Matrix4d::Identity();
   t.topRightCorner<3, 1>() = v;

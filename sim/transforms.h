@@ -4,8 +4,12 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "volcal/model/description/symbols.h"
+
 namespace volcal::sim {
 
+/// Direction of a linear axis.
+Eigen::Vector3d unit(AxisName axis);
 Eigen::Matrix4d translation(const Eigen::Vector3d& v);
 /// Rotation by `angle` about coordinate direction 0..2.
 Eigen::Matrix4d rotation_about(int direction, double angle);

@@ -10,8 +10,6 @@
 namespace volcal::sim {
 namespace {
 
-Eigen::Vector3d unit(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
-
 LocationSymbol location_symbol(int component, AxisName axis) {
   return {kAllComponents[static_cast<std::size_t>(component)], axis};
 }

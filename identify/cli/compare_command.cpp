@@ -25,7 +25,7 @@ namespace {
 
 const std::string kNominal = "nominal";
 
-struct Arguments {
+struct CompareArguments {
   std::string campaign;
   std::vector<std::string> models;
   std::string output;
@@ -88,7 +88,8 @@ void write_folder(const std::string& target, const Campaign& campaign,
 }
 
 std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vector<NamedModel>& models,
-                                        const Arguments& arguments, const ComparisonOptions& comparison) {
+                                        const CompareArguments& arguments,
+                                        const ComparisonOptions& comparison) {
   const auto rows = judging_rows(campaign);
   if (std::ranges::none_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; })) {
     throw InputError({campaign.file, 0}, "--held-out: the setups have too few readings to hold lines out",
@@ -109,7 +110,7 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   return judged;
 }
 
-int run(const Arguments& arguments) {
+int run_compare(const CompareArguments& arguments) {
   if (!arguments.output.empty()) require_output_folder(arguments.output);
   const Campaign campaign = read_campaign(arguments.campaign);
   ComparisonOptions comparison;
@@ -142,8 +143,8 @@ int run(const Arguments& arguments) {
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_compare(CLI::App& app) {
+  auto arguments = std::make_shared<CompareArguments>();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option(
          "MODEL", arguments->models,
@@ -164,7 +165,7 @@ std::function<int()> define(CLI::App& app) {
                "fit the models anew without every fifth line and judge them on those lines");
   app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");
   app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_compare(*arguments); };
 }
 
 }  // namespace
@@ -177,7 +178,7 @@ const Command& compare_command() {
       "  volcal compare campaign.toml nominal result\n"
       "  volcal compare campaign.toml result result-1 --held-out\n"
       "  volcal compare campaign.toml result --json | jq -r '.models[0].where_it_fails'\n",
-      define};
+      define_compare};
   return command;
 }
 

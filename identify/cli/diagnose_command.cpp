@@ -25,7 +25,7 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   std::string campaign;
   std::string model;
   std::string output;
@@ -38,12 +38,12 @@ struct Arguments {
   std::size_t readings = PlanningOptions{}.readings;
 };
 
-ModelSpec given_model(const Arguments& arguments, const Campaign& campaign) {
+ModelSpec given_model(const DiagnoseArguments& arguments, const Campaign& campaign) {
   return arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
 }
 
 /// Of a campaign also by name.
-int print_list(const Arguments& arguments) {
+int print_list(const DiagnoseArguments& arguments) {
   std::vector<std::string> testable;
   if (!arguments.campaign.empty()) {
     const Campaign campaign = read_campaign(arguments.campaign);
@@ -61,7 +61,7 @@ ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
 }
 
 /// The ladder of an earlier diagnosis again.
-int show(const Arguments& arguments) {
+int show(const DiagnoseArguments& arguments) {
   if (!arguments.campaign.empty()) {
     throw InputError({}, "both a campaign to diagnose and --show are given",
                      "volcal diagnose --show DIR prints an earlier diagnosis; leave one of the two out");
@@ -71,7 +71,7 @@ int show(const Arguments& arguments) {
   return kDone;
 }
 
-void write_folder(const Arguments& arguments, const Campaign& campaign, const ModelSpec& model,
+void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
                   const Diagnosis& diagnosis, const std::string& json) {
   AtomicFolder folder(arguments.output);
   folder.write("diagnosis.json", json);
@@ -87,7 +87,7 @@ void write_folder(const Arguments& arguments, const Campaign& campaign, const Mo
   folder.commit();
 }
 
-int run(const Arguments& arguments) {
+int run_diagnose(const DiagnoseArguments& arguments) {
   if (arguments.list) return print_list(arguments);
   if (!arguments.shown.empty()) return show(arguments);
   if (arguments.campaign.empty()) {
@@ -129,8 +129,8 @@ int run(const Arguments& arguments) {
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_diagnose(CLI::App& app) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml");
   app.add_option("-m,--model", arguments->model, "model.toml to criticise; default: all 21 errors");
   app.add_option("-o,--output", arguments->output,
@@ -151,7 +151,7 @@ std::function<int()> define(CLI::App& app) {
       "--list", arguments->list,
       "print every kind, target, driver and shape of effects, and what could act in CAMPAIGN, and stop");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_diagnose(*arguments); };
 }
 
 }  // namespace
@@ -165,7 +165,7 @@ const Command& diagnose_command() {
       "  volcal diagnose --show diagnosis\n"
       "  volcal diagnose --list\n"
       "  volcal diagnose campaign.toml --list\n",
-      define};
+      define_diagnose};
   return command;
 }
 

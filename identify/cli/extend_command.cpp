@@ -21,7 +21,7 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct ExtendArguments {
   std::string model;
   std::vector<std::string> effects;
   std::string diagnosis;
@@ -31,7 +31,7 @@ struct Arguments {
   std::string output;
 };
 
-std::vector<EffectFinding> chosen(const Arguments& arguments) {
+std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
   const Diagnosis diagnosis = read_diagnosis(arguments.diagnosis);
   const std::string again = "volcal diagnose --show " + arguments.diagnosis + " prints the ranking";
   if (arguments.accepted) {
@@ -54,7 +54,7 @@ std::vector<EffectFinding> chosen(const Arguments& arguments) {
 }
 
 /// Throws when the model has it already, or the machine cannot have it.
-void add_found(const EffectFinding& effect, const Arguments& arguments, ModelSpec& model,
+void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
                const Machine& machine) {
   for (const EffectSpec& present : model.effects) {
     if (find_effect(present.kind)->make(present, model.file)->name() != effect.name) continue;
@@ -85,7 +85,7 @@ void add_found(const EffectFinding& effect, const Arguments& arguments, ModelSpe
   fmt::print("added: {}{}{}\n", effect.label, effect.shape_text.empty() ? "" : ", ", effect.shape_text);
 }
 
-void require_one_source(const Arguments& arguments) {
+void require_one_source(const ExtendArguments& arguments) {
   const std::string usage = "volcal extend MODEL --diagnosis DIR --rank 1 (or --accepted) -o NEW.toml";
   const bool chooses = arguments.rank > 0 || arguments.accepted;
   if (arguments.diagnosis.empty()) {
@@ -121,7 +121,7 @@ std::string path_from(const std::string& from, const std::string& file) {
   return std::filesystem::proximate(std::filesystem::absolute(file), folder).generic_string();
 }
 
-int run(const Arguments& arguments) {
+int run_extend(const ExtendArguments& arguments) {
   require_one_source(arguments);
   auto [machine, model] = read_model_with_machine(arguments.model);
   Campaign campaign;
@@ -142,8 +142,8 @@ int run(const Arguments& arguments) {
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_extend(CLI::App& app) {
+  auto arguments = std::make_shared<ExtendArguments>();
   app.add_option("MODEL", arguments->model, "model.toml to extend")->required();
   app.add_option("-e,--effect", arguments->effects,
                  "KIND:TARGET[:DRIVER[:SHAPE]]; may be given several times");
@@ -157,7 +157,7 @@ std::function<int()> define(CLI::App& app) {
                  "campaign.toml, for effects of temperatures, stations, setups and tools");
   app.add_option("-o,--output", arguments->output,
                  "model file to write; default: the model's name with the next free number, model-1.toml");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_extend(*arguments); };
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ const Command& extend_command() {
       "  volcal extend model.toml --effect axis-coupling:EAY:z:linear -o model-1.toml\n"
       "  volcal extend model.toml --effect thermal-drift:EAZ:T_column --campaign campaign.toml -o "
       "model-1.toml\n",
-      define};
+      define_extend};
   return command;
 }
 

@@ -23,7 +23,7 @@ namespace {
 
 std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
 
-struct Arguments {
+struct FitArguments {
   std::string campaign;
   std::string model;
   std::string output;
@@ -37,7 +37,7 @@ struct Arguments {
   bool json = false;
 };
 
-FitOptions fit_options(const Arguments& arguments) {
+FitOptions fit_options(const FitArguments& arguments) {
   FitOptions options;
   options.threads = arguments.threads;
   options.loss = arguments.loss == "huber"    ? RobustLoss::Huber
@@ -51,7 +51,7 @@ FitOptions fit_options(const Arguments& arguments) {
   return options;
 }
 
-int run(const Arguments& arguments) {
+int run_fit(const FitArguments& arguments) {
   require_output_folder(arguments.output);
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model =
@@ -75,8 +75,8 @@ int run(const Arguments& arguments) {
                                                                                                : kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_fit(CLI::App& app) {
+  auto arguments = std::make_shared<FitArguments>();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option("-m,--model", arguments->model,
                  "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
@@ -99,7 +99,7 @@ std::function<int()> define(CLI::App& app) {
                "do not estimate variance components nor correlated noise");
   app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");
   app.add_flag("--json", arguments->json, "print result.json on standard output and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_fit(*arguments); };
 }
 
 }  // namespace
@@ -110,7 +110,7 @@ const Command& fit_command() {
       "  volcal fit campaign.toml -o result\n"
       "  volcal fit campaign.toml --model model.toml --outliers remove -o result\n"
       "  volcal fit campaign.toml -o result --json | jq .sigma0\n",
-      define};
+      define_fit};
   return command;
 }
 

@@ -14,7 +14,7 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct InitArguments {
   std::string structure;
   std::string output;
 };
@@ -106,7 +106,7 @@ const char* const kModelToml =
     "#kind = \"reversal\"\n"
     "#symbol = \"EXX\"\n";
 
-int run(const Arguments& arguments) {
+int run_init(const InitArguments& arguments) {
   const Structure structure = Structure::parse(arguments.structure);
   int linear = 0;
   for (const Joint& joint : structure.joints) linear += is_rotary(joint.axis) ? 0 : 1;
@@ -127,12 +127,12 @@ int run(const Arguments& arguments) {
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_init(CLI::App& app) {
+  auto arguments = std::make_shared<InitArguments>();
   app.add_option("STRUCTURE", arguments->structure, "structural code, workpiece to tool (ISO 10791-6)")
       ->required();
   app.add_option("-o,--output", arguments->output, "folder")->required();
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_init(*arguments); };
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ const Command& init_command() {
   static const Command command = {"init", "write a commented machine, model and campaign to start from",
                                   "  volcal init \"w X' b Y Z t\" -o my-machine\n"
                                   "  volcal init \"w C' A' b X Y Z t\" -o five-axis\n",
-                                  define};
+                                  define_init};
   return command;
 }
 

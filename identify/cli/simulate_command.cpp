@@ -15,14 +15,14 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::string study;
   std::string output;
   std::optional<std::uint64_t> seed;
   bool json = false;
 };
 
-int run(const Arguments& arguments) {
+int run_simulate(const SimulateArguments& arguments) {
   sim::Study study = read_study(arguments.study);
   if (arguments.seed) study.seed = *arguments.seed;
   AtomicFolder folder(arguments.output);
@@ -43,8 +43,8 @@ int run(const Arguments& arguments) {
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_simulate(CLI::App& app) {
+  auto arguments = std::make_shared<SimulateArguments>();
   app.add_option("STUDY", arguments->study, "study.toml: machine, hidden truth, measurements")->required();
   app.add_option("-o,--output", arguments->output, "folder for campaign.toml, its CSV files and truth/")
       ->required();
@@ -52,7 +52,7 @@ std::function<int()> define(CLI::App& app) {
                  "instead of the study's seed; same seed, same readings to the bit")
       ->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_simulate(*arguments); };
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ const Command& simulate_command() {
   static const Command command = {"simulate", "make a campaign from a machine with known errors",
                                   "  volcal simulate datasets/demo/study.toml -o campaign\n"
                                   "  volcal simulate study.toml --seed 7 -o campaign-7\n",
-                                  define};
+                                  define_simulate};
   return command;
 }
 

@@ -9,7 +9,7 @@
 namespace volcal::cli {
 namespace {
 
-std::function<int()> define(CLI::App& app) {
+std::function<int()> define_study(CLI::App& app) {
   app.require_subcommand(0, 1);
   auto work = std::make_shared<std::map<CLI::App*, std::function<int()>>>();
   for (const Command* study : studies()) {
@@ -30,7 +30,7 @@ const Command& study_command() {
   static const Command command = {"study", "count over many simulated campaigns what the program claims",
                                   "  volcal study closed-loop -n 20\n"
                                   "  volcal study closed-loop --help\n",
-                                  define};
+                                  define_study};
   return command;
 }
 

@@ -17,7 +17,7 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct ValidateArguments {
   std::string result;
   std::string campaign;
   double max_rms_um = 0.0;
@@ -84,7 +84,7 @@ std::string figures_text(const Validation& validation) {
              figures.reduced_chi2, 100.0 * figures.coverage95);
 }
 
-int run(const Arguments& arguments) {
+int run_validate(const ValidateArguments& arguments) {
   const FitResult result = read_result(arguments.result);
   const Campaign campaign = read_campaign(arguments.campaign);
   const std::string difference = machine_difference(result.machine, campaign.machine);
@@ -104,8 +104,8 @@ int run(const Arguments& arguments) {
   return exceeded ? kIncomplete : kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_validate(CLI::App& app) {
+  auto arguments = std::make_shared<ValidateArguments>();
   app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml with readings that the fit did not use")
       ->required();
@@ -113,7 +113,7 @@ std::function<int()> define(CLI::App& app) {
       ->check(positive());
   app.add_option("--threads", arguments->threads, "0 = all")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_validate(*arguments); };
 }
 
 }  // namespace
@@ -123,7 +123,7 @@ const Command& validate_command() {
                                   "  volcal validate result other-setups/campaign.toml\n"
                                   "  volcal validate result truth/campaign.toml --json\n"
                                   "  volcal validate result acceptance/campaign.toml --max-rms-um 3\n",
-                                  define};
+                                  define_validate};
   return command;
 }
 

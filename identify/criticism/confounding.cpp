@@ -14,7 +14,7 @@
 namespace volcal {
 namespace {
 
-constexpr Eigen::Index kBlockColumns = 160;
+constexpr Eigen::Index kRivalBlockColumns = 160;
 constexpr std::size_t kMatrix = 24;           // hypotheses that the matrix shows
 constexpr std::size_t kInvisibleListed = 40;  // of the families that are not visible
 constexpr double kFarApart = 0.01;            // squared cosine that changes an MIB by half a percent
@@ -83,7 +83,7 @@ class RivalSearch {
       const auto is_it = [&](const Hypothesis& each) { return each.family == test.family; };
       if (test.score.dof == 0 || std::ranges::any_of(focus_, is_it)) continue;
       const Hypothesis rival{test.family, test.shape};
-      if (columns + width(rival) > kBlockColumns) {
+      if (columns + width(rival) > kRivalBlockColumns) {
         all.emplace_back();
         columns = 0;
       }

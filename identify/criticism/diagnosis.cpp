@@ -43,7 +43,6 @@ Verdict verdict_from(const std::string& text) {
 
 namespace {
 
-constexpr double kVisible = 0.02;
 constexpr double kPower = 0.8;
 constexpr double kNearlyAsImprobable = 0.1;  // share of log10 p
 constexpr std::size_t kListed = 40;
@@ -221,7 +220,7 @@ class Diagnostician {
       const Family& family = families_[test.family];
       if (family.resolution) continue;
       const EffectFinding found = finding(test);
-      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kVisible;
+      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kVisibleFraction;
       if (!visible) diagnosis_.not_visible.push_back(found);
       diagnosis_.detectable.push_back(detectable(found, *family.effect, test.shape, visible, levers));
     }

@@ -1,11 +1,12 @@
 #include "volcal/identify/criticism/ladder.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
+
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {
@@ -18,9 +19,8 @@ double prior_rank(const Eigen::MatrixXd& precision) {
   if (precision.size() == 0) return 0.0;
   const Eigen::VectorXd scale =
       precision.diagonal().unaryExpr([](double value) { return value > 0.0 ? 1.0 / std::sqrt(value) : 0.0; });
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      scale.asDiagonal() * precision * scale.asDiagonal(), Eigen::EigenvaluesOnly);
-  return static_cast<double>((eigen.eigenvalues().array() > kSmallestEigenvalue).count());
+  const Eigen::VectorXd values = eigenvalues(scale.asDiagonal() * precision * scale.asDiagonal());
+  return static_cast<double>((values.array() > kSmallestEigenvalue).count());
 }
 
 /// Derivatives of the held-out readings to all parameters, accepted columns last.

@@ -17,7 +17,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kVisible = 0.02;
 constexpr double kHelps = 1.05;      // a gain below is no proposal
 constexpr double kTold = 1.0;        // s^2 below which two are not told apart
 constexpr double kMuchBetter = 1.5;  // for one pair than the measurement that serves all
@@ -307,7 +306,7 @@ class Proposer {
                     const std::vector<PlannedHypothesis>& hypotheses) {
     std::vector<std::size_t> hidden;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      if (planner.visible_fraction(planner.now(), i) < kVisible) hidden.push_back(i);
+      if (planner.visible_fraction(planner.now(), i) < kVisibleFraction) hidden.push_back(i);
     }
     for (std::size_t action = 0; action < kMostActions && !hidden.empty(); ++action) {
       std::vector<std::size_t> most;
@@ -337,7 +336,7 @@ class Proposer {
                                            const std::vector<std::size_t>& hidden) {
     std::vector<std::size_t> shown;
     for (const std::size_t i : hidden) {
-      if (planner.visible_fraction(planner.with(measurement), i) >= kVisible) shown.push_back(i);
+      if (planner.visible_fraction(planner.with(measurement), i) >= kVisibleFraction) shown.push_back(i);
     }
     return shown;
   }

@@ -1,10 +1,9 @@
 #include "volcal/identify/criticism/score_test.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/quadratic_form.h"
 
@@ -27,12 +26,12 @@ ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eige
   test.score = projected.score.segment(first, columns);
   const Eigen::MatrixXd gram = scale.asDiagonal() * test.gram * scale.asDiagonal();
   const Eigen::VectorXd score = scale.cwiseProduct(test.score);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
+  const SymmetricEigen eigen = eigen_decomposition(gram);
   test.visible_fraction = std::sqrt(std::max(0.0, gram.trace() / static_cast<double>(columns)));
   for (Eigen::Index k = 0; k < columns; ++k) {
-    const double value = eigen.eigenvalues()[k];
+    const double value = eigen.values[k];
     if (value < kInvisibleShare * kInvisibleShare) continue;
-    const Eigen::VectorXd direction = eigen.eigenvectors().col(k);
+    const Eigen::VectorXd direction = eigen.vectors.col(k);
     const double along = direction.dot(score);
     test.lm += along * along / value;
     ++test.dof;
@@ -49,11 +48,8 @@ double ScoreTest::lm_of(const std::vector<Eigen::Index>& which) const {
   Eigen::MatrixXd own_gram = gram(which, which);
   const Eigen::VectorXd scale = own_gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   own_gram = scale.asDiagonal() * own_gram * scale.asDiagonal();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(kInvisibleShare);
-  solver.compute(own_gram);
   const Eigen::VectorXd scaled = scale.cwiseProduct(own);
-  return scaled.dot(solver.solve(scaled));
+  return scaled.dot(least_squares(own_gram, scaled, kInvisibleShare).solution);
 }
 
 KernelTest kernel_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) {
@@ -65,8 +61,7 @@ KernelTest kernel_test(const ProjectedColumns& projected, Eigen::Index first, Ei
   KernelTest test{score * trace / squares, trace * trace / squares, 0.0};
   test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);
   if (test.log10_p < kWorthExactTail) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram, Eigen::EigenvaluesOnly);
-    test.log10_p = log10_quadratic_form_exceedance(score, eigen.eigenvalues().cwiseMax(0.0));
+    test.log10_p = log10_quadratic_form_exceedance(score, eigenvalues(gram).cwiseMax(0.0));
   }
   return test;
 }

@@ -12,6 +12,8 @@ namespace volcal {
 
 /// Columns of which less than this share survives the projection carry no information.
 inline constexpr double kInvisibleShare = 1e-4;
+/// An effect of which less than this share survives is not visible to the campaign.
+inline constexpr double kVisibleFraction = 0.02;
 
 struct ScoreTest {
   double lm = 0.0;

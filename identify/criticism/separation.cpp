@@ -1,10 +1,10 @@
 #include "volcal/identify/criticism/separation.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {
@@ -23,10 +23,10 @@ Eigen::VectorXd inverse_root(const Eigen::VectorXd& squares) {
 /// W with W^T G W = 1 on the visible directions of a Gram matrix.
 Eigen::MatrixXd orthonormaliser(const Eigen::MatrixXd& gram) {
   const Eigen::VectorXd scale = inverse_root(gram.diagonal());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
-  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const SymmetricEigen eigen = eigen_decomposition(scale.asDiagonal() * gram * scale.asDiagonal());
+  const Eigen::VectorXd& values = eigen.values;
   const Eigen::Index visible = (values.array() >= kVisibleEigenvalue).count();
-  return scale.asDiagonal() * eigen.eigenvectors().rightCols(visible) *
+  return scale.asDiagonal() * eigen.vectors.rightCols(visible) *
          values.tail(visible).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
@@ -65,18 +65,17 @@ double canonical_cosine(const Eigen::MatrixXd& gram, ColumnRange a, ColumnRange 
   const Eigen::MatrixXd right = orthonormaliser(block(gram, b, b));
   if (left.cols() == 0 || right.cols() == 0) return std::numeric_limits<double>::quiet_NaN();
   const Eigen::MatrixXd across = left.transpose() * block(gram, a, b) * right;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(across);
-  return std::min(1.0, svd.singularValues()[0]);
+  return std::min(1.0, std::sqrt(eigenvalues(across.transpose() * across).tail<1>()[0]));
 }
 
 Eigen::VectorXd amplitude_uncertainty(const Eigen::MatrixXd& gram, const Eigen::VectorXd& reference) {
   const Eigen::VectorXd scale = inverse_root(reference);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scale.asDiagonal() * gram * scale.asDiagonal());
+  const SymmetricEigen eigen = eigen_decomposition(scale.asDiagonal() * gram * scale.asDiagonal());
   Eigen::VectorXd variance = Eigen::VectorXd::Zero(gram.rows());
   for (Eigen::Index k = 0; k < gram.rows(); ++k) {
-    const double value = eigen.eigenvalues()[k];
+    const double value = eigen.values[k];
     for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-      const double share = std::pow(eigen.eigenvectors()(i, k), 2);
+      const double share = std::pow(eigen.vectors(i, k), 2);
       if (value >= kSameSquaredSine) {
         variance[i] += share * scale[i] * scale[i] / value;
       } else if (share > kTouches || scale[i] == 0.0) {
@@ -91,8 +90,8 @@ Eigen::VectorXd least_separated_amplitude(const Eigen::MatrixXd& own, const Eige
                                           const Eigen::VectorXd& known_norm, double noncentrality) {
   const Eigen::MatrixXd basis = orthonormaliser(own);
   if (basis.cols() == 0) return inverse_root(known_norm.cwiseAbs2()) * std::sqrt(noncentrality);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(basis.transpose() * apart * basis);
-  return basis * eigen.eigenvectors().col(0) * std::sqrt(noncentrality);
+  const SymmetricEigen eigen = eigen_decomposition(basis.transpose() * apart * basis);
+  return basis * eigen.vectors.col(0) * std::sqrt(noncentrality);
 }
 
 }  // namespace volcal

@@ -23,15 +23,16 @@ constexpr double kLeastLength = 5e-3;   // m, variation of a prediction worth ju
 constexpr double kLeastAngle = 0.1;     // rad
 constexpr double kLeastCorrelation = 0.99;
 
-std::string shown(double value) {
+std::string four_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 
 std::string shown_mm(const Eigen::Vector3d& point) {
-  return "[" + shown(point.x() / kMetrePerMillimetre) + ", " + shown(point.y() / kMetrePerMillimetre) + ", " +
-         shown(point.z() / kMetrePerMillimetre) + "] mm";
+  return "[" + four_digits(point.x() / kMetrePerMillimetre) + ", " +
+         four_digits(point.y() / kMetrePerMillimetre) + ", " + four_digits(point.z() / kMetrePerMillimetre) +
+         "] mm";
 }
 
 [[noreturn]] void fail(const Campaign& campaign, const Setup& setup, const std::string& problem,
@@ -182,7 +183,7 @@ void check_units(const Campaign& campaign, const Setup& setup, std::vector<Eigen
     if (!judged || (relation.factor > 0.5 && relation.factor < 2.0)) continue;
     throw InputError(
         {setup.data, static_cast<int>(setup.readings.source_line.front())},
-        column + " changes by " + shown(relation.factor) + " of what the commanded positions predict",
+        column + " changes by " + four_digits(relation.factor) + " of what the commanded positions predict",
         factor_remedy(relation.factor, column));
   }
 }
@@ -204,14 +205,14 @@ void check_shared_stations(const Campaign& campaign) {
       const bool both_known = sigma > 0.0 && other_sigma > 0.0;
       if (both_known && apart > allowed) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + shown(apart / kMetrePerMillimetre) +
+             "station \"" + *name + "\" is " + four_digits(apart / kMetrePerMillimetre) +
                  " mm from where setup \"" + other->name + "\" (line " + std::to_string(other->source_line) +
                  ") puts it, over 5 sigma",
              "correct station_mm or station_sigma_mm, or give the station another name if it was moved");
       }
       if (!both_known && apart > kGuessSpread) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + shown(apart) + " m from where setup \"" + other->name +
+             "station \"" + *name + "\" is " + four_digits(apart) + " m from where setup \"" + other->name +
                  "\" (line " + std::to_string(other->source_line) + ") puts it",
              "correct station_mm, or give the station another name if it was moved");
       }

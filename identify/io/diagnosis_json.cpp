@@ -7,20 +7,19 @@
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json micro(double value) { return number(value / kMicro); }
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json micro(double value) { return finite_or_null(value / kMicro); }
 
 /// null: never told apart from the rival, or not computed.
 void add_mib(const AmplitudeFigure& figure, Json& json) {
-  json["mib"] = number(figure.mib / figure.si_per_unit);
+  json["mib"] = finite_or_null(figure.mib / figure.si_per_unit);
   json["mib_rival"] = figure.mib_rival;
 }
 
@@ -40,27 +39,27 @@ Json effect_json(const EffectFinding& effect) {
     for (const AmplitudeFigure& each : effect.amplitudes) {
       if (size(each) > size(*leading)) leading = &each;
     }
-    json["amplitude"] = number(leading->value / leading->si_per_unit);
+    json["amplitude"] = finite_or_null(leading->value / leading->si_per_unit);
     json["unit"] = leading->unit;
-    json["u"] = number(leading->u / leading->si_per_unit);
-    json["mdb"] = number(leading->mdb / leading->si_per_unit);
+    json["u"] = finite_or_null(leading->u / leading->si_per_unit);
+    json["mdb"] = finite_or_null(leading->mdb / leading->si_per_unit);
     add_mib(*leading, json);
     if (effect.amplitudes.size() > 1) {
       json["amplitudes"] = Json::array();
       for (const AmplitudeFigure& each : effect.amplitudes) {
         json["amplitudes"].push_back({{"label", each.label},
-                                      {"amplitude", number(each.value / each.si_per_unit)},
+                                      {"amplitude", finite_or_null(each.value / each.si_per_unit)},
                                       {"unit", each.unit},
-                                      {"u", number(each.u / each.si_per_unit)},
-                                      {"mdb", number(each.mdb / each.si_per_unit)}});
+                                      {"u", finite_or_null(each.u / each.si_per_unit)},
+                                      {"mdb", finite_or_null(each.mdb / each.si_per_unit)}});
         add_mib(each, json["amplitudes"].back());
       }
     }
   }
-  json["log10_p"] = number(effect.log10_p);
-  json["visible_fraction"] = number(effect.visible_fraction);
-  json["gain"] = number(effect.gain);
-  json["lm"] = number(effect.lm);
+  json["log10_p"] = finite_or_null(effect.log10_p);
+  json["visible_fraction"] = finite_or_null(effect.visible_fraction);
+  json["gain"] = finite_or_null(effect.gain);
+  json["lm"] = finite_or_null(effect.lm);
   json["dof"] = effect.dof;
   if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
   if (effect.spec.kind == kLeftOut) {
@@ -88,10 +87,10 @@ Json detectable_json(const std::vector<DetectableEffect>& effects) {
                     {"shape", effect.name.shape},
                     {"label", effect.label},
                     {"shape_value", effect.shape_text},
-                    {"mdb", number(effect.mdb / effect.si_per_unit)},
+                    {"mdb", finite_or_null(effect.mdb / effect.si_per_unit)},
                     {"unit", effect.unit},
                     {"visible", effect.visible},
-                    {"visible_fraction", number(effect.visible_fraction)},
+                    {"visible_fraction", finite_or_null(effect.visible_fraction)},
                     {"volumetric_um", micro(effect.volumetric)}});
   }
   return json;
@@ -101,7 +100,7 @@ Json unknown_json(const UnknownFinding& unknown) {
   return {{"variables", unknown.variables},
           {"direction", unknown.direction},
           {"rms_um", micro(unknown.rms)},
-          {"log10_p", number(unknown.log10_p)}};
+          {"log10_p", finite_or_null(unknown.log10_p)}};
 }
 
 Json names_json(const std::vector<EffectName>& names) {
@@ -117,11 +116,11 @@ Json proposal_json(const MeasurementProposal& proposal) {
           {"separates", names_json(proposal.separates)},
           {"makes_visible", names_json(proposal.makes_visible)},
           {"readings", proposal.readings},
-          {"separation", number(proposal.separation)},
-          {"separation_reached", number(proposal.reached)},
-          {"separation_plain", number(proposal.plain)},
-          {"gain", number(proposal.gain)},
-          {"plain_gain", number(proposal.plain_gain)},
+          {"separation", finite_or_null(proposal.separation)},
+          {"separation_reached", finite_or_null(proposal.reached)},
+          {"separation_plain", finite_or_null(proposal.plain)},
+          {"gain", finite_or_null(proposal.gain)},
+          {"plain_gain", finite_or_null(proposal.plain_gain)},
           {"words", proposal.words}};
 }
 
@@ -130,7 +129,7 @@ Json confounding_json(const Confounding& confounding) {
   for (Eigen::Index i = 0; i < confounding.cosine.rows(); ++i) {
     Json row = Json::array();
     for (Eigen::Index j = 0; j < confounding.cosine.cols(); ++j)
-      row.push_back(number(confounding.cosine(i, j)));
+      row.push_back(finite_or_null(confounding.cosine(i, j)));
     rows.push_back(std::move(row));
   }
   return {{"effects", names_json(confounding.names)}, {"labels", confounding.labels}, {"cosine", rows}};
@@ -141,12 +140,12 @@ Json step_json(const LadderStep& step) {
           {"added", step.added},
           {"rms_fit_um", micro(step.rms_fit)},
           {"rms_heldout_um", micro(step.rms_heldout)},
-          {"reduced_chi2", number(step.reduced_chi2)},
+          {"reduced_chi2", finite_or_null(step.reduced_chi2)},
           {"noise_floor_um", micro(step.noise_floor)},
           {"systematic_um", micro(step.systematic)},
           {"systematic_low_um", micro(step.systematic_low)},
           {"systematic_high_um", micro(step.systematic_high)},
-          {"heldout_loglik_gain", number(step.heldout_loglik_gain)}};
+          {"heldout_loglik_gain", finite_or_null(step.heldout_loglik_gain)}};
 }
 
 Json noise_json(const Diagnosis& diagnosis) {
@@ -155,10 +154,10 @@ Json noise_json(const Diagnosis& diagnosis) {
     json.push_back({{"instrument", diagnosis.noise_instruments[row.instrument]},
                     {"term", row.term},
                     {"unit", row.unit},
-                    {"value", number(row.value)},
-                    {"low", number(row.low)},
-                    {"high", number(row.high)},
-                    {"likelihood_ratio", number(row.likelihood_ratio)},
+                    {"value", finite_or_null(row.value)},
+                    {"low", finite_or_null(row.low)},
+                    {"high", finite_or_null(row.high)},
+                    {"likelihood_ratio", finite_or_null(row.likelihood_ratio)},
                     {"remark", row.remark}});
   }
   return json;

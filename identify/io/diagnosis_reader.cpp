@@ -15,15 +15,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMicro = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// null stands for what is not a number.
-double number(const Json& json) {
+double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
-double number(const Json& json, const char* key) { return number(json.at(key)); }
-double micro(const Json& json, const char* key) { return number(json, key) * kMicro; }
+double number_or_nan(const Json& json, const char* key) { return number_or_nan(json.at(key)); }
+double micro(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
 std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
 /// Of a unit as it is printed: "um/m/K" stands for the suffix um_per_m_K.
@@ -43,10 +42,10 @@ AmplitudeFigure amplitude_from(const Json& json) {
   figure.label = text(json, "label");
   figure.unit = text(json, "unit");
   figure.si_per_unit = si_per_unit(figure.unit);
-  figure.value = number(json, "amplitude") * figure.si_per_unit;
-  figure.u = number(json, "u") * figure.si_per_unit;
-  figure.mdb = number(json, "mdb") * figure.si_per_unit;
-  figure.mib = number(json, "mib") * figure.si_per_unit;
+  figure.value = number_or_nan(json, "amplitude") * figure.si_per_unit;
+  figure.u = number_or_nan(json, "u") * figure.si_per_unit;
+  figure.mdb = number_or_nan(json, "mdb") * figure.si_per_unit;
+  figure.mib = number_or_nan(json, "mib") * figure.si_per_unit;
   figure.mib_rival = text(json, "mib_rival");
   if (std::isnan(figure.mib) && !figure.mib_rival.empty()) figure.mib = kInfinity;
   return figure;
@@ -61,10 +60,10 @@ EffectFinding effect_from(const Json& json) {
   } else if (json.contains("amplitude")) {
     effect.amplitudes.push_back(amplitude_from(json));
   }
-  effect.log10_p = number(json, "log10_p");
-  effect.visible_fraction = number(json, "visible_fraction");
-  effect.gain = number(json, "gain");
-  effect.lm = number(json, "lm");
+  effect.log10_p = number_or_nan(json, "log10_p");
+  effect.visible_fraction = number_or_nan(json, "visible_fraction");
+  effect.gain = number_or_nan(json, "gain");
+  effect.lm = number_or_nan(json, "lm");
   effect.dof = json.at("dof").get<int>();
   if (json.contains("shape_value")) effect.shape_text = text(json, "shape_value");
   effect.resolution = !json.contains("spec");
@@ -86,8 +85,8 @@ DetectableEffect detectable_from(const Json& json) {
   effect.unit = text(json, "unit");
   effect.si_per_unit = si_per_unit(effect.unit);
   effect.visible = json.at("visible").get<bool>();
-  effect.visible_fraction = number(json, "visible_fraction");
-  effect.mdb = number(json, "mdb") * effect.si_per_unit;
+  effect.visible_fraction = number_or_nan(json, "visible_fraction");
+  effect.mdb = number_or_nan(json, "mdb") * effect.si_per_unit;
   effect.volumetric = micro(json, "volumetric_um");
   return effect;
 }
@@ -122,9 +121,9 @@ MeasurementProposal proposal_from(const Json& json) {
   proposal.separates = names_from(json.at("separates"));
   proposal.makes_visible = names_from(json.at("makes_visible"));
   proposal.readings = json.at("readings").get<std::size_t>();
-  proposal.separation = number(json, "separation");
-  proposal.reached = number(json, "separation_reached");
-  proposal.plain = number(json, "separation_plain");
+  proposal.separation = number_or_nan(json, "separation");
+  proposal.reached = number_or_nan(json, "separation_reached");
+  proposal.plain = number_or_nan(json, "separation_plain");
   proposal.gain = gain_from(json, "gain");
   proposal.plain_gain = gain_from(json, "plain_gain");
   proposal.words = text(json, "words");
@@ -140,7 +139,8 @@ Confounding confounding_from(const Json& json) {
   confounding.cosine.resize(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < count; ++j) {
-      confounding.cosine(i, j) = number(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)));
+      confounding.cosine(i, j) =
+          number_or_nan(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)));
     }
   }
   return confounding;
@@ -152,12 +152,12 @@ LadderStep step_from(const Json& json) {
   step.added = text(json, "added");
   step.rms_fit = micro(json, "rms_fit_um");
   step.rms_heldout = micro(json, "rms_heldout_um");
-  step.reduced_chi2 = number(json, "reduced_chi2");
+  step.reduced_chi2 = number_or_nan(json, "reduced_chi2");
   step.noise_floor = micro(json, "noise_floor_um");
   step.systematic = micro(json, "systematic_um");
   step.systematic_low = micro(json, "systematic_low_um");
   step.systematic_high = micro(json, "systematic_high_um");
-  step.heldout_loglik_gain = number(json, "heldout_loglik_gain");
+  step.heldout_loglik_gain = number_or_nan(json, "heldout_loglik_gain");
   return step;
 }
 
@@ -168,9 +168,9 @@ void read_noise(const Json& json, Diagnosis& diagnosis) {
     const auto known = std::ranges::find(names, instrument);
     const auto place = static_cast<std::size_t>(known - names.begin());
     if (known == names.end()) names.push_back(instrument);
-    diagnosis.noise.push_back({place, text(each, "term"), text(each, "unit"), number(each, "value"),
-                               number(each, "low"), number(each, "high"), number(each, "likelihood_ratio"),
-                               text(each, "remark")});
+    diagnosis.noise.push_back({place, text(each, "term"), text(each, "unit"), number_or_nan(each, "value"),
+                               number_or_nan(each, "low"), number_or_nan(each, "high"),
+                               number_or_nan(each, "likelihood_ratio"), text(each, "remark")});
   }
 }
 
@@ -186,7 +186,8 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
-                                 text(each, "direction"), micro(each, "rms_um"), number(each, "log10_p")});
+                                 text(each, "direction"), micro(each, "rms_um"),
+                                 number_or_nan(each, "log10_p")});
   }
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMicro = 1e6;
+constexpr double kPerMicro = 1e6;
 constexpr int kFirstRow = 2;  ///< below the header
 
 /// Twelve digits: what the study said comes back as it was written.
@@ -39,8 +39,8 @@ Json effect_json(const sim::HiddenAnswer& answer) {
   json["amplitude"] = rounded(answer.amplitude / unit_of_key("amplitude_" + unit).si_per_unit);
   json["unit"] = unit;
   json["per"] = kind.per;
-  json["rms_um"] = rounded(answer.rms * kMicro);
-  json["rms_within_setups_um"] = rounded(answer.rms_within_setups * kMicro);
+  json["rms_um"] = rounded(answer.rms * kPerMicro);
+  json["rms_within_setups_um"] = rounded(answer.rms_within_setups * kPerMicro);
   return json;
 }
 
@@ -48,9 +48,9 @@ Json noise_json(const sim::SetupPlan& plan) {
   const std::string unit = plan.instrument == "angle" ? "_urad" : "_um";
   const sim::NoiseLevel& noise = plan.noise;
   return {{"setup", plan.name},
-          {"wander" + unit, rounded(noise.wander * kMicro)},
+          {"wander" + unit, rounded(noise.wander * kPerMicro)},
           {"wander_time_s", noise.wander_time},
-          {"line" + unit, rounded(noise.line * kMicro)},
+          {"line" + unit, rounded(noise.line * kPerMicro)},
           {"outlier_share", noise.outlier_share},
           {"outlier_sigma", noise.outlier_size}};
 }

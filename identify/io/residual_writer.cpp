@@ -14,8 +14,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kMicro = 1e-6;  // um or urad to SI
-
 /// A text file written in pieces.
 class TextSink {
  public:

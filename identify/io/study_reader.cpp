@@ -10,10 +10,9 @@
 namespace volcal {
 namespace {
 
-constexpr double kSecondsPerHour = 3600.0;
 constexpr std::int64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
 
-void read(const TomlTable& table, const char* key, double& value, NumberLimits limits = kNotNegative) {
+void read_number(const TomlTable& table, const char* key, double& value, NumberLimits limits = kNotNegative) {
   if (const auto found = table.number(key, limits)) value = *found;
 }
 
@@ -75,11 +74,11 @@ sim::TruthSettings read_truth(const TomlTable& table, const Machine& machine) {
     random.volumetric_rms_min = (*range)[0];
     random.volumetric_rms_max = (*range)[1];
   }
-  read(table, "angular_scale", random.angular_scale);
-  read(table, "squareness_scale", random.squareness_scale);
-  read(table, "wave_scale", random.wave_scale);
-  read(table, "reversal_max_um", random.reversal_max);
-  read(table, "angular_reversal_max_urad", random.angular_reversal_max);
+  read_number(table, "angular_scale", random.angular_scale);
+  read_number(table, "squareness_scale", random.squareness_scale);
+  read_number(table, "wave_scale", random.wave_scale);
+  read_number(table, "reversal_max_um", random.reversal_max);
+  read_number(table, "angular_reversal_max_urad", random.angular_reversal_max);
   for (const bool rotations : {true, false}) {
     const std::string unit = rotations ? "urad" : "um";
     read_symbols<LocationSymbol>(table, "locations_" + unit, rotations, machine,
@@ -99,14 +98,14 @@ sim::TemperatureChannel read_channel(const TomlTable& table) {
   channel.name = table.required_text("channel");
   const NumberLimits any_temperature{-60.0, 300.0};
   const NumberLimits any_change{-300.0, 300.0};
-  read(table, "start_degC", channel.start, any_temperature);
+  read_number(table, "start_degC", channel.start, any_temperature);
   if (const auto drift = table.number("drift_K_per_hour", any_change))
     channel.drift = *drift / kSecondsPerHour;
-  read(table, "amplitude_K", channel.amplitude, any_change);
+  read_number(table, "amplitude_K", channel.amplitude, any_change);
   if (const auto period = table.number("period_s", {1.0, 1e9})) channel.period = *period;
-  read(table, "phase_deg", channel.phase, {-360.0, 360.0});
-  read(table, "step_K", channel.step, any_change);
-  read(table, "step_time_s", channel.step_time);
+  read_number(table, "phase_deg", channel.phase, {-360.0, 360.0});
+  read_number(table, "step_K", channel.step, any_change);
+  read_number(table, "step_time_s", channel.step_time);
   return channel;
 }
 
@@ -130,7 +129,7 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
   root.know("machine");
   root.text("name");
   study.seed = static_cast<std::uint64_t>(root.integer("seed", 0, kLargestSeed).value_or(1));
-  read(root, "pause_s", study.pause_between_setups);
+  read_number(root, "pause_s", study.pause_between_setups);
   if (const auto truth = root.table("truth")) study.truth = read_truth(*truth, machine);
   for (const TomlTable& table : root.tables("temperatures")) {
     study.environment.channels.push_back(read_channel(table));

@@ -20,8 +20,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kMicro = 1e-6;  // um and um/m/K to SI
-
 template <class Range>
 std::string array(const Range& values, double si_per_unit) {
   std::string text = "[";

@@ -1,12 +1,13 @@
 #include "volcal/identify/noise/noise_search.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
+
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {
@@ -467,10 +468,10 @@ void NoiseSearch::find_uncertainty(const Point& point, NoiseParameters& log_unce
       hessian(j, i) = hessian(i, j);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * hessian);
-  const Eigen::ArrayXd information = eigen.eigenvalues().array().max(0.0) + 1.0 / (kSpread * kSpread);
+  const SymmetricEigen eigen = eigen_decomposition(0.5 * hessian);
+  const Eigen::ArrayXd information = eigen.values.array().max(0.0) + 1.0 / (kSpread * kSpread);
   const Eigen::VectorXd inverse = information.inverse().matrix();
-  const Eigen::VectorXd variance = eigen.eigenvectors().cwiseAbs2() * inverse;
+  const Eigen::VectorXd variance = eigen.vectors.cwiseAbs2() * inverse;
   for (std::size_t a = 0; a < count; ++a)
     *targets[static_cast<std::size_t>(free[a])] = std::sqrt(variance(static_cast<Eigen::Index>(a)));
 }

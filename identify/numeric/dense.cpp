@@ -2,7 +2,9 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -12,6 +14,11 @@ void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* inf
 void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const int* lda, double* w,
              double* work, const int* lwork, int* iwork, const int* liwork, int* info);
+void dgelsy_(const int* m, const int* n, const int* nrhs, double* a, const int* lda, double* b,
+             const int* ldb, int* jpvt, const double* rcond, int* rank, double* work, const int* lwork,
+             int* info);
+void dpotrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, double* b,
+             const int* ldb, int* info);
 void dsyrk_(const char* uplo, const char* trans, const int* n, const int* k, const double* alpha,
             const double* a, const int* lda, const double* beta, double* c, const int* ldc);
 void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
@@ -23,6 +30,33 @@ void dtrsm_(const char* side, const char* uplo, const char* transa, const char* 
 // NOLINTEND(readability-identifier-naming)
 
 namespace volcal {
+namespace {
+
+constexpr double kDependent = 1e-13;  // eigenvalue of R^T R, of the largest
+
+/// `result.vectors` holds the matrix.
+void decompose(const char* job, SymmetricEigen& result) {
+  use_single_threaded_blas();
+  const int n = static_cast<int>(result.vectors.rows());
+  if (n == 0) return;
+  if (!result.vectors.allFinite()) {
+    result.values.setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.vectors.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  int info = 0, query = -1, integer_size = 0;
+  double size = 0.0;
+  dsyevd_(job, "U", &n, result.vectors.data(), &n, result.values.data(), &size, &query, &integer_size, &query,
+          &info);
+  const int work_size = static_cast<int>(size);
+  std::vector<double> work(static_cast<std::size_t>(work_size));
+  std::vector<int> integers(static_cast<std::size_t>(integer_size));
+  dsyevd_(job, "U", &n, result.vectors.data(), &n, result.values.data(), work.data(), &work_size,
+          integers.data(), &integer_size, &info);
+  if (info != 0) throw std::runtime_error("eigen_decomposition did not converge");
+}
+
+}  // namespace
 
 void use_single_threaded_blas() {
   static const bool done = [] {
@@ -61,21 +95,43 @@ Eigen::MatrixXd inverse_from_cholesky(const Eigen::MatrixXd& lower) {
 double log_determinant(const Eigen::MatrixXd& lower) { return 2.0 * lower.diagonal().array().log().sum(); }
 
 SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric) {
+  SymmetricEigen result{Eigen::VectorXd(symmetric.rows()), symmetric};
+  decompose("V", result);
+  return result;
+}
+
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
+  SymmetricEigen result{Eigen::VectorXd(symmetric.rows()), symmetric};
+  decompose("N", result);
+  return result.values;
+}
+
+LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold) {
   use_single_threaded_blas();
-  const int n = static_cast<int>(symmetric.rows());
-  SymmetricEigen result{Eigen::VectorXd(n), symmetric};
-  if (n == 0) return result;
-  int info = 0, query = -1, integer_size = 0;
+  const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.cols()), one = 1, query = -1;
+  LeastSquares result{Eigen::VectorXd::Zero(n), 0};
+  if (m == 0 || n == 0) return result;
+  Eigen::MatrixXd factors = a;
+  const int rows = std::max(m, n);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows);
+  right.head(m) = b;
+  std::vector<int> pivots(static_cast<std::size_t>(n), 0);
+  int info = 0;
   double size = 0.0;
-  dsyevd_("V", "U", &n, result.vectors.data(), &n, result.values.data(), &size, &query, &integer_size, &query,
-          &info);
+  dgelsy_(&m, &n, &one, factors.data(), &m, right.data(), &rows, pivots.data(), &threshold, &result.rank,
+          &size, &query, &info);
   const int work_size = static_cast<int>(size);
   std::vector<double> work(static_cast<std::size_t>(work_size));
-  std::vector<int> integers(static_cast<std::size_t>(integer_size));
-  dsyevd_("V", "U", &n, result.vectors.data(), &n, result.values.data(), work.data(), &work_size,
-          integers.data(), &integer_size, &info);
-  if (info != 0) throw std::runtime_error("eigen_decomposition did not converge");
+  dgelsy_(&m, &n, &one, factors.data(), &m, right.data(), &rows, pivots.data(), &threshold, &result.rank,
+          work.data(), &work_size, &info);
+  result.solution = right.head(n);
   return result;
+}
+
+Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows) {
+  const SymmetricEigen eigen = eigen_decomposition(rows.transpose() * rows);
+  const double dependent = kDependent * std::max(0.0, eigen.values.tail(1).sum());
+  return eigen.vectors.leftCols((eigen.values.array() <= dependent).count());
 }
 
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
@@ -106,6 +162,16 @@ void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b) {
   const int m = static_cast<int>(b.rows()), n = static_cast<int>(b.cols());
   if (m == 0 || n == 0) return;
   dtrsm_("L", "L", "N", "N", &m, &n, &one, lower.data(), &m, b.data(), &m);
+}
+
+Eigen::MatrixXd solve_positive_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const std::optional<Eigen::MatrixXd> lower = cholesky_lower(a);
+  if (!lower) throw std::runtime_error("solve_positive_definite: the matrix is not positive definite");
+  const int n = static_cast<int>(b.rows()), columns = static_cast<int>(b.cols());
+  Eigen::MatrixXd solution = b;
+  int info = 0;
+  if (n > 0 && columns > 0) dpotrs_("L", &n, &columns, lower->data(), &n, solution.data(), &n, &info);
+  return solution;
 }
 
 void symmetrise_from_upper(Eigen::MatrixXd& matrix) {

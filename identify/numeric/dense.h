@@ -23,7 +23,19 @@ struct SymmetricEigen {
   Eigen::VectorXd values;   ///< ascending
   Eigen::MatrixXd vectors;  ///< columns
 };
+/// NaN where the matrix is not finite.
 SymmetricEigen eigen_decomposition(const Eigen::MatrixXd& symmetric);
+/// Ascending.
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
+
+struct LeastSquares {
+  Eigen::VectorXd solution;  ///< of least norm where the rank is not full
+  int rank = 0;
+};
+/// min |A x - b|; columns count as dependent where the condition number exceeds 1 / `threshold`.
+LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold = 1e-15);
+/// Orthonormal columns that span {x : rows x = 0}.
+Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows);
 
 /// upper(C) = A A^T, A is n x k with leading dimension n.
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
@@ -34,6 +46,8 @@ void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
 void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, Eigen::MatrixXd& c);
 /// B = L^-1 B, L lower triangular.
 void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b);
+/// A^-1 B for a symmetric positive definite A; throws std::runtime_error when it is not.
+Eigen::MatrixXd solve_positive_definite(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 /// Copies the upper triangle to the lower.
 void symmetrise_from_upper(Eigen::MatrixXd& matrix);
 

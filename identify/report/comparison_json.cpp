@@ -2,13 +2,12 @@
 
 #include "volcal/identify/report/comparison_report.h"
 #include "volcal/identify/stats/channels.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kMicro = 1e-6;
 
 Json micro(const std::optional<double>& value) { return value ? Json(*value / kMicro) : Json(nullptr); }
 Json micro(double value) { return value / kMicro; }
@@ -88,12 +87,6 @@ Json summary_json(const DiagonalSummary& summary) {
           {"B_d_um", micro(summary.reversal)}};
 }
 
-std::string letters(const std::vector<AxisName>& axes) {
-  std::string text;
-  for (const AxisName axis : axes) text += letter_of(axis);
-  return text;
-}
-
 Json figures_json(const StandardFigures& figures) {
   Json json = {{"iso230_2", Json::array()},
                {"iso230_6", Json::array()},
@@ -116,7 +109,7 @@ Json figures_json(const StandardFigures& figures) {
                                 {"notes", test.notes}});
   }
   for (const DiagonalGroup& group : figures.diagonal_groups) {
-    json["iso230_6_diagonals"].push_back({{"axes", letters(group.axes)},
+    json["iso230_6_diagonals"].push_back({{"axes", letters_of(group.axes)},
                                           {"readings", summary_json(group.summary.readings)},
                                           {"model", summary_json(group.summary.model)}});
   }

@@ -9,11 +9,11 @@
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/noise_words.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr std::size_t kRanked = 12;
 constexpr double kNear = 0.9;               // cosine
 constexpr std::size_t kMostAmplitudes = 3;  // of an effect; functions that the model leaves out have more

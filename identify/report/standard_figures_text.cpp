@@ -17,12 +17,6 @@ using Cells = std::vector<std::string>;
 
 std::string micrometres(std::optional<double> value) { return value ? fixed_number(*value * 1e6, 2) : "-"; }
 
-std::string letters(const std::vector<AxisName>& axes) {
-  std::string text;
-  for (const AxisName axis : axes) text += letter_of(axis);
-  return text;
-}
-
 void append(Cells& cells, Cells more) {
   cells.insert(cells.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
@@ -108,7 +102,7 @@ std::string diagonal_groups_text(std::span<const NamedFigures> models) {
   SourceRows rows(table);
   const auto& groups = models.front().figures->diagonal_groups;
   for (std::size_t i = 0; i < groups.size(); ++i) {
-    const Cells heading = {(groups[i].axes.size() == 3 ? "body " : "face ") + letters(groups[i].axes),
+    const Cells heading = {(groups[i].axes.size() == 3 ? "body " : "face ") + letters_of(groups[i].axes),
                            std::to_string(groups[i].summary.readings.diagonals)};
     const auto cells = [](const DiagonalSummary& summary) {
       return Cells{micrometres(summary.systematic), micrometres(summary.reversal)};

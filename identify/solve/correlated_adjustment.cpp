@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kNoiseSample = 30000;
 constexpr double kSpeaks = 1e-2;
 constexpr double kNoPrior = 1e-10;
-constexpr Eigen::Index kBlock = 4096;
-constexpr double kNegligible = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
-constexpr int kRenewals = 4;          // of what the model holds fixed; then it stays, and steps contract
+constexpr Eigen::Index kBlockRows = 4096;
+constexpr double kNegligibleStep = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
+constexpr int kRenewals = 4;              // of what the model holds fixed; then it stays, and steps contract
 constexpr int kMostIterations = 12;
 
 InstrumentEquations sum_of(const std::vector<InstrumentEquations>& equations) {
@@ -35,8 +35,8 @@ InstrumentEquations sum_of(const std::vector<InstrumentEquations>& equations) {
 void keep_what_is_determined(NoiseProblem& problem) {
   const Eigen::Index p = problem.jacobian.cols();
   Eigen::MatrixXd readings = Eigen::MatrixXd::Zero(p, p);
-  for (Eigen::Index first = 0; first < problem.jacobian.rows(); first += kBlock) {
-    const Eigen::Index rows = std::min(kBlock, problem.jacobian.rows() - first);
+  for (Eigen::Index first = 0; first < problem.jacobian.rows(); first += kBlockRows) {
+    const Eigen::Index rows = std::min(kBlockRows, problem.jacobian.rows() - first);
     const Eigen::Map<const Eigen::ArrayXd> sigma(problem.data.sigma.data() + first, rows);
     add_gram_upper(sigma.inverse().matrix().asDiagonal() * problem.jacobian.middleRows(first, rows), 1.0,
                    readings);
@@ -166,7 +166,7 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
     result.squares = sums.squares + 2.0 * sums.gradient.dot(step) + step.dot(sums.matrix * step);
     result.redundancy = sums.observations - result.covariance.cwiseProduct(sums.matrix).sum();
     result.cost = 0.5 * result.squares + total.cost(z);
-    result.converged = result.iterations >= evidence_rounds && -gradient.dot(step) < kNegligible;
+    result.converged = result.iterations >= evidence_rounds && -gradient.dot(step) < kNegligibleStep;
   }
   return result;
 }

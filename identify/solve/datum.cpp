@@ -1,8 +1,9 @@
 #include "volcal/identify/solve/datum.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
+
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 
@@ -17,12 +18,6 @@ Eigen::MatrixXd datum_constraints(const Basis& basis, ErrorSymbol symbol, const 
         (moment.first - middle * moment.zeroth).transpose() / (axis.travel() * axis.travel());
   }
   return constraints;
-}
-
-Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
-  const Eigen::MatrixXd q = qr.householderQ() * Eigen::MatrixXd::Identity(rows.cols(), rows.cols());
-  return q.rightCols(rows.cols() - qr.rank());
 }
 
 DatumSpace::DatumSpace(const ParameterLayout& layout, const Machine& machine, Eigen::VectorXd base,

@@ -15,8 +15,6 @@ namespace volcal {
 
 /// Rows A with A c = 0 for the coefficients c of one function.
 Eigen::MatrixXd datum_constraints(const Basis& basis, ErrorSymbol symbol, const Axis& axis);
-/// Orthonormal basis (columns) of the null space of the rows.
-Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows);
 
 class DatumSpace {
  public:

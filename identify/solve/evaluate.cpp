@@ -1,6 +1,5 @@
 #include "volcal/identify/solve/evaluate.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -58,7 +57,8 @@ std::vector<double> prediction_uncertainty(const ReadingIndex& index, const Datu
   const Eigen::MatrixXd covariance = identified.covariance(fitted, fitted);
   const Eigen::MatrixXd nuisance = datum.reduce_matrix(sums.matrix) + prior.precision;
   const Eigen::MatrixXd coupling = datum.reduce_rows(sums.matrix(here, Eigen::all)).transpose();
-  const Eigen::MatrixXd absorbed = nuisance.llt().solve(coupling);  // d nuisance / d model, sign taken below
+  const Eigen::MatrixXd absorbed =
+      solve_positive_definite(nuisance, coupling);  // d nuisance / d model, sign taken below
   std::vector<double> u(index.observations());
   RowJacobian row;
   for (const auto& [setup, reading] : index.sorted()) {

@@ -1,10 +1,9 @@
 #include "volcal/identify/solve/function_prior.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/datum.h"
 
 namespace volcal {
@@ -43,7 +42,7 @@ Eigen::VectorXd collocation_points(const Basis& basis) {
 Eigen::MatrixXd projection(const Basis& basis, const Eigen::VectorXd& points) {
   Eigen::MatrixXd values(points.size(), basis.size());
   for (Eigen::Index i = 0; i < points.size(); ++i) values.row(i) = basis.row(points[i]).transpose();
-  return (values.transpose() * values).ldlt().solve(values.transpose());
+  return solve_positive_definite(values.transpose() * values, values.transpose());
 }
 
 /// Columns sqrt(2n + 1) P_n(t), n = 2, 3, ...
@@ -92,7 +91,7 @@ Eigen::MatrixXd shape_covariance(Roughness roughness, double length, const Eigen
   Eigen::MatrixXd lines(t.size(), 2);
   lines.col(0).setOnes();
   lines.col(1) = t;
-  const Eigen::MatrixXd along = lines * (lines.transpose() * lines).ldlt().solve(lines.transpose());
+  const Eigen::MatrixXd along = lines * solve_positive_definite(lines.transpose() * lines, lines.transpose());
   const Eigen::MatrixXd across = Eigen::MatrixXd::Identity(t.size(), t.size()) - along;
   const Eigen::MatrixXd deviation = across * covariance * across;
   return deviation * (static_cast<double>(t.size()) / deviation.trace());
@@ -103,10 +102,12 @@ PriorShape intrinsic_shape(Roughness roughness, double length, const Eigen::Matr
                            const Eigen::MatrixXd& contrasts, const Eigen::MatrixXd& datum_basis) {
   Eigen::MatrixXd covariance = contrasts.transpose() * of_coefficients * contrasts;
   covariance.diagonal().array() += kNugget * covariance.diagonal().mean();
-  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-  const Eigen::MatrixXd half = root.matrixL().solve(contrasts.transpose() * datum_basis);
+  const std::optional<Eigen::MatrixXd> root = cholesky_lower(covariance);
+  if (!root) throw std::runtime_error("the prior covariance of an error function is not positive definite");
+  Eigen::MatrixXd half = contrasts.transpose() * datum_basis;
+  solve_lower(*root, half);
   PriorShape shape{roughness, length, half.transpose() * half, 0.0, static_cast<int>(contrasts.cols())};
-  shape.log_determinant = -2.0 * root.matrixLLT().diagonal().array().log().sum();
+  shape.log_determinant = -log_determinant(*root);
   return shape;
 }
 

@@ -1,11 +1,10 @@
 #include "volcal/identify/solve/noise_words.h"
 
 #include "volcal/identify/stats/channels.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
-
-constexpr double kMicro = 1e-6;
 
 std::string meaning(const std::string& term) {
   if (term == "white") return "independent, times the stated sigma";

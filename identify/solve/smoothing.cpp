@@ -1,6 +1,5 @@
 #include "volcal/identify/solve/smoothing.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -402,10 +401,10 @@ Eigen::MatrixXd amplitude_covariance(const std::vector<SmoothingTerm>& terms,
                             z.segment(a.offset, rows).dot(pull.col(i).segment(a.offset, rows)));
   }
   // Where the evidence is flat or its highest point lies at a limit, the spread before any reading holds.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+  const SymmetricEigen eigen = eigen_decomposition(hessian);
   const Eigen::ArrayXd information =
-      eigen.eigenvalues().array().max(0.0) + 1.0 / (kSpreadOfLogLambda * kSpreadOfLogLambda);
-  const Eigen::MatrixXd directions = change * eigen.eigenvectors();
+      eigen.values.array().max(0.0) + 1.0 / (kSpreadOfLogLambda * kSpreadOfLogLambda);
+  const Eigen::MatrixXd directions = change * eigen.vectors;
   return directions * information.inverse().matrix().asDiagonal() * directions.transpose();
 }
 

@@ -1,15 +1,16 @@
 #include "volcal/identify/stats/iso230_4.h"
 
-#include <Eigen/QR>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kPi = 180.0 * kRadianPerDegree;
 constexpr double kFullCircleGap = 30.0 * kRadianPerDegree;
 constexpr double kQuadrantWindow = 20.0 * kRadianPerDegree;
 constexpr double kAngleTolerance = 1e-9;
@@ -41,9 +42,9 @@ std::optional<Circle> fit_circle(const std::vector<CircleReading>& readings, dou
       jacobian.row(k) << outward.dot(u), -outward.x(), -outward.y();
       misfit[k] = nominal + reading.deviation - distance(circle, reading.angle);
     }
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(jacobian);
-    if (solver.rank() < 3) return std::nullopt;
-    const Eigen::Vector3d step = solver.solve(misfit);
+    const LeastSquares fitted = least_squares(jacobian, misfit);
+    if (fitted.rank < 3) return std::nullopt;
+    const Eigen::Vector3d step = fitted.solution;
     circle.radius += step[0];
     circle.centre += step.tail<2>();
     if (step.norm() < 1e-15 * nominal) break;
@@ -51,17 +52,17 @@ std::optional<Circle> fit_circle(const std::vector<CircleReading>& readings, dou
   return circle;
 }
 
-struct Range {
+struct RadialRange {
   double low = 0.0;
   double high = 0.0;
 };
 
 /// Range of the readings about a circle.
-Range radial_range(const std::vector<CircleReading>& readings, double nominal, const Circle& circle) {
+RadialRange radial_range(const std::vector<CircleReading>& readings, double nominal, const Circle& circle) {
   const auto value = [&](const CircleReading& reading) {
     return nominal + reading.deviation - distance(circle, reading.angle);
   };
-  Range range{value(readings.front()), value(readings.front())};
+  RadialRange range{value(readings.front()), value(readings.front())};
   for (const auto& reading : readings) {
     range.low = std::min(range.low, value(reading));
     range.high = std::max(range.high, value(reading));
@@ -72,10 +73,11 @@ Range radial_range(const std::vector<CircleReading>& readings, double nominal, c
 double largest_gap(const std::vector<CircleReading>& readings) {
   std::vector<double> angles;
   for (const auto& reading : readings) {
-    angles.push_back(reading.angle - 2.0 * kPi * std::floor(reading.angle / (2.0 * kPi)));
+    angles.push_back(reading.angle -
+                     2.0 * std::numbers::pi * std::floor(reading.angle / (2.0 * std::numbers::pi)));
   }
   std::sort(angles.begin(), angles.end());
-  double gap = angles.front() + 2.0 * kPi - angles.back();
+  double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
   return gap;
 }
@@ -88,11 +90,11 @@ std::optional<CircularPath> evaluate_path(const std::vector<CircleReading>& read
   path.readings = static_cast<int>(readings.size());
   path.centre = circle->centre;
   path.largest_gap = largest_gap(readings);
-  const Range about_fit = radial_range(readings, nominal, *circle);
+  const RadialRange about_fit = radial_range(readings, nominal, *circle);
   path.circular_deviation = about_fit.high - about_fit.low;
   const bool full = path.largest_gap <= kFullCircleGap + kAngleTolerance;
   path.centring = full ? Centring::LeastSquares : Centring::Instrument;
-  const Range about_nominal =
+  const RadialRange about_nominal =
       radial_range(readings, nominal, {nominal, full ? circle->centre : instrument_centre});
   path.radial_max = about_nominal.high;
   path.radial_min = about_nominal.low;
@@ -117,7 +119,7 @@ std::optional<double> line_at_zero(const std::vector<Eigen::Vector2d>& points) {
 std::optional<double> step_at(const std::vector<CircleReading>& readings, double quadrant, int sense) {
   std::vector<Eigen::Vector2d> before, after;
   for (const auto& reading : readings) {
-    const double along = sense * std::remainder(reading.angle - quadrant, 2.0 * kPi);
+    const double along = sense * std::remainder(reading.angle - quadrant, 2.0 * std::numbers::pi);
     if (std::abs(along) > kQuadrantWindow + kAngleTolerance || std::abs(along) < kAngleTolerance) continue;
     (along < 0.0 ? before : after).emplace_back(along, reading.deviation);
   }
@@ -131,7 +133,7 @@ void add_reversals(const std::vector<CircleReading>& readings, int sense,
                    std::vector<QuadrantReversal>& reversals) {
   for (const int axis : {0, 1}) {
     for (const int side : {+1, -1}) {
-      const double quadrant = axis * kPi / 2.0 + (side > 0 ? 0.0 : kPi);
+      const double quadrant = axis * std::numbers::pi / 2.0 + (side > 0 ? 0.0 : std::numbers::pi);
       const auto step = step_at(readings, quadrant, sense);
       if (step) reversals.push_back({axis, side, sense, -*step});
     }
@@ -156,7 +158,7 @@ CircularFigures circular_figures(std::span<const CircleReading> readings, double
   if (!figures.counter_clockwise || !figures.clockwise) return figures;
   const std::optional<Circle> circle = fit_circle(both, nominal_radius);
   if (!circle) return figures;
-  const Range range = radial_range(both, nominal_radius, *circle);
+  const RadialRange range = radial_range(both, nominal_radius, *circle);
   figures.bidirectional = range.high - range.low;
   figures.mean_radial = circle->radius - nominal_radius;
   return figures;

@@ -1,13 +1,14 @@
 #include "volcal/identify/stats/test_paths.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <variant>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/stats/approach.h"
 #include "volcal/model/kinematics/chain.h"
 
@@ -17,10 +18,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kLargestCircle = 10.0;
-constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
-
 using Rows = std::vector<std::size_t>;
 template <class Path>
 using PathOrReason = std::variant<Path, std::string>;
@@ -185,7 +183,7 @@ void complete(const CommandedPoints& commanded, Line& line) {
   }
 }
 
-struct Circle {
+struct PlannedCircle {
   Vector2d centre = Vector2d::Zero();  ///< in the two moving axes
   CirclePath path;
 
@@ -206,22 +204,22 @@ std::optional<Vector3d> centre_and_radius(const std::vector<Vector2d>& points) {
     design.row(k) << 2.0 * p.x(), 2.0 * p.y(), 1.0;
     square[k] = p.squaredNorm();
   }
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(design);
-  if (rows < 4 || solver.rank() < 3) return std::nullopt;
-  const Vector3d solution = solver.solve(square);
+  const LeastSquares fitted = least_squares(design, square);
+  if (rows < 4 || fitted.rank < 3) return std::nullopt;
+  const Vector3d solution = fitted.solution;
   const Vector2d centre = solution.head<2>();
   return Vector3d(centre.x() + mean.x(), centre.y() + mean.y(),
                   std::sqrt(solution.z() + centre.squaredNorm()));
 }
 
-PathOrReason<Circle> recognise_circle(const CommandedPoints& commanded, const Rows& rows) {
+PathOrReason<PlannedCircle> recognise_circle(const CommandedPoints& commanded, const Rows& rows) {
   if (commanded.turns(rows)) return "a rotary axis moves";
   std::vector<AxisName> moving, still;
   for (const AxisName axis : kLinearAxes) {
     (commanded.moves(rows, axis, kPathTolerance) ? moving : still).push_back(axis);
   }
   if (moving.size() != 2) return "not two axes move";
-  Circle circle;
+  PlannedCircle circle;
   circle.path.first = kLinearAxes[(index_of(still.front()) + 1) % 3];
   circle.path.second = kLinearAxes[(index_of(still.front()) + 2) % 3];
   std::vector<Vector2d> points;
@@ -245,13 +243,14 @@ PathOrReason<Circle> recognise_circle(const CommandedPoints& commanded, const Ro
   return circle;
 }
 
-bool same_path(const CommandedPoints& /*commanded*/, const Circle& circle, const Circle& other) {
+bool same_path(const CommandedPoints& /*commanded*/, const PlannedCircle& circle,
+               const PlannedCircle& other) {
   return circle.path.first == other.path.first &&
          (circle.path.centre_w - other.path.centre_w).norm() <= kPathTolerance &&
          std::abs(circle.path.radius - other.path.radius) <= kPathTolerance;
 }
 
-void complete(const CommandedPoints& commanded, Circle& circle) {
+void complete(const CommandedPoints& commanded, PlannedCircle& circle) {
   CirclePath& path = circle.path;
   std::sort(path.rows.begin(), path.rows.end());
   std::map<std::size_t, std::size_t> place;
@@ -270,7 +269,7 @@ void complete(const CommandedPoints& commanded, Circle& circle) {
       if (found == place.end()) continue;
       const double angle = path.angle[found->second];
       const double previous = arc.empty() ? 0.0 : path.angle[places.back()];
-      const double turn = arc.empty() ? 0.0 : std::remainder(angle - previous, 2.0 * kPi);
+      const double turn = arc.empty() ? 0.0 : std::remainder(angle - previous, 2.0 * std::numbers::pi);
       arc.push_back((arc.empty() ? 0.0 : arc.back()) + path.radius * turn);
       places.push_back(found->second);
     }
@@ -340,7 +339,7 @@ FoundPaths<StraightPath> straight_paths(const Campaign& campaign, const Setup& s
 }
 
 FoundPaths<CirclePath> circle_paths(const Campaign& campaign, const Setup& setup) {
-  return find_paths<Circle, CirclePath>(campaign, setup, recognise_circle);
+  return find_paths<PlannedCircle, CirclePath>(campaign, setup, recognise_circle);
 }
 
 }  // namespace volcal

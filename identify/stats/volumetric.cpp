@@ -1,9 +1,10 @@
 #include "volcal/identify/stats/volumetric.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
 namespace {
@@ -52,7 +53,7 @@ std::vector<Eigen::Vector3d> without_rigid_motion(std::span<const Eigen::Vector3
     turn.middleRows<3>(row) = -cross_matrix(points[i] - centre);  // w x arm = -arm x w
     rest.segment<3>(row) = errors[i] - shift;
   }
-  const Eigen::Vector3d rotation = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(turn).solve(rest);
+  const Eigen::Vector3d rotation = least_squares(turn, rest).solution;
   rest -= turn * rotation;
   std::vector<Eigen::Vector3d> result;
   for (Eigen::Index row = 0; row < rows; row += 3) result.emplace_back(rest.segment<3>(row));

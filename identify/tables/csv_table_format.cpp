@@ -10,8 +10,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kMicro = 1e-6;  // um or urad to SI
-
 std::string_view position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
 
 double position_factor(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }

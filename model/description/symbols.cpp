@@ -10,6 +10,11 @@ constexpr std::string_view kLowerLetters = "xyzabc";
 
 char letter_of(AxisName axis) { return kLetters[index_of(axis)]; }
 char lower_letter_of(AxisName axis) { return kLowerLetters[index_of(axis)]; }
+std::string letters_of(const std::vector<AxisName>& axes) {
+  std::string letters;
+  for (const AxisName axis : axes) letters += letter_of(axis);
+  return letters;
+}
 
 std::optional<AxisName> axis_from_letter(char letter) {
   const auto position = kLetters.find(letter);

@@ -16,11 +16,15 @@ inline constexpr std::size_t kAxisCount = 6;
 inline constexpr std::array<AxisName, kAxisCount> kAllAxes = {AxisName::X, AxisName::Y, AxisName::Z,
                                                               AxisName::A, AxisName::B, AxisName::C};
 
+inline constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
+
 constexpr std::size_t index_of(AxisName axis) { return static_cast<std::size_t>(axis); }
 constexpr bool is_rotary(AxisName axis) { return index_of(axis) >= 3; }
 /// Coordinate direction 0..2 along which (linear) or about which (rotary) the axis moves.
 constexpr int direction_of(AxisName axis) { return static_cast<int>(index_of(axis) % 3); }
 char letter_of(AxisName axis);
+/// "XYZ"
+std::string letters_of(const std::vector<AxisName>& axes);
 char lower_letter_of(AxisName axis);  ///< as in column names: 'x'
 std::optional<AxisName> axis_from_letter(char letter);
 

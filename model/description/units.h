@@ -18,6 +18,7 @@ std::string_view stem_of_key(std::string_view key);
 /// Suffix as it is printed: "um_per_m_K" gives "um/m/K".
 std::string unit_text(std::string_view suffix);
 
+inline constexpr double kMicro = 1e-6;  ///< um, urad, um/m and um/m/K in SI
 inline constexpr double kMetrePerMillimetre = 1e-3;
 inline constexpr double kMetrePerMicrometre = 1e-6;
 inline constexpr double kRadianPerMicroradian = 1e-6;

@@ -10,8 +10,8 @@
 namespace volcal {
 namespace {
 
-constexpr int kMaxDegree = 3;
-constexpr int kStride = kMaxDegree + 1;
+constexpr int kMaxSplineDegree = 3;
+constexpr int kStride = kMaxSplineDegree + 1;
 /// Power coefficients of a polynomial in the local coordinate t = (q - a) / (b - a) of one piece [a, b].
 using Polynomial = std::array<double, kStride>;
 
@@ -141,7 +141,7 @@ std::vector<double> checked_breakpoints(const FunctionSpec& spec, const Axis& ax
 }
 
 std::unique_ptr<Basis> make_bspline(const FunctionSpec& spec, const Axis& axis) {
-  if (spec.degree < 1 || spec.degree > kMaxDegree) {
+  if (spec.degree < 1 || spec.degree > kMaxSplineDegree) {
     throw std::invalid_argument("degree of a B-spline must be 1, 2 or 3");
   }
   return std::make_unique<BSpline>(spec.degree, checked_breakpoints(spec, axis));
@@ -154,7 +154,7 @@ extern const BasisKind kBSplineBasis = {
     .summary = "clamped B-spline of degree 1 to 3; degrees 1 and 2 are the linear and quadratic 1-D elements",
     .source = "C. de Boor, A Practical Guide to Splines, 1978, ch. IX-X",
     .degree_min = 1,
-    .degree_max = kMaxDegree,
+    .degree_max = kMaxSplineDegree,
     .linear_axes = true,
     .rotary_axes = true,
     .uses_knots = true,

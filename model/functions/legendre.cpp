@@ -7,7 +7,7 @@
 namespace volcal {
 namespace {
 
-constexpr int kMaxDegree = 30;
+constexpr int kMaxLegendreDegree = 30;
 
 /// Legendre polynomials P_0 .. P_n of t, where t runs from -1 to 1 over the travel.
 class Legendre final : public Basis {
@@ -33,7 +33,7 @@ class Legendre final : public Basis {
   /// Replaces the values by those of the next derivative: P'_n = P'_(n-2) + (2n - 1) P_(n-1), which holds for
   /// any derivative of both sides.
   void differentiate(double slope, double* p) const {
-    std::array<double, kMaxDegree + 1> lower;
+    std::array<double, kMaxLegendreDegree + 1> lower;
     for (int n = 0; n <= degree_; ++n) lower[static_cast<std::size_t>(n)] = p[n];
     p[0] = 0.0;
     if (degree_ > 0) p[1] = slope * lower[0];
@@ -48,7 +48,7 @@ class Legendre final : public Basis {
 };
 
 std::unique_ptr<Basis> make_legendre(const FunctionSpec& spec, const Axis& axis) {
-  if (spec.degree < 1 || spec.degree > kMaxDegree) {
+  if (spec.degree < 1 || spec.degree > kMaxLegendreDegree) {
     throw std::invalid_argument("degree of a Legendre series must be 1 to 30");
   }
   return std::make_unique<Legendre>(spec.degree, axis.travel_min, axis.travel_max);
@@ -61,7 +61,7 @@ extern const BasisKind kLegendreBasis = {
     .summary = "Legendre polynomials of degree 0 to `degree`, scaled to the travel",
     .source = "M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 1964, ch. 22",
     .degree_min = 1,
-    .degree_max = kMaxDegree,
+    .degree_max = kMaxLegendreDegree,
     .linear_axes = true,
     .rotary_axes = true,
     .uses_knots = false,

@@ -5,7 +5,7 @@
 namespace volcal {
 namespace {
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kAngleSchema = {
     .name = "angle",
     .summary = "Electronic level or angular interferometer: rotation about one axis.",
     .equation = "angle = O.axis + offset",
@@ -61,7 +61,7 @@ class AngleSetup final : public EquationBase<AngleSetup> {
 
 class Angle final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kAngleSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<AngleSetup>(context);
   }

@@ -8,7 +8,7 @@ namespace {
 /// Out of the plane of a circle the centre is invisible to first order; there it stays at the guess.
 constexpr double kDefaultCentreSigma = 0.1e-3;
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kBallBarSchema = {
     .name = "ball-bar",
     .summary = "Telescoping ball-bar: distance between a ball at the table and one at the tool.",
     .equation = "length = |P - centre| + bar length error",
@@ -86,7 +86,7 @@ class BallBarSetup final : public EquationBase<BallBarSetup> {
 
 class BallBar final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kBallBarSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<BallBarSetup>(std::move(context));
   }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kDeviationColumns = 1;
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kDisplacementSchema = {
     .name = "displacement",
     .summary =
         "Linear displacement along a fixed direction: axis lines, body and face diagonals, step diagonals.",
@@ -133,7 +133,7 @@ class DisplacementSetup final : public EquationBase<DisplacementSetup> {
 
 class Displacement final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kDisplacementSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<DisplacementSetup>(std::move(context));
   }

@@ -5,7 +5,7 @@
 namespace volcal {
 namespace {
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kLaserTracerSchema = {
     .name = "laser-tracer",
     .summary = "Tracking interferometer: change of distance from a station to the reflector at the tool.",
     .equation = "length = |P - S| (1 + scale) - L0",
@@ -89,7 +89,7 @@ class LaserTracerSetup final : public EquationBase<LaserTracerSetup> {
 
 class LaserTracer final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kLaserTracerSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<LaserTracerSetup>(std::move(context));
   }

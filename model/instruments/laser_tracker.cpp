@@ -9,7 +9,7 @@
 namespace volcal {
 namespace {
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kLaserTrackerSchema = {
     .name = "laser-tracker",
     .summary = "Laser tracker: distance, azimuth and elevation of the reflector at the tool.",
     .equation = "length, azimuth (from +x to +y), elevation (from the xy plane) of P in the station's frame",
@@ -185,7 +185,7 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
 
 class LaserTracker final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kLaserTrackerSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<LaserTrackerSetup>(std::move(context));
   }

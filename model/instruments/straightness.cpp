@@ -6,7 +6,7 @@
 namespace volcal {
 namespace {
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kStraightnessSchema = {
     .name = "straightness",
     .summary =
         "Deviation across a line of motion against a straight reference (straightedge, laser, square).",
@@ -83,7 +83,7 @@ class StraightnessSetup final : public EquationBase<StraightnessSetup> {
 
 class Straightness final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kStraightnessSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<StraightnessSetup>(std::move(context));
   }

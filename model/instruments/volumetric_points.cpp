@@ -19,7 +19,7 @@ ColumnSchema component(int k) {
   return {.column = std::string(kComponentColumns[i]), .help = kHelp[i], .plausible_max = 1e5};
 }
 
-const InstrumentSchema kSchema = {
+const InstrumentSchema kVolumetricPointsSchema = {
     .name = "volumetric-points",
     .summary = "Error vectors at points of the volume: grid plate, probed artefact, tracker points.",
     .equation =
@@ -44,7 +44,8 @@ class VolumetricPointsSetup final : public EquationBase<VolumetricPointsSetup> {
   explicit VolumetricPointsSetup(SetupContext context)
       : nominal_point_w_(std::move(context.nominal_point_w)) {
     const Options& options = context.setup.options;
-    for (const ColumnSchema& column : kSchema.column_sets[context.setup.readings.column_set]) {
+    for (const ColumnSchema& column :
+         kVolumetricPointsSchema.column_sets[context.setup.readings.column_set]) {
       const auto place = std::ranges::find(kComponentColumns, column.column) - kComponentColumns.begin();
       component_.push_back(static_cast<int>(place));
     }
@@ -106,7 +107,7 @@ class VolumetricPointsSetup final : public EquationBase<VolumetricPointsSetup> {
 
 class VolumetricPoints final : public Instrument {
  public:
-  const InstrumentSchema& schema() const override { return kSchema; }
+  const InstrumentSchema& schema() const override { return kVolumetricPointsSchema; }
   std::unique_ptr<BoundSetup> bind(SetupContext context) const override {
     return std::make_unique<VolumetricPointsSetup>(std::move(context));
   }

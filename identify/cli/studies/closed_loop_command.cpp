@@ -15,14 +15,14 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct ClosedLoopArguments {
   ClosedLoopOptions options;
   std::string noise = "white";
   bool small = false;
   bool json = false;
 };
 
-using Campaigns = std::vector<ClosedLoopCampaign>;
+using ClosedLoopCampaigns = std::vector<ClosedLoopCampaign>;
 
 double quantile(std::vector<double> values, double p) {
   std::ranges::sort(values);
@@ -46,7 +46,7 @@ MeanWithError mean_of(const std::vector<double>& values) {
 }
 
 template <class Figure>
-std::vector<double> collect(const Campaigns& campaigns, const Figure& figure) {
+std::vector<double> collect(const ClosedLoopCampaigns& campaigns, const Figure& figure) {
   std::vector<double> values;
   for (const ClosedLoopCampaign& campaign : campaigns) values.push_back(figure(campaign));
   return values;
@@ -67,7 +67,7 @@ struct Row {
   MeanWithError white_coverage;
 };
 
-Row row_of(const std::string& name, const Campaigns& campaigns) {
+Row row_of(const std::string& name, const ClosedLoopCampaigns& campaigns) {
   const auto after = collect(campaigns, [](const auto& c) { return c.rms_after; });
   const auto coverage = collect(campaigns, [](const auto& c) { return mean_coverage(c.coverage); });
   const auto white = collect(campaigns, [](const auto& c) { return mean_coverage(c.white_coverage); });
@@ -86,8 +86,8 @@ Row row_of(const std::string& name, const Campaigns& campaigns) {
           mean_of(white)};
 }
 
-std::vector<Row> rows_of(const Campaigns& campaigns) {
-  std::map<std::string, Campaigns> by_structure;
+std::vector<Row> rows_of(const ClosedLoopCampaigns& campaigns) {
+  std::map<std::string, ClosedLoopCampaigns> by_structure;
   std::vector<std::string> order;
   for (const ClosedLoopCampaign& campaign : campaigns) {
     if (!by_structure.contains(campaign.structure)) order.push_back(campaign.structure);
@@ -100,7 +100,7 @@ std::vector<Row> rows_of(const Campaigns& campaigns) {
 }
 
 /// Share per symbol over the campaigns: mean and 5th percentile.
-std::map<std::string, std::vector<double>> coverage_by_symbol(const Campaigns& campaigns) {
+std::map<std::string, std::vector<double>> coverage_by_symbol(const ClosedLoopCampaigns& campaigns) {
   std::map<std::string, std::vector<double>> shares;
   for (const ClosedLoopCampaign& campaign : campaigns) {
     for (const auto& [symbol, share] : campaign.coverage) shares[symbol].push_back(share);
@@ -108,7 +108,7 @@ std::map<std::string, std::vector<double>> coverage_by_symbol(const Campaigns& c
   return shares;
 }
 
-std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
+std::string closed_loop_text(const ClosedLoopArguments& arguments, const ClosedLoopCampaigns& campaigns) {
   const bool fixed = arguments.options.fixed_knots;
   const bool correlated = arguments.options.correlated_noise;
   const auto percent = [](const MeanWithError& share) {
@@ -149,7 +149,7 @@ std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
       arguments.options.campaigns, arguments.options.seed, table.text(), symbols.text());
 }
 
-nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& campaigns) {
+nlohmann::ordered_json json_of(const ClosedLoopArguments& arguments, const ClosedLoopCampaigns& campaigns) {
   nlohmann::ordered_json json = {{"study", "closed-loop"}, {"seed", arguments.options.seed}};
   for (const ClosedLoopCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"structure", campaign.structure},
@@ -190,25 +190,25 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
   return json;
 }
 
-int run(Arguments arguments) {
+int run_closed_loop_study(ClosedLoopArguments arguments) {
   if (arguments.small) arguments.options.grid = {6, 5, 4};
   arguments.options.correlated_noise = arguments.noise == "correlated";
   ProgressBar bar("closed loop");
   arguments.options.progress = [&bar](int done, int all) {
     bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
   };
-  const Campaigns campaigns = closed_loop(arguments.options);
+  const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
   bar.finish();
   if (arguments.json) {
     fmt::print("{}\n", json_of(arguments, campaigns).dump(2));
   } else {
-    fmt::print("{}", text_of(arguments, campaigns));
+    fmt::print("{}", closed_loop_text(arguments, campaigns));
   }
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_closed_loop_study(CLI::App& app) {
+  auto arguments = std::make_shared<ClosedLoopArguments>();
   ClosedLoopOptions& options = arguments->options;
   app.add_option("-n,--campaigns", options.campaigns, "structures take turns")
       ->check(positive())
@@ -227,7 +227,7 @@ std::function<int()> define(CLI::App& app) {
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_closed_loop_study(*arguments); };
 }
 
 }  // namespace
@@ -238,7 +238,7 @@ const Command& closed_loop_study() {
       "  volcal study closed-loop -n 80 --fixed\n"
       "  volcal study closed-loop -n 20 --noise correlated\n"
       "  volcal study closed-loop -n 4 --small --json\n",
-      define};
+      define_closed_loop_study};
   return command;
 }
 

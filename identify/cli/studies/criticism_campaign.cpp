@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,14 +13,14 @@
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
 
-constexpr double kTrialRms = 1e-6;  // m
-constexpr double kVisibleFraction = 0.02;
+constexpr double kTrialRms = 1e-6;        // m
 constexpr double kLargestRms = 40e-6;     // m: a larger effect is another kind of trouble
 constexpr double kLargestAngle = 300e-6;  // rad, and per whatever the amplitude is taken for
 constexpr double kLargestLength = 200e-6;
@@ -101,11 +100,10 @@ class Yardstick {
     const Eigen::MatrixXd own = gram.topLeftCorner(count, count);
     const Eigen::VectorXd mixed = gram.topRightCorner(count, 1);
     const Eigen::VectorXd scale = own.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(scale.asDiagonal() * own * scale.asDiagonal());
     Explained out;
-    out.amplitude = scale.cwiseProduct(solver.solve(scale.cwiseProduct(mixed)));
+    out.amplitude = scale.cwiseProduct(
+        least_squares(scale.asDiagonal() * own * scale.asDiagonal(), scale.cwiseProduct(mixed), 1e-9)
+            .solution);
     out.share = gram(count, count) > 0.0 ? mixed.dot(out.amplitude) / gram(count, count) : 0.0;
     return out;
   }

@@ -20,13 +20,13 @@
 namespace volcal::cli {
 namespace {
 
-struct Arguments {
+struct CriticismArguments {
   CriticismOptions options;
   std::string one;  ///< ROW:INDEX
   bool json = false;
 };
 
-std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
+std::string figures_text(const CriticismArguments& arguments, const Campaigns& campaigns) {
   TextTable figures({{"", Align::Left}, {"share (95 % interval), count", Align::Left}, {"goal", Align::Left}},
                     "Figures; s is the visible signal to noise |g~ a|");
   for (const Figure& figure : figures_of(campaigns))
@@ -52,7 +52,7 @@ std::string text_of(const Arguments& arguments, const Campaigns& campaigns) {
       detections.empty() ? "" : "\n", confusion.text());
 }
 
-nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& campaigns) {
+nlohmann::ordered_json json_of(const CriticismArguments& arguments, const Campaigns& campaigns) {
   nlohmann::ordered_json json = {
       {"study", "criticism"}, {"seed", arguments.options.seed}, {"readings", arguments.options.readings}};
   for (const Figure& figure : figures_of(campaigns)) {
@@ -82,7 +82,7 @@ nlohmann::ordered_json json_of(const Arguments& arguments, const Campaigns& camp
 }
 
 /// One campaign as files, for a closer look.
-int write_one(const Arguments& arguments) {
+int write_one(const CriticismArguments& arguments) {
   const CriticismOptions& options = arguments.options;
   const std::size_t colon = arguments.one.find(':');
   const std::string row = arguments.one.substr(0, colon), number = arguments.one.substr(colon + 1);
@@ -107,7 +107,7 @@ int write_one(const Arguments& arguments) {
   return kDone;
 }
 
-int run(Arguments arguments) {
+int run_criticism_study(CriticismArguments arguments) {
   if (!arguments.one.empty()) return write_one(arguments);
   CriticismOptions& options = arguments.options;
   if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
@@ -120,13 +120,13 @@ int run(Arguments arguments) {
   if (arguments.json) {
     fmt::print("{}\n", json_of(arguments, campaigns).dump(1));
   } else {
-    fmt::print("{}", text_of(arguments, campaigns));
+    fmt::print("{}", figures_text(arguments, campaigns));
   }
   return kDone;
 }
 
-std::function<int()> define(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+std::function<int()> define_criticism_study(CLI::App& app) {
+  auto arguments = std::make_shared<CriticismArguments>();
   CriticismOptions& options = arguments->options;
   const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
   app.add_option("--rows", options.rows,
@@ -147,7 +147,7 @@ std::function<int()> define(CLI::App& app) {
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
-  return [arguments] { return run(*arguments); };
+  return [arguments] { return run_criticism_study(*arguments); };
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ const Command& criticism_study() {
       "  volcal study criticism --rows null,listed -n 200 -o counted --resume\n"
       "  volcal study criticism --rows unlisted -n 20 --json\n"
       "  volcal study criticism --one listed:11 -o campaign\n",
-      define};
+      define_criticism_study};
   return command;
 }
 

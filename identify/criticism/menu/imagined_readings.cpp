@@ -11,8 +11,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kGoldenShare = 0.6180339887498949;  // its multiples spread evenly and on no grid
-constexpr double kUsualGap = 4.0;                    // s between readings
+constexpr double kUsualGap = 4.0;  // s between readings
 
 template <class T>
 std::vector<T> picked(const std::vector<T>& column, const std::vector<std::size_t>& rows) {

@@ -32,6 +32,8 @@ std::string place_name(const Setup& setup);
 std::string place_and_tool(const Campaign& campaign, const Setup& setup);
 /// Last time of the campaign, s; 0 without times.
 double end_of(const Campaign& campaign);
+/// Its multiples, modulo one, spread evenly and on no grid.
+inline constexpr double kGoldenShare = 0.6180339887498949;
 inline constexpr double kPause = 600.0;  ///< s, between setups
 
 /// Fills times, temperatures and the nominal reading columns of a setup whose positions are set.

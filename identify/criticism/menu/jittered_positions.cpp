@@ -9,7 +9,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kGoldenShare = 0.6180339887498949;
 constexpr double kSamePosition = 1e-6;    // m
 constexpr double kReadingsPerStep = 3.0;  // on a grid every position is met at least so often
 constexpr double kReach = 0.4;            // of a grid step, to either side

@@ -63,7 +63,7 @@ Json effect_json(const Diagnosis& diagnosis, const EffectName& name, const std::
 }
 
 /// Lower triangle without the diagonal, row by row; null: nothing of one of the two is visible.
-Json triangle(const Eigen::MatrixXd& cosine) {
+Json lower_triangle(const Eigen::MatrixXd& cosine) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < cosine.rows(); ++i) {
     Json row = Json::array();
@@ -120,7 +120,7 @@ Json confounding_page(const DiagnosisInput& input) {
     proposals.push_back(proposal_json(diagnosis, each));
   }
   return {{"effects", std::move(effects)},
-          {"cosine", triangle(confounding.cosine)},
+          {"cosine", lower_triangle(confounding.cosine)},
           {"same", kSameSquaredSine},
           {"proposals", std::move(proposals)}};
 }

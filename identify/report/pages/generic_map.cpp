@@ -9,7 +9,7 @@ namespace volcal::report {
 namespace {
 
 /// Lower triangle, row by row.
-Json triangle(const Eigen::MatrixXd& map) {
+Json map_rows(const Eigen::MatrixXd& map) {
   Json rows = Json::array();
   for (Eigen::Index i = 0; i < map.rows(); ++i) {
     Json row = Json::array();
@@ -26,8 +26,8 @@ Json generic_map_page(const DiagnosisInput& input) {
   Json directions = Json::array();
   for (std::size_t d = 0; d < std::min(map.given.size(), std::size(kScanDirections)); ++d) {
     directions.push_back({{"name", kScanDirections[d]},
-                          {"given", triangle(map.given[d])},
-                          {"reached", triangle(map.reached[d])}});
+                          {"given", map_rows(map.given[d])},
+                          {"reached", map_rows(map.reached[d])}});
   }
   return {{"variables", map.variables},
           {"threshold", rounded(log10_generic_risk(), 4)},

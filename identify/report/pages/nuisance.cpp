@@ -7,7 +7,7 @@
 namespace volcal::report {
 namespace {
 
-constexpr std::size_t kListed = 600;
+constexpr std::size_t kListedParameters = 600;
 
 const char* kind_name(ParameterKind kind) {
   switch (kind) {
@@ -50,7 +50,7 @@ Json nuisance_page(const PageInput& input) {
   for (const ParameterBlock& block : result.layout.blocks) {
     if (block.location) continue;
     for (int i = 0; i < block.size(); ++i) {
-      if (++count <= kListed) rows.push_back(parameter_row(result, block, i));
+      if (++count <= kListedParameters) rows.push_back(parameter_row(result, block, i));
     }
   }
   return {{"count", count}, {"held_by_prior", result.rank.held_by_prior}, {"rows", std::move(rows)}};

@@ -11,7 +11,7 @@
 namespace volcal::report {
 namespace {
 
-constexpr std::size_t kListed = 200;
+constexpr std::size_t kListedSuspects = 200;
 
 /// Chance that the test suspects any reading of a right model with right noise.
 double chance_of_any(const FitResult& result) {
@@ -32,7 +32,7 @@ Json outliers_page(const PageInput& input) {
   std::ranges::stable_sort(suspects, std::greater<>(),
                            [](const auto* record) { return std::abs(record->w); });
   Json rows = Json::array();
-  for (std::size_t i = 0; i < std::min(kListed, suspects.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(kListedSuspects, suspects.size()); ++i) {
     const ResidualRecord& record = *suspects[i];
     const SetupSummary& setup = result.setups[record.setup];
     rows.push_back({{"setup", setup.name},

@@ -10,6 +10,7 @@
 #include <memory>
 #include <random>
 
+#include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/datum.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/sim/reference_machines.h"

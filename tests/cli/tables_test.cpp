@@ -1,0 +1,110 @@
+/// Volumetric errors at points that the user names.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+class TablesAtPoints : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string machine = VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml";
+    std::ofstream(in_scratch("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"" << machine
+                                            << "\"\nseed = 8\n"
+                                               "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [3, 3, 3]\n"
+                                               "[validation]\npoints = 5\n";
+    ASSERT_EQ(run_program("simulate " + in_scratch("study.toml") + " -o " + in_scratch("campaign")).exit_code,
+              0);
+    std::ofstream(in_scratch("campaign/plain.toml"))
+        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
+           "[functions]\ndefault = { basis = \"bspline\", degree = 2, knots = 1 }\n";
+    const auto run = run_program("fit " + in_scratch("campaign/campaign.toml") + " --noise white --model " +
+                                 in_scratch("campaign/plain.toml") + " -o " + in_scratch("result"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+  }
+
+  std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
+  auto tables(const std::string& options) const {
+    return run_program("tables " + in_scratch("result") + " " + options);
+  }
+  /// Cells of the row of volumetric_grid.csv for a tool at the first corner of the travel.
+  std::vector<std::string> first_row() const {
+    std::istringstream lines(content(in_scratch("result/volumetric_grid.csv")));
+    std::string line;
+    std::getline(lines, line);  // names
+    std::getline(lines, line);
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    return cells;
+  }
+
+ private:
+  testing::ScratchFolder scratch_;
+};
+
+TEST_F(TablesAtPoints, AgreeWithTheGrid) {
+  const std::vector<std::string> row = first_row();
+  ASSERT_EQ(row.size(), 17U);
+  const auto run =
+      tables("--at X=" + row[0] + ",Y=" + row[1] + ",Z=" + row[2] + " --tool " + row[3] + " --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto errors = nlohmann::json::parse(run.output).at("volumetric_errors");
+  ASSERT_EQ(errors.size(), 1U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(errors[0].at("error_um")[k].get<double>(), std::stod(row[4 + k]), 1e-6);
+    EXPECT_NEAR(errors[0].at("rotation_urad")[k].get<double>(), std::stod(row[7 + k]), 1e-6);
+    EXPECT_NEAR(errors[0].at("u_um")[k].get<double>(), std::stod(row[10 + k]), 1e-4);
+    EXPECT_GT(errors[0].at("u_um")[k].get<double>(), 0.0);
+  }
+}
+
+TEST_F(TablesAtPoints, ListEveryToolAndWriteTheTablesBeside) {
+  const auto run = tables("--at X=10 --at Y=20,Z=-30 -o " + in_scratch("tables"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("ex +- U95 [um]"));
+  EXPECT_THAT(run.output, HasSubstr("volumetric_grid.csv"));
+  const auto json = nlohmann::json::parse(tables("--at X=10 --at Y=20,Z=-30 --json").output);
+  const auto machine = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("machine");
+  const auto& errors = json.at("volumetric_errors");
+  ASSERT_EQ(errors.size(), 2 * machine.at("tools").size());
+  EXPECT_EQ(errors[0].at("position").at("X"), 10.0);
+  EXPECT_EQ(errors[0].at("position").at("Y"), -250.0) << "not named: at home";
+}
+
+TEST_F(TablesAtPoints, RefuseWhatIsNoPoint) {
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"", "give -o FOLDER"},
+      {"--tool long", "without --at"},
+      {"--at 100,200", "write axes and positions"},
+      {"--at X=ten", "is not a number"},
+      {"--at X=nan", "is not a number"},
+      {"--at X=1,X=2", "X is given twice"},
+      {"--at A=1", "its axes are X Y Z"},
+      {"--at X=1e6", "outside the travel of X"},
+      {"--at X=1 --tool wrong", "the machine has no such tool"},
+  };
+  for (const auto& [options, message] : refused) {
+    const auto run = tables(options);
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(message)) << options;
+    EXPECT_EQ(run.output, "") << options;
+  }
+}
+
+}  // namespace
+}  // namespace volcal

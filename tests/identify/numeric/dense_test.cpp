@@ -1,0 +1,78 @@
+/// Dense algebra by LAPACK against hand-worked matrices and what defines each result.
+
+#include "volcal/identify/numeric/dense.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace volcal {
+namespace {
+
+constexpr double kTolerance = 1e-13;
+
+TEST(Dense, EigenvaluesAscendAndTheirVectorsRebuildTheMatrix) {
+  Eigen::MatrixXd a(3, 3);
+  a << 2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, -4.0;  // -4, 1 and 3
+  const SymmetricEigen eigen = eigen_decomposition(a);
+  EXPECT_TRUE(eigen.values.isApprox(Eigen::Vector3d(-4.0, 1.0, 3.0), kTolerance));
+  EXPECT_TRUE(
+      (eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(a, kTolerance));
+  EXPECT_TRUE(eigenvalues(a).isApprox(eigen.values, kTolerance));
+  EXPECT_EQ(eigen_decomposition(Eigen::MatrixXd(0, 0)).values.size(), 0);
+}
+
+TEST(Dense, EigenvaluesOfWhatIsNotFiniteAreNotNumbers) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Identity(2, 2);
+  a(0, 1) = a(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(eigenvalues(a).array().isNaN().all());
+  EXPECT_TRUE(eigen_decomposition(a).vectors.array().isNaN().all());
+}
+
+TEST(Dense, LeastSquaresOfALineThroughThreePoints) {
+  Eigen::MatrixXd a(3, 2);
+  a << 1.0, 0.0, 1.0, 1.0, 1.0, 2.0;
+  const LeastSquares fitted = least_squares(a, Eigen::Vector3d(0.0, 1.0, 5.0));  // -1/2 + 5/2 x
+  EXPECT_EQ(fitted.rank, 2);
+  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(-0.5, 2.5), kTolerance));
+}
+
+TEST(Dense, LeastSquaresWithoutFullRankHasLeastNorm) {
+  Eigen::MatrixXd a(2, 2);
+  a << 1.0, 1.0, 2.0, 2.0;
+  const LeastSquares fitted = least_squares(a, Eigen::Vector2d(2.0, 4.0));
+  EXPECT_EQ(fitted.rank, 1);
+  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(1.0, 1.0), kTolerance));
+  const LeastSquares wide = least_squares(Eigen::MatrixXd::Ones(1, 3), Eigen::VectorXd::Constant(1, 3.0));
+  EXPECT_TRUE(wide.solution.isApprox(Eigen::Vector3d::Ones(), kTolerance));
+  EXPECT_EQ(least_squares(Eigen::MatrixXd(0, 2), Eigen::VectorXd(0)).rank, 0);
+}
+
+TEST(Dense, NullSpaceIsOrthonormalAndLosesDependentRows) {
+  Eigen::MatrixXd rows(2, 3);
+  rows << 1.0, 1.0, 1.0, 0.0, 1.0, -1.0;
+  Eigen::MatrixXd null = null_space(rows);
+  ASSERT_EQ(null.cols(), 1);
+  EXPECT_NEAR((rows * null).norm(), 0.0, kTolerance);
+  EXPECT_NEAR(null.norm(), 1.0, kTolerance);
+  rows.row(1) = 2.0 * rows.row(0);
+  null = null_space(rows);
+  ASSERT_EQ(null.cols(), 2);
+  EXPECT_NEAR((rows * null).norm(), 0.0, kTolerance);
+  EXPECT_TRUE((null.transpose() * null).isIdentity(kTolerance));
+  EXPECT_EQ(null_space(Eigen::MatrixXd::Zero(1, 4)).cols(), 4);
+}
+
+TEST(Dense, SolvesPositiveDefiniteSystemsAndRefusesOthers) {
+  Eigen::MatrixXd a(2, 2);
+  a << 4.0, 2.0, 2.0, 3.0;
+  EXPECT_TRUE(
+      solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)).isApprox(Eigen::Vector2d(1.0, 2.0), kTolerance));
+  a(1, 1) = 1.0;
+  EXPECT_THROW(solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -22,30 +22,30 @@ std::string axis_names(const Machine& machine) {
 }  // namespace
 
 AxisPosition axis_position(const std::string& option, const std::string& text, const Machine& machine) {
-  const auto fail = [&](const std::string& problem, const std::string& remedy) -> void {
-    throw InputError({}, option + " " + text + ": " + problem, remedy);
+  const auto error = [&](const std::string& problem, const std::string& remedy) {
+    return InputError({}, option + " " + text + ": " + problem, remedy);
   };
   AxisPosition position{};
   for (const Axis& axis : machine.axes) position[index_of(axis.name)] = axis.home;
   std::set<AxisName> named;
   for (const std::string& part : CLI::detail::split(text, ',')) {
     const std::string usage = "write axes and positions in mm or deg, as in X=100,Y=-20.5";
-    if (part.size() < 3 || part[1] != '=') fail("\"" + part + "\" is no position of an axis", usage);
+    if (part.size() < 3 || part[1] != '=') throw error("\"" + part + "\" is no position of an axis", usage);
     const auto name = axis_from_letter(part[0]);
     if (!name || !machine.has_axis(*name)) {
-      fail(fmt::format("the machine has no axis {}", part[0]), "its axes are " + axis_names(machine));
+      throw error(fmt::format("the machine has no axis {}", part[0]), "its axes are " + axis_names(machine));
     }
     if (!named.insert(*name).second)
-      fail(fmt::format("{} is given twice", part[0]), "leave one of the two out");
+      throw error(fmt::format("{} is given twice", part[0]), "leave one of the two out");
     double value = 0.0;
     if (!CLI::detail::lexical_cast(part.substr(2), value) || !std::isfinite(value))
-      fail("\"" + part.substr(2) + "\" is not a number", usage);
+      throw error("\"" + part.substr(2) + "\" is not a number", usage);
     const double unit = is_rotary(*name) ? kRadianPerDegree : kMetrePerMillimetre;
     const Axis& axis = machine.axis(*name);
     constexpr double kRounding = 1e-9;
     if (value * unit < axis.travel_min - kRounding || value * unit > axis.travel_max + kRounding) {
-      fail(fmt::format("{} lies outside the travel of {}", part.substr(2), part[0]),
-           fmt::format("give {:g} to {:g}", axis.travel_min / unit, axis.travel_max / unit));
+      throw error(fmt::format("{} lies outside the travel of {}", part.substr(2), part[0]),
+                  fmt::format("give {:g} to {:g}", axis.travel_min / unit, axis.travel_max / unit));
     }
     position[index_of(*name)] = value * unit;
   }

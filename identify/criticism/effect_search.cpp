@@ -28,7 +28,6 @@ constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival,
 constexpr double kLessProbable = 0.1;    // share of log10 p, family-wise; components cost probability
 constexpr int kMostChanges = 4;
 constexpr int kNoiseRounds = 2;
-constexpr double kSameLogLambda = 0.5;  // a quarter of an amplitude, less than evidence knows of one
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
@@ -38,13 +37,6 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
 
 bool near(const FamilyTest& own, const FamilyTest& other) {
   return own.gain - other.gain < kToldApart || own.score.lm - other.score.lm < kSameLikelihood;
-}
-
-/// Nothing that the noise would notice.
-bool alike(const std::vector<SmoothingTerm>& smoothing, const std::vector<SmoothingTerm>& other) {
-  return std::ranges::equal(smoothing, other, [](const SmoothingTerm& a, const SmoothingTerm& b) {
-    return a.shape == b.shape && std::abs(std::log(a.lambda / b.lambda)) < kSameLogLambda;
-  });
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 namespace volcal {
 namespace {
 
-constexpr Eigen::Index kFamilyBlockColumns = 256;
 constexpr int kLowestExtraDegree = 4;
 constexpr int kHighestExtraDegree = 11;
 
@@ -89,7 +88,7 @@ class FamilyTester {
     std::vector<FamilyBlock> all;
     for (std::size_t family = 0; family < families_.size(); ++family) {
       const Eigen::Index columns = shapes(family) * families_[family].amplitudes();
-      if (all.empty() || all.back().columns + columns > kFamilyBlockColumns) all.emplace_back();
+      if (all.empty() || all.back().columns + columns > kBlockColumns) all.emplace_back();
       all.back().family.push_back(family);
       all.back().columns += columns;
     }

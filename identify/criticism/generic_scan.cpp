@@ -21,7 +21,6 @@ constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
 constexpr std::size_t kDirections = 4;
 constexpr std::size_t kBeam = 3;
-constexpr Eigen::Index kScanBlockColumns = 256;
 
 /// What the columns of a variable are made of.
 struct Features {
@@ -104,7 +103,7 @@ class GenericScanner {
           item.directions.push_back(d);
       }
       if (item.directions.empty()) return;
-      if (all.empty() || all.back().columns + item.columns() > kScanBlockColumns) all.emplace_back();
+      if (all.empty() || all.back().columns + item.columns() > kBlockColumns) all.emplace_back();
       item.first_test = tests;
       all.back().items.push_back(item);
       all.back().columns += item.columns();

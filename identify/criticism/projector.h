@@ -19,6 +19,9 @@
 
 namespace volcal {
 
+/// Columns that are best made and projected at once: a product with them fills a cache, their rows fit it.
+inline constexpr Eigen::Index kBlockColumns = 256;
+
 /// Columns of candidates, made part by part of the observations.
 struct CandidateColumns {
   Eigen::Index count = 0;

@@ -3,11 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
 #include "volcal/identify/io/readings_reader.h"
+#include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
@@ -23,15 +23,9 @@ constexpr double kLeastLength = 5e-3;   // m, variation of a prediction worth ju
 constexpr double kLeastAngle = 0.1;     // rad
 constexpr double kLeastCorrelation = 0.99;
 
-std::string four_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
 std::string shown_mm(const Eigen::Vector3d& point) {
-  return "[" + four_digits(point.x() / kMetrePerMillimetre) + ", " +
-         four_digits(point.y() / kMetrePerMillimetre) + ", " + four_digits(point.z() / kMetrePerMillimetre) +
+  return "[" + number_text(point.x() / kMetrePerMillimetre) + ", " +
+         number_text(point.y() / kMetrePerMillimetre) + ", " + number_text(point.z() / kMetrePerMillimetre) +
          "] mm";
 }
 
@@ -183,7 +177,7 @@ void check_units(const Campaign& campaign, const Setup& setup, std::vector<Eigen
     if (!judged || (relation.factor > 0.5 && relation.factor < 2.0)) continue;
     throw InputError(
         {setup.data, static_cast<int>(setup.readings.source_line.front())},
-        column + " changes by " + four_digits(relation.factor) + " of what the commanded positions predict",
+        column + " changes by " + number_text(relation.factor) + " of what the commanded positions predict",
         factor_remedy(relation.factor, column));
   }
 }
@@ -205,14 +199,14 @@ void check_shared_stations(const Campaign& campaign) {
       const bool both_known = sigma > 0.0 && other_sigma > 0.0;
       if (both_known && apart > allowed) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + four_digits(apart / kMetrePerMillimetre) +
+             "station \"" + *name + "\" is " + number_text(apart / kMetrePerMillimetre) +
                  " mm from where setup \"" + other->name + "\" (line " + std::to_string(other->source_line) +
                  ") puts it, over 5 sigma",
              "correct station_mm or station_sigma_mm, or give the station another name if it was moved");
       }
       if (!both_known && apart > kGuessSpread) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + four_digits(apart) + " m from where setup \"" + other->name +
+             "station \"" + *name + "\" is " + number_text(apart) + " m from where setup \"" + other->name +
                  "\" (line " + std::to_string(other->source_line) + ") puts it",
              "correct station_mm, or give the station another name if it was moved");
       }

@@ -30,12 +30,6 @@ std::string lower(std::string text) {
   return text;
 }
 
-std::string six_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 /// Columns that a file may lack, in the order in which they are looked for.
 std::vector<std::string> optional_columns(const Machine& machine, const InstrumentSchema& instrument) {
   std::vector<std::string> names;
@@ -143,7 +137,7 @@ class ReadingsReader {
       const Unit unit = unit_of_key(present);
       if (unit.suffix.empty() || stem_of_key(present) != stem_of_key(column)) continue;
       return "the file has " + present + "; add columns = { " + column + " = \"" + present +
-             "\" } and scale = { " + column + " = " + six_digits(unit.si_per_unit / si_factor(column)) +
+             "\" } and scale = { " + column + " = " + number_text(unit.si_per_unit / si_factor(column)) +
              " } to the setup";
     }
     if (const auto near = nearest_name(column, table_.header())) {
@@ -287,7 +281,7 @@ class ReadingsReader {
     std::string remedy = "rename it or add columns = { " + standard + " = \"" + printable(column) + "\" }";
     if (other_unit) {
       remedy +=
-          " and scale = { " + standard + " = " + six_digits(si_factor(column) / si_factor(standard)) + " }";
+          " and scale = { " + standard + " = " + number_text(si_factor(column) / si_factor(standard)) + " }";
     }
     return remedy + " to the setup";
   }
@@ -341,13 +335,13 @@ class ReadingsReader {
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (std::abs(values[row]) <= most) continue;
       const std::string_view unit = unit_of_key(column).suffix;
-      std::string remedy = "at most " + six_digits(most) + " " + std::string(unit) + " is believed";
+      std::string remedy = "at most " + number_text(most) + " " + std::string(unit) + " is believed";
       const bool thousand = std::ranges::all_of(values, [&](double v) { return std::abs(v) <= most * 1e3; });
       if (thousand) {
         remedy += "; if the file is in a unit 1000 times smaller add scale = { " + column +
                   " = 0.001 } to the setup";
       }
-      fail(row, column + " = " + six_digits(values[row]) + " is too large", remedy);
+      fail(row, column + " = " + number_text(values[row]) + " is too large", remedy);
     }
     readings_.value[static_cast<std::size_t>(schema - set.begin())] = in_si(column, std::move(values));
   }
@@ -355,7 +349,7 @@ class ReadingsReader {
   void store_sigma(const std::string& column, std::vector<double> values) {
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (values[row] > 0.0) continue;
-      fail(row, column + " = " + six_digits(values[row]) + " is not a standard deviation",
+      fail(row, column + " = " + number_text(values[row]) + " is not a standard deviation",
            "every sigma must be positive; remove the column to use the setup's noise table");
     }
     readings_.sigma = in_si(column, std::move(values));
@@ -374,7 +368,8 @@ class ReadingsReader {
   void check_range(const std::string& column, const std::vector<double>& values, double min, double max,
                    const std::string& remedy) const {
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (values[row] < min || values[row] > max) fail(row, column + " = " + six_digits(values[row]), remedy);
+      if (values[row] < min || values[row] > max)
+        fail(row, column + " = " + number_text(values[row]), remedy);
     }
   }
 
@@ -384,8 +379,8 @@ class ReadingsReader {
     const auto [coldest, hottest] = std::ranges::minmax(values);
     if (coldest <= kShopHottest_degC && hottest >= kShopColdest_degC) return;
     fail(0,
-         column + " is " + six_digits(coldest) + " to " + six_digits(hottest) + ": no value lies within " +
-             six_digits(kShopColdest_degC) + " to " + six_digits(kShopHottest_degC) + " degC",
+         column + " is " + number_text(coldest) + " to " + number_text(hottest) + ": no value lies within " +
+             number_text(kShopColdest_degC) + " to " + number_text(kShopHottest_degC) + " degC",
          hottest > 200.0 ? "in K? write degC: subtract 273.15" : "in degF? write degC: (F - 32) / 1.8");
   }
 
@@ -405,12 +400,12 @@ class ReadingsReader {
       const bool fits = std::ranges::none_of(values, [&](double q) { return outside(q * scale); });
       if (fits)
         remedy =
-            "wrong unit by 1000? add scale = { " + column + " = " + six_digits(scale) + " } to the setup";
+            "wrong unit by 1000? add scale = { " + column + " = " + number_text(scale) + " } to the setup";
     }
     fail(static_cast<std::size_t>(first - values.begin()),
-         column + " = " + six_digits(*first / factor) + " lies outside the travel of " +
-             letter_of(axis.name) + ", " + six_digits(axis.travel_min / factor) + " to " +
-             six_digits(axis.travel_max / factor) + " " + unit,
+         column + " = " + number_text(*first / factor) + " lies outside the travel of " +
+             letter_of(axis.name) + ", " + number_text(axis.travel_min / factor) + " to " +
+             number_text(axis.travel_max / factor) + " " + unit,
          remedy);
   }
 
@@ -426,7 +421,7 @@ class ReadingsReader {
     std::vector<std::int8_t> read(values.size());
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (values[row] != -1.0 && values[row] != 0.0 && values[row] != 1.0) {
-        fail(row, column + " = " + six_digits(values[row]) + " is no direction of approach",
+        fail(row, column + " = " + number_text(values[row]) + " is no direction of approach",
              "use -1, 1, or 0 when unknown");
       }
       read[row] = static_cast<std::int8_t>(values[row]);
@@ -440,7 +435,7 @@ class ReadingsReader {
       const bool fits = values[row] == std::round(values[row]) &&
                         std::abs(values[row]) <= std::numeric_limits<std::int32_t>::max();
       if (!fits)
-        fail(row, column + " = " + six_digits(values[row]) + " is no " + column + " number", "use integers");
+        fail(row, column + " = " + number_text(values[row]) + " is no " + column + " number", "use integers");
       read[row] = static_cast<std::int32_t>(values[row]);
     }
     return read;

@@ -1,5 +1,7 @@
 #include "volcal/identify/io/text_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -122,5 +124,7 @@ void write_text_file(const std::string& path, const std::string& text) {
     throw InputError({path, 0}, "the file cannot be written", "choose a folder that exists and is writable");
   }
 }
+
+std::string number_text(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }
 
 }  // namespace volcal

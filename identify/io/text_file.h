@@ -31,5 +31,7 @@ std::string resolve_path(const std::string& from, const std::string& file);
 /// A name or a value from a file as it may appear in a message: one line, printable, not longer than 60
 /// characters.
 std::string printable(const std::string& text);
+/// A number as it appears in a message, with at most `digits` significant digits.
+std::string number_text(double value, int digits = 6);
 
 }  // namespace volcal

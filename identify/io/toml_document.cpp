@@ -13,15 +13,11 @@ namespace {
 
 using detail::TomlNode;
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+constexpr int kFileDigits = 9;  // what a file holds is repeated as it stands
 
 std::string with_unit(double value, std::string_view key) {
   const std::string_view unit = unit_of_key(key).suffix;
-  return number_text(value) + (unit.empty() ? "" : " " + std::string(unit));
+  return number_text(value, kFileDigits) + (unit.empty() ? "" : " " + std::string(unit));
 }
 
 const char* kind_name(TomlKind kind) {
@@ -195,11 +191,11 @@ double TomlTable::finite(const TomlNode& node, std::string_view key, NumberLimit
     throw InputError(here, name(key) + " is not a finite number", "give a finite number");
   if (value < limits.min) {
     throw InputError(
-        here, name(key) + " is " + number_text(value),
+        here, name(key) + " is " + number_text(value, kFileDigits),
         limits.min == 0.0 ? "it must not be negative" : "it must be at least " + with_unit(limits.min, key));
   }
   if (value > limits.max) {
-    throw InputError(here, name(key) + " is " + number_text(value),
+    throw InputError(here, name(key) + " is " + number_text(value, kFileDigits),
                      "it must be at most " + with_unit(limits.max, key));
   }
   return value;
@@ -353,7 +349,8 @@ void TomlTable::check_plausible(const KeySchema& schema, double value) const {
                            : "0 or at least " + with_unit(schema.plausible_min, schema.key) + " is believed";
   if (unit_slip) {
     remedy += "; wrong unit by 1000? " + std::string(stem_of_key(schema.key)) + " is stated in " +
-              std::string(unit_of_key(schema.key).suffix) + ", write " + number_text(value * factor);
+              std::string(unit_of_key(schema.key).suffix) + ", write " +
+              number_text(value * factor, kFileDigits);
   }
   fail(schema.key,
        name(schema.key) + " = " + with_unit(value, schema.key) + (large ? " is too large" : " is too small"),

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSingular = 1e-12;  // of the largest eigenvalue, columns scaled to one
 
-void require_problem(bool condition, const char* problem) {
+void require_consistent(bool condition, const char* problem) {
   if (!condition) throw std::invalid_argument(std::string("restricted likelihood: ") + problem);
 }
 
@@ -46,14 +46,14 @@ LogPseudoDeterminant log_pseudo_determinant(const Eigen::MatrixXd& symmetric) {
 RestrictedLikelihood::RestrictedLikelihood(const NoiseProblem& problem, int threads) : threads_(threads) {
   const Eigen::Index n = problem.jacobian.rows(), p = problem.jacobian.cols();
   const auto count = static_cast<std::size_t>(n);
-  require_problem(problem.residual.size() == n && problem.data.sigma.size() == count,
-                  "one residual and sigma per row");
-  require_problem(problem.point.empty() || problem.point.size() == count, "one point per row, or none");
-  require_problem(problem.prior_precision.size() == 0 ||
-                      (problem.prior_precision.rows() == p && problem.prior_precision.cols() == p),
-                  "the prior precision is p x p, or empty");
-  require_problem(problem.prior_mean.size() == 0 || problem.prior_mean.size() == p,
-                  "the prior mean has p elements");
+  require_consistent(problem.residual.size() == n && problem.data.sigma.size() == count,
+                     "one residual and sigma per row");
+  require_consistent(problem.point.empty() || problem.point.size() == count, "one point per row, or none");
+  require_consistent(problem.prior_precision.size() == 0 ||
+                         (problem.prior_precision.rows() == p && problem.prior_precision.cols() == p),
+                     "the prior precision is p x p, or empty");
+  require_consistent(problem.prior_mean.size() == 0 || problem.prior_mean.size() == p,
+                     "the prior mean has p elements");
   use_single_threaded_blas();
   split(problem);
   transform(problem);
@@ -66,7 +66,8 @@ void RestrictedLikelihood::split(const NoiseProblem& problem) {
     NoiseSequence own;
     for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
       const std::size_t i = sequence.observation[k];
-      require_problem(i < problem.data.sigma.size(), "a sequence names an observation that does not exist");
+      require_consistent(i < problem.data.sigma.size(),
+                         "a sequence names an observation that does not exist");
       if (!std::isfinite(problem.data.sigma[i])) continue;
       own.observation.push_back(group.observation.size());
       if (!sequence.time.empty()) own.time.push_back(sequence.time[k]);
@@ -168,7 +169,7 @@ double RestrictedLikelihood::log_likelihood(const Share& total) const {
 }
 
 double RestrictedLikelihood::log_likelihood(const std::vector<NoiseParameters>& noise) {
-  require_problem(noise.size() >= groups_.size(), "parameters for every group");
+  require_consistent(noise.size() >= groups_.size(), "parameters for every group");
   Share total = prior_;
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const Share own = share(g, noise[g]);

@@ -32,7 +32,7 @@ void dtrsm_(const char* side, const char* uplo, const char* transa, const char* 
 namespace volcal {
 namespace {
 
-constexpr double kDependent = 1e-13;  // eigenvalue of R^T R, of the largest
+constexpr double kDependent = 1e-13;  // eigenvalue of R^T R, of the largest: (3e-7)^2
 
 /// `result.vectors` holds the matrix.
 void decompose(const char* job, SymmetricEigen& result) {
@@ -111,6 +111,10 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, d
   const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.cols()), one = 1, query = -1;
   LeastSquares result{Eigen::VectorXd::Zero(n), 0};
   if (m == 0 || n == 0) return result;
+  if (!a.allFinite() || !b.allFinite()) {
+    result.solution.setConstant(std::numeric_limits<double>::quiet_NaN());
+    return result;
+  }
   Eigen::MatrixXd factors = a;
   const int rows = std::max(m, n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(rows);

@@ -32,9 +32,11 @@ struct LeastSquares {
   Eigen::VectorXd solution;  ///< of least norm where the rank is not full
   int rank = 0;
 };
-/// min |A x - b|; columns count as dependent where the condition number exceeds 1 / `threshold`.
+/// min |A x - b|; columns count as dependent where the condition number exceeds 1 / `threshold`. NaN and rank
+/// 0 where an argument is not finite.
 LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold = 1e-15);
-/// Orthonormal columns that span {x : rows x = 0}.
+/// Orthonormal columns that span {x : rows x = 0}. A direction counts as one of them where |rows x| is less
+/// than 3e-7 of the largest that a unit vector reaches.
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows);
 
 /// upper(C) = A A^T, A is n x k with leading dimension n.

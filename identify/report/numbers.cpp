@@ -23,6 +23,18 @@ Json rounded_array(const std::vector<double>& values, double factor, int digits)
   return array;
 }
 
+Json rounded_triangle(const Eigen::MatrixXd& symmetric, int digits, bool with_diagonal) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < symmetric.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index k = 0; k < (with_diagonal ? i + 1 : i); ++k) {
+      row.push_back(rounded(symmetric(i, k), digits));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits) {
   return {rounded(vector.x() * factor, digits), rounded(vector.y() * factor, digits),
           rounded(vector.z() * factor, digits)};

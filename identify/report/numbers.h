@@ -13,6 +13,8 @@ inline constexpr double kPerMilli = 1e3;  ///< mm per m
 /// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
 Json rounded(double value, int digits = 5);
 Json rounded_array(const std::vector<double>& values, double factor, int digits = 5);
+/// Lower triangle row by row, with the diagonal or without.
+Json rounded_triangle(const Eigen::MatrixXd& symmetric, int digits, bool with_diagonal);
 Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5);
 
 /// Unit and factor of an axis's position at the edge: mm or deg.

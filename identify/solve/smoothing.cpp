@@ -22,6 +22,7 @@ constexpr int kStartPlace = 6;
 constexpr int kSettlingSteps = 30;
 constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
+constexpr double kSameLogLambda = 0.5;
 constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
@@ -350,6 +351,12 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
     terms.push_back(std::move(term));
   }
   return terms;
+}
+
+bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others) {
+  return std::ranges::equal(terms, others, [](const SmoothingTerm& a, const SmoothingTerm& b) {
+    return a.shape == b.shape && std::abs(std::log(a.lambda / b.lambda)) < kSameLogLambda;
+  });
 }
 
 void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {

@@ -39,6 +39,9 @@ struct SmoothingTerm {
 
 /// Terms for the functions that are smoothed, with a wide start.
 std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const DatumSpace& datum);
+/// Same shapes, amplitudes within 28 %: less than evidence knows of one, and nothing that the noise beside
+/// them would notice.
+bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others);
 void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior);
 
 /// Quadratic model of one instrument's readings about z0: M, J^T W (predicted - reading), weighted squares.

@@ -50,6 +50,10 @@ KeySchema symbol_key(const std::string& help) {
   return {.key = "symbol", .type = KeyType::Text, .required = true, .help = help};
 }
 
+KeySchema amplitude_key(const std::string& key, const std::string& help) {
+  return {.key = key, .help = help, .plausible_min = 1e-6, .plausible_max = 1e4};
+}
+
 std::vector<KeySchema> motion_amplitude_keys(std::initializer_list<std::string> per,
                                              const std::string& help) {
   std::vector<KeySchema> keys;

@@ -30,6 +30,8 @@ struct EffectTable {
 };
 
 KeySchema symbol_key(const std::string& help);
+/// Amplitude of whatever unit `key` ends with, believed between 1e-6 and 1e4 of it.
+KeySchema amplitude_key(const std::string& key, const std::string& help);
 /// Keys "amplitude_um_<per>" and "amplitude_urad_<per>" (without "_<per>" when empty) for every `per`.
 std::vector<KeySchema> motion_amplitude_keys(std::initializer_list<std::string> per, const std::string& help);
 /// Key of an amplitude that acts on `symbol`: "amplitude_urad_per_K".

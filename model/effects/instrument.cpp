@@ -284,10 +284,6 @@ std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
   return specs;
 }
 
-KeySchema reading_amplitude_key(const std::string& key, const std::string& help) {
-  return {.key = key, .help = help, .plausible_min = 1e-6, .plausible_max = 1e4};
-}
-
 }  // namespace
 
 const EffectKind& length_scale_effect() {
@@ -297,7 +293,7 @@ const EffectKind& length_scale_effect() {
            "wavelength or air index is off: every length, or those of one station, is too long by this",
        .source = "Edlen, Metrologia 2 (1966) 71: refractive index of air; 1 ppm per kelvin or 3.7 hPa",
        .keys = {text_key("station", "only this station; absent = all lasers", false),
-                reading_amplitude_key("amplitude_ppm", "relative error of lengths")}},
+                amplitude_key("amplitude_ppm", "relative error of lengths")}},
       make_length_scale, length_scales);
   return kind;
 }
@@ -310,8 +306,8 @@ const EffectKind& dead_path_effect() {
        .source = "ISO 230-6; Edlen, Metrologia 2 (1966) 71",
        .keys = {text_key("setup", "name of the setup"),
                 text_key("temperature", "channel that drives it; absent = time", false),
-                reading_amplitude_key("amplitude_um_per_h", "change of the reading per hour"),
-                reading_amplitude_key("amplitude_um_per_K", "change of the reading per kelvin")}},
+                amplitude_key("amplitude_um_per_h", "change of the reading per hour"),
+                amplitude_key("amplitude_um_per_K", "change of the reading per kelvin")}},
       make_dead_path, dead_paths);
   return kind;
 }
@@ -357,7 +353,7 @@ const EffectKind& ball_bar_length_effect() {
   static const FormulaKind kind({.kind = "ball-bar-length",
                                  .summary = "the calibrated length of the ball-bar is wrong",
                                  .source = "ISO 230-4 (circular tests)",
-                                 .keys = {reading_amplitude_key("amplitude_um", "reading too long by this")}},
+                                 .keys = {amplitude_key("amplitude_um", "reading too long by this")}},
                                 make_ball_bar_length, ball_bar_lengths);
   return kind;
 }
@@ -370,7 +366,7 @@ const EffectKind& servo_mismatch_effect() {
                   "the sense of rotation",
        .source = "ISO 230-4, annex; Kakino et al. (1993): servo mismatch in circular tests",
        .keys = {axis_key("axis", "first axis of the circle"), axis_key("second_axis", "second axis"),
-                reading_amplitude_key("amplitude_um", "amplitude of the radius, counter-clockwise")}},
+                amplitude_key("amplitude_um", "amplitude of the radius, counter-clockwise")}},
       make_servo_mismatch, servo_mismatches);
   return kind;
 }

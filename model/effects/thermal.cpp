@@ -209,10 +209,6 @@ std::vector<EffectSpec> squareness_drifts(const Campaign& campaign) {
   return specs;
 }
 
-KeySchema thermal_amplitude_key(const std::string& key, const std::string& help) {
-  return {.key = key, .help = help, .plausible_min = 1e-6, .plausible_max = 1e4};
-}
-
 }  // namespace
 
 const EffectKind& scale_expansion_effect() {
@@ -222,7 +218,7 @@ const EffectKind& scale_expansion_effect() {
        .source = "ISO/TR 16907:2015, 7.4.3; ISO 230-3 (thermal effects)",
        .keys = {axis_key("axis", "axis whose scale expands"),
                 text_key("temperature", "channel: column T_<channel>_degC"),
-                thermal_amplitude_key("amplitude_um_per_m_K", "coefficient of expansion")}},
+                amplitude_key("amplitude_um_per_m_K", "coefficient of expansion")}},
       make_scale_expansion, scale_expansions);
   return kind;
 }
@@ -281,8 +277,8 @@ const EffectKind& squareness_drift_effect() {
        .source = "ISO 230-3 (environmental temperature variation)",
        .keys = {symbol_key("squareness that drifts: EC0Y, EA0Z, EB0Z"),
                 text_key("temperature", "channel that drives it; absent = time", false),
-                thermal_amplitude_key("amplitude_urad_per_h", "change per hour"),
-                thermal_amplitude_key("amplitude_urad_per_K", "change per kelvin")}},
+                amplitude_key("amplitude_urad_per_h", "change per hour"),
+                amplitude_key("amplitude_urad_per_K", "change per kelvin")}},
       make_squareness_drift, squareness_drifts);
   return kind;
 }

@@ -3,12 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/support/program.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/simulated_campaign.h"
 
 namespace volcal {
 namespace {
@@ -22,29 +21,19 @@ using testing::run_program;
 class FitNoiseProgram : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string machine = VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml";
-    std::ofstream(in_scratch("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"" << machine
-                                            << "\"\nseed = 5\n"
-                                               "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 4]\n"
-                                               "noise = { constant_um = 0.25, per_metre_um = 0.3, "
-                                               "repeatability_um = 0.6, wander_um = 1.2, "
-                                               "wander_time_s = 60.0, line_um = 0.8 }\n"
-                                               "[validation]\npoints = 5\n";
-    const auto run = run_program("simulate " + in_scratch("study.toml") + " -o " + in_scratch("campaign"));
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
-    std::ofstream(in_scratch("campaign/plain.toml"))
-        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
-           "[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 3 }\n";
+    simulated_.simulate(5,
+                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 4]\n"
+                        "noise = { constant_um = 0.25, per_metre_um = 0.3, repeatability_um = 0.6, "
+                        "wander_um = 1.2, wander_time_s = 60.0, line_um = 0.8 }\n"
+                        "[validation]\npoints = 5\n",
+                        3, 3);
   }
 
-  std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
-  auto fit(const std::string& options) const {
-    return run_program("fit " + in_scratch("campaign/campaign.toml") + " --model " +
-                       in_scratch("campaign/plain.toml") + " -o " + in_scratch("result") + " " + options);
-  }
+  std::string path(const std::string& name) const { return simulated_.path(name); }
+  auto fit(const std::string& options) const { return simulated_.fit(options); }
 
  private:
-  testing::ScratchFolder scratch_;
+  testing::SimulatedCampaign simulated_;
 };
 
 TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
@@ -53,7 +42,7 @@ TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
   EXPECT_THAT(run.output, HasSubstr("Noise by restricted maximum likelihood"));
   EXPECT_THAT(run.output, ::testing::ContainsRegex("slow wander of [0-9.]+ um over [0-9]+ s"));
   EXPECT_THAT(run.output, HasSubstr("its noise is not independent"));
-  const auto noise = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("noise");
+  const auto noise = nlohmann::json::parse(content(path("result/result.json"))).at("noise");
   EXPECT_TRUE(noise.at("more_than_white").get<bool>());
   EXPECT_NEAR(noise.at("whitened_chi2_per_dof").get<double>(), 1.0, 0.1);
   bool wander = false;
@@ -67,9 +56,7 @@ TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
   }
   EXPECT_TRUE(wander);
   // Other commands read the result.
-  EXPECT_EQ(
-      run_program("tables " + in_scratch("result") + " --format csv -o " + in_scratch("tables")).exit_code,
-      0);
+  EXPECT_EQ(run_program("tables " + path("result") + " --format csv -o " + path("tables")).exit_code, 0);
 }
 
 TEST_F(FitNoiseProgram, TakesReadingsAsIndependentWhenAsked) {
@@ -77,7 +64,7 @@ TEST_F(FitNoiseProgram, TakesReadingsAsIndependentWhenAsked) {
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("readings taken as independent"));
   EXPECT_THAT(run.output, Not(HasSubstr("slow wander")));
-  const auto noise = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("noise");
+  const auto noise = nlohmann::json::parse(content(path("result/result.json"))).at("noise");
   EXPECT_FALSE(noise.at("estimated").get<bool>());
   EXPECT_TRUE(noise.at("terms").empty());
 }

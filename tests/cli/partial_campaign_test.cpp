@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/support/program.h"
+#include "tests/support/simulated_campaign.h"
 
 namespace volcal {
 namespace {
@@ -45,11 +46,11 @@ runs = [{ station = "P1", tool = "short" }]
 
 class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::string, std::string>> {
  protected:
-  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
+  std::string path(const std::string& name) const { return simulated_.path(name); }
 
   /// The demo's machine with reference points at the origin: no tilt has a lever arm but the tool.
   void write_machine() const {
-    std::ifstream demo(std::string(VOLCAL_SOURCE_DIR) + "/datasets/demo/machine.toml");
+    std::ifstream demo(testing::kDemoMachine);
     std::ofstream machine(path("machine.toml"));
     for (std::string line; std::getline(demo, line);) {
       if (!line.starts_with("reference_point_mm")) machine << line << "\n";
@@ -58,25 +59,17 @@ class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::st
 
   void simulate(const std::string& measurements) {
     write_machine();
-    std::ofstream(path("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = 5\n"
-                                      << measurements;
-    std::ofstream(path("model.toml"))
-        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
-           "[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 1 }\n";
-    const auto run = run_program("simulate " + path("study.toml") + " -o " + path("c"));
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    simulated_.simulate(5, measurements, 3, 1, "machine.toml");
   }
-  std::string fit_arguments() const {
-    return "fit " + path("c/campaign.toml") + " --model " + path("model.toml") + " -o " + path("r");
-  }
+  auto fit(const std::string& options = "") const { return simulated_.fit(options); }
 
  private:
-  ::volcal::testing::ScratchFolder scratch_;
+  ::volcal::testing::SimulatedCampaign simulated_;
 };
 
 TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
   simulate(GetParam().second);
-  const auto run = run_program(fit_arguments());
+  const auto run = fit();
   ASSERT_EQ(run.exit_code, 1) << run.errors;
   const std::string& text = run.output;
   EXPECT_THAT(text, HasSubstr("status rank_deficient"));
@@ -89,12 +82,12 @@ TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
   EXPECT_THAT(text, ContainsRegex("EBZ +urad +- +- .*NOT VISIBLE"));
   EXPECT_THAT(text, ContainsRegex("EZZ +um +-?[0-9.]+ +-?[0-9.]+ "));
   EXPECT_THAT(text, Not(ContainsRegex("EZZ [^\n]*NOT VISIBLE")));
-  EXPECT_THAT(content(path("r/error_tables.csv")), ContainsRegex("EZZ,Z,-450,mm,0,-?[0-9.]+,um,"));
+  EXPECT_THAT(content(path("result/error_tables.csv")), ContainsRegex("EZZ,Z,-450,mm,0,-?[0-9.]+,um,"));
 }
 
 TEST_P(PartialCampaignProgram, SaysTheSameInJson) {
   simulate(GetParam().second);
-  const auto run = run_program(fit_arguments() + " --json");
+  const auto run = fit("--json");
   ASSERT_EQ(run.exit_code, 1) << run.errors;
   const auto json = nlohmann::json::parse(run.output);
   EXPECT_EQ(json.at("status"), "rank_deficient");

@@ -3,14 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/support/program.h"
-#include "tests/support/scratch_folder.h"
+#include "tests/support/simulated_campaign.h"
 
 namespace volcal {
 namespace {
@@ -22,28 +21,21 @@ using testing::run_program;
 class TablesAtPoints : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string machine = VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml";
-    std::ofstream(in_scratch("study.toml")) << "format = \"volcal-study-1\"\nmachine = \"" << machine
-                                            << "\"\nseed = 8\n"
-                                               "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [3, 3, 3]\n"
-                                               "[validation]\npoints = 5\n";
-    ASSERT_EQ(run_program("simulate " + in_scratch("study.toml") + " -o " + in_scratch("campaign")).exit_code,
-              0);
-    std::ofstream(in_scratch("campaign/plain.toml"))
-        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n"
-           "[functions]\ndefault = { basis = \"bspline\", degree = 2, knots = 1 }\n";
-    const auto run = run_program("fit " + in_scratch("campaign/campaign.toml") + " --noise white --model " +
-                                 in_scratch("campaign/plain.toml") + " -o " + in_scratch("result"));
+    simulated_.simulate(8,
+                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [3, 3, 3]\n"
+                        "[validation]\npoints = 5\n",
+                        2, 1);
+    const auto run = simulated_.fit("--noise white");
     ASSERT_EQ(run.exit_code, 0) << run.errors;
   }
 
-  std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
+  std::string path(const std::string& name) const { return simulated_.path(name); }
   auto tables(const std::string& options) const {
-    return run_program("tables " + in_scratch("result") + " " + options);
+    return run_program("tables " + path("result") + " " + options);
   }
   /// Cells of the row of volumetric_grid.csv for a tool at the first corner of the travel.
   std::vector<std::string> first_row() const {
-    std::istringstream lines(content(in_scratch("result/volumetric_grid.csv")));
+    std::istringstream lines(content(path("result/volumetric_grid.csv")));
     std::string line;
     std::getline(lines, line);  // names
     std::getline(lines, line);
@@ -54,7 +46,7 @@ class TablesAtPoints : public ::testing::Test {
   }
 
  private:
-  testing::ScratchFolder scratch_;
+  testing::SimulatedCampaign simulated_;
 };
 
 TEST_F(TablesAtPoints, AgreeWithTheGrid) {
@@ -70,16 +62,19 @@ TEST_F(TablesAtPoints, AgreeWithTheGrid) {
     EXPECT_NEAR(errors[0].at("rotation_urad")[k].get<double>(), std::stod(row[7 + k]), 1e-6);
     EXPECT_NEAR(errors[0].at("u_um")[k].get<double>(), std::stod(row[10 + k]), 1e-4);
     EXPECT_GT(errors[0].at("u_um")[k].get<double>(), 0.0);
+    EXPECT_NEAR(errors[0].at("u_rotation_urad")[k].get<double>(), std::stod(row[13 + k]), 1e-4);
   }
+  EXPECT_EQ(errors[0].at("tool"), row[3]);
+  EXPECT_EQ(errors[0].at("extrapolated").get<bool>(), row[16] == "1");
 }
 
 TEST_F(TablesAtPoints, ListEveryToolAndWriteTheTablesBeside) {
-  const auto run = tables("--at X=10 --at Y=20,Z=-30 -o " + in_scratch("tables"));
+  const auto run = tables("--at X=10 --at Y=20,Z=-30 -o " + path("tables"));
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("ex +- U95 [um]"));
   EXPECT_THAT(run.output, HasSubstr("volumetric_grid.csv"));
   const auto json = nlohmann::json::parse(tables("--at X=10 --at Y=20,Z=-30 --json").output);
-  const auto machine = nlohmann::json::parse(content(in_scratch("result/result.json"))).at("machine");
+  const auto machine = nlohmann::json::parse(content(path("result/result.json"))).at("machine");
   const auto& errors = json.at("volumetric_errors");
   ASSERT_EQ(errors.size(), 2 * machine.at("tools").size());
   EXPECT_EQ(errors[0].at("position").at("X"), 10.0);

@@ -14,6 +14,8 @@
 namespace volcal::report {
 namespace {
 
+constexpr int kCosineDigits = 6;  // the page tells a squared sine of kSameSquaredSine from zero
+
 const EffectFinding* find_in(const std::vector<EffectFinding>& findings, const EffectName& name) {
   const auto found = std::ranges::find(findings, name, &EffectFinding::name);
   return found == findings.end() ? nullptr : &*found;
@@ -60,17 +62,6 @@ Json effect_json(const Diagnosis& diagnosis, const EffectName& name, const std::
           {"role", role},
           {"can_be_asked", find_effect(name.kind) != nullptr},
           {"limits", finding == nullptr ? Json::array() : limits_json(*finding)}};
-}
-
-/// Lower triangle without the diagonal, row by row; null: nothing of one of the two is visible.
-Json lower_triangle(const Eigen::MatrixXd& cosine) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < cosine.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k < i; ++k) row.push_back(rounded(cosine(i, k), 6));
-    rows.push_back(std::move(row));
-  }
-  return rows;
 }
 
 /// Name of an effect as findings are labelled.
@@ -120,7 +111,7 @@ Json confounding_page(const DiagnosisInput& input) {
     proposals.push_back(proposal_json(diagnosis, each));
   }
   return {{"effects", std::move(effects)},
-          {"cosine", lower_triangle(confounding.cosine)},
+          {"cosine", rounded_triangle(confounding.cosine, kCosineDigits, false)},
           {"same", kSameSquaredSine},
           {"proposals", std::move(proposals)}};
 }

@@ -8,16 +8,7 @@
 namespace volcal::report {
 namespace {
 
-/// Lower triangle, row by row.
-Json map_rows(const Eigen::MatrixXd& map) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < map.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k <= i; ++k) row.push_back(rounded(map(i, k), 3));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
+constexpr int kDigits = 3;  // of -log10 p
 
 }  // namespace
 
@@ -26,8 +17,8 @@ Json generic_map_page(const DiagnosisInput& input) {
   Json directions = Json::array();
   for (std::size_t d = 0; d < std::min(map.given.size(), std::size(kScanDirections)); ++d) {
     directions.push_back({{"name", kScanDirections[d]},
-                          {"given", map_rows(map.given[d])},
-                          {"reached", map_rows(map.reached[d])}});
+                          {"given", rounded_triangle(map.given[d], kDigits, true)},
+                          {"reached", rounded_triangle(map.reached[d], kDigits, true)}});
   }
   return {{"variables", map.variables},
           {"threshold", rounded(log10_generic_risk(), 4)},

@@ -50,6 +50,19 @@ TEST(Dense, LeastSquaresWithoutFullRankHasLeastNorm) {
   EXPECT_EQ(least_squares(Eigen::MatrixXd(0, 2), Eigen::VectorXd(0)).rank, 0);
 }
 
+TEST(Dense, LeastSquaresOfWhatIsNotFiniteIsNotANumber) {
+  const LeastSquares fitted = least_squares(Eigen::MatrixXd::Ones(2, 1),
+                                            Eigen::Vector2d(1.0, std::numeric_limits<double>::infinity()));
+  EXPECT_TRUE(fitted.solution.array().isNaN().all());
+  EXPECT_EQ(fitted.rank, 0);
+}
+
+TEST(Dense, NullSpaceTakesWhatIsWithinItsTolerance) {
+  const Eigen::MatrixXd rows = Eigen::Vector2d(1.0, 2e-7).asDiagonal();
+  EXPECT_EQ(null_space(rows).cols(), 1);
+  EXPECT_EQ(null_space(Eigen::Vector2d(1.0, 4e-7).asDiagonal().toDenseMatrix()).cols(), 0);
+}
+
 TEST(Dense, NullSpaceIsOrthonormalAndLosesDependentRows) {
   Eigen::MatrixXd rows(2, 3);
   rows << 1.0, 1.0, 1.0, 0.0, 1.0, -1.0;

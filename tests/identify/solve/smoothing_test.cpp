@@ -208,6 +208,20 @@ struct DirectReadings {
   }
 };
 
+TEST(SmoothingTerms, AreAlikeUpToAQuarterOfAnAmplitude) {
+  std::vector<SmoothingTerm> terms(2), others(2);
+  terms[0].lambda = terms[1].lambda = others[0].lambda = 4.0;
+  others[1].lambda = 4.0 / (1.25 * 1.25);
+  EXPECT_TRUE(alike(terms, others));
+  others[1].lambda = 4.0 / (1.30 * 1.30);
+  EXPECT_FALSE(alike(terms, others));
+  others = terms;
+  others[0].shape = 1;
+  EXPECT_FALSE(alike(terms, others));
+  others.pop_back();
+  EXPECT_FALSE(alike(terms, others));
+}
+
 TEST(MaximiseEvidence, FindsTheHighestPointOfTheDenseLikelihood) {
   DirectReadings readings(2 * kPriorLengths + 6, {4e-6, 8e-6, 2e-6, 6e-6, 5e-6, 3e-6});
   EvidenceOptions options;

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "volcal/identify/stats/remaining_error.h"
+#include "volcal/identify/stats/volumetric.h"
 #include "volcal/identify/tables/error_tables.h"
 
 namespace volcal::report {
@@ -38,19 +41,28 @@ double ToolVolume::u_max() const { return max_norm(u_w); }
 
 std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
   const KinematicChain chain(result.machine);
+  const RemainingErrors remaining_errors(result.covariance);
+  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   std::vector<ToolVolume> volumes;
-  for (const VolumetricError& error : volumetric_grid(result, per_axis)) {
-    if (volumes.empty() || volumes.back().tool != error.tool) {
-      volumes.emplace_back().tool = error.tool;
+  for (const Tool& tool : result.machine.tools) {
+    ToolVolume& volume = volumes.emplace_back();
+    volume.tool = tool.name;
+    Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size);
+    std::vector<Eigen::Vector3d> errors;
+    for (const AxisPosition& position : positions) {
+      const Eigen::Vector3d point_w = chain.nominal_point_w(position, tool.offset);
+      rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) =
+          volumetric_error_rows(result, position, tool).topRows<3>();
+      errors.emplace_back(rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) *
+                          result.parameters);
+      volume.point_w.push_back(point_w);
+      volume.extrapolated.push_back(is_extrapolated(result, position));
+      if (is_corner(result.machine, position)) volume.corner_w.push_back(point_w);
     }
-    ToolVolume& volume = volumes.back();
-    const Tool& tool = result.machine.tools[*result.machine.tool_index(error.tool)];
-    const Eigen::Vector3d point_w = chain.nominal_point_w(error.position, tool.offset);
-    volume.point_w.push_back(point_w);
-    volume.error_w.emplace_back(error.value.head<3>());
-    volume.u_w.emplace_back(error.u.head<3>());
-    volume.extrapolated.push_back(error.extrapolated);
-    if (is_corner(result.machine, error.position)) volume.corner_w.push_back(point_w);
+    volume.error_w = without_rigid_motion(volume.point_w, errors);
+    RemainingError remaining = remaining_errors.at(volume.point_w, rows);
+    volume.u_w = std::move(remaining.u);
+    volume.example_w = std::move(remaining.example);
   }
   return volumes;
 }

@@ -1,5 +1,6 @@
 #pragma once
-/// Volumetric error on a grid over the travel, as the report shows it.
+/// Volumetric error on a grid over the travel, as the report shows it: without its best rigid motion, which
+/// is a matter of how a frame was aligned (as `volcal validate` estimates the frame of its points).
 
 #include <Eigen/Core>
 #include <string>
@@ -15,7 +16,8 @@ struct ToolVolume {
   std::string tool;
   std::vector<Eigen::Vector3d> point_w;
   std::vector<Eigen::Vector3d> error_w;
-  std::vector<Eigen::Vector3d> u_w;  ///< standard uncertainty per component
+  std::vector<Eigen::Vector3d> u_w;        ///< standard uncertainty per component
+  std::vector<Eigen::Vector3d> example_w;  ///< an error that correction may leave (remaining_error.h)
   std::vector<bool> extrapolated;
   std::vector<Eigen::Vector3d>
       corner_w;  ///< of the travel: bits of the index = lower or upper ends of the axes

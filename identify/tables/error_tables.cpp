@@ -71,6 +71,11 @@ ErrorTableRow filled(const FitResult& result, const Eigen::VectorXd& row) {
   return table_row;
 }
 
+/// Of a tool whose offset was estimated.
+const ParameterBlock* find_tool_offset(const FitResult& result, const Tool& tool) {
+  return result.layout.find_block("tool " + tool.name);
+}
+
 bool outside(const FunctionSummary* summary, double q) {
   return summary != nullptr &&
          (q < summary->measured_min - kEdgeOfMeasured || q > summary->measured_max + kEdgeOfMeasured);
@@ -110,32 +115,42 @@ std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTable
   return table;
 }
 
+Eigen::Matrix<double, 6, Eigen::Dynamic> volumetric_error_rows(const FitResult& result,
+                                                               const AxisPosition& position,
+                                                               const Tool& tool) {
+  const KinematicChain chain(result.machine);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> rows =
+      pose_error_rows(chain, result.layout, position, tool.offset);
+  if (const ParameterBlock* fitted_offset = find_tool_offset(result, tool)) {
+    rows.block<3, 3>(0, fitted_offset->offset) = chain.nominal_rotation_wt(position);
+  }
+  return rows;
+}
+
 VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool) {
   VolumetricError error;
   error.position = position;
   error.tool = tool.name;
-  const KinematicChain chain(result.machine);
-  auto rows = pose_error_rows(chain, result.layout, position, tool.offset);
-  const ParameterBlock* fitted_offset = result.layout.find_block("tool " + tool.name);
-  if (fitted_offset != nullptr) {
-    rows.block<3, 3>(0, fitted_offset->offset) = chain.nominal_rotation_wt(position);
-  }
+  const auto rows = volumetric_error_rows(result, position, tool);
   error.value = rows * result.parameters;
   Eigen::Matrix<double, 6, 6> covariance = rows * result.covariance * rows.transpose();
-  if (fitted_offset == nullptr && tool.offset_sigma > 0.0) {
+  if (find_tool_offset(result, tool) == nullptr && tool.offset_sigma > 0.0) {
     covariance.topLeftCorner<3, 3>().diagonal().array() += tool.offset_sigma * tool.offset_sigma;
   }
   error.u = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  for (const FunctionSummary& function : result.functions) {
-    error.extrapolated = error.extrapolated || outside(&function, position[index_of(function.symbol.axis)]);
-  }
+  error.extrapolated = is_extrapolated(result, position);
   return error;
 }
 
-std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
-  std::vector<VolumetricError> grid;
+bool is_extrapolated(const FitResult& result, const AxisPosition& position) {
+  return std::ranges::any_of(result.functions, [&](const FunctionSummary& function) {
+    return outside(&function, position[index_of(function.symbol.axis)]);
+  });
+}
+
+std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis) {
   std::vector<AxisPosition> positions = {AxisPosition{}};
-  for (const Axis& axis : result.machine.axes) {
+  for (const Axis& axis : machine.axes) {
     if (is_rotary(axis.name)) continue;
     std::vector<AxisPosition> extended;
     for (const AxisPosition& position : positions) {
@@ -148,6 +163,12 @@ std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_ax
     }
     positions = std::move(extended);
   }
+  return positions;
+}
+
+std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
+  std::vector<VolumetricError> grid;
+  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   for (const Tool& tool : result.machine.tools) {
     for (const AxisPosition& position : positions) grid.push_back(volumetric_error(result, position, tool));
   }

@@ -40,9 +40,17 @@ struct VolumetricError {
   bool extrapolated = false;
 };
 
+/// Derivatives of ex ey ez ea eb ec of a tool at a commanded position to the parameters.
+Eigen::Matrix<double, 6, Eigen::Dynamic> volumetric_error_rows(const FitResult& result,
+                                                               const AxisPosition& position,
+                                                               const Tool& tool);
 /// Of the tool as it is: a tool whose offset was estimated moves by its fitted error, with the joint
 /// covariance; of another, the stated variance of its offset is added.
 VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool);
+/// Beyond the measured positions of an axis.
+bool is_extrapolated(const FitResult& result, const AxisPosition& position);
+/// `per_axis` positions on each linear axis, ends included, the last axis fastest; rotary axes at 0.
+std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis);
 /// Grid over the travel, `per_axis` positions each, for every tool.
 std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis);
 

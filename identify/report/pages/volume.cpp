@@ -47,6 +47,7 @@ Json tool_json(const ToolVolume& volume) {
           {"point_mm", points_json(volume.point_w, kPerMilli, 7)},
           {"error_um", points_json(volume.error_w, kPerMicro, 4)},
           {"u_um", points_json(volume.u_w, kPerMicro, 3)},
+          {"example_um", points_json(volume.example_w, kPerMicro, 3)},
           {"extrapolated", std::move(extrapolated)},
           {"corner_mm", points_json(volume.corner_w, kPerMilli, 7)},
           {"components", component_ranges(volume)},

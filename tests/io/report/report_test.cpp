@@ -142,6 +142,7 @@ TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
     EXPECT_EQ(tool.at("point_mm").size(), 125u);
     EXPECT_EQ(tool.at("error_um").size(), 125u);
     EXPECT_EQ(tool.at("u_um").size(), 125u);
+    EXPECT_EQ(tool.at("example_um").size(), 125u);
     EXPECT_EQ(tool.at("corner_mm").size(), 8u);
     EXPECT_GT(tool.at("error_rms_um").get<double>(), tool.at("u_rms_um").get<double>());
   }

@@ -19,41 +19,32 @@ const boxTrace = (tool) => ({
   hoverinfo: 'skip', name: 'work volume', showlegend: false,
 });
 
-function vectorTraces(tool, magnification) {
-  const size = tool.error_um.map(norm);
-  const tip = tool.point_mm.map((p, k) => p.map((v, i) => v + magnification * 1e-3 * tool.error_um[k][i]));
+const place = (tool, k) => `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm${tool.extrapolated[k] ? ', extrapolated' : ''}`;
+
+/** Arrows from the nominal points; both pictures have the shades of the errors before. */
+function vectorTraces(tool, vectors, textOf, magnification) {
+  const size = vectors.map(norm);
+  const tip = tool.point_mm.map((p, k) => p.map((v, i) => v + magnification * 1e-3 * vectors[k][i]));
   const shades = size.flatMap((s) => [s, s, s]);
-  const scale = sizeShades(Math.max(...size));
-  const text = tool.error_um.map((e, k) =>
-    `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>EX ${fixed(e[0], 2)}, EY ${fixed(e[1], 2)}, EZ ${fixed(e[2], 2)} µm<br>|E| ${fixed(size[k], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
+  const scale = sizeShades(tool.error_max_um);
   return [
     { ...segments(tool.point_mm.map((p, k) => [p, tip[k]])), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
     {
-      x: column(tip, 0), y: column(tip, 1), z: column(tip, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
+      x: column(tip, 0), y: column(tip, 1), z: column(tip, 2), text: vectors.map((_, k) => textOf(k)), type: 'scatter3d', mode: 'markers', showlegend: false,
       marker: { size: 2, color: size, ...scale, colorbar: colorBar('|E| [µm]', 0.88) }, hovertemplate: '%{text}<extra></extra>',
     },
   ];
 }
 
-/** Crosses of half-width u along each axis, at the same magnification as the vectors. */
-function uncertaintyTraces(tool, magnification) {
-  const size = tool.u_um.map(norm);
-  const scale = sizeShades(Math.max(...size));
-  const pairs = tool.point_mm.flatMap((p, k) => kComponents.map((_, i) => {
-    const half = magnification * 1e-3 * tool.u_um[k][i];
-    return [p.map((v, j) => (j === i ? v - half : v)), p.map((v, j) => (j === i ? v + half : v))];
-  }));
-  const shades = size.flatMap((s) => Array(9).fill(s));
-  const text = tool.u_um.map((u, k) =>
-    `at ${tool.point_mm[k].map((v) => fixed(v, 0)).join(', ')} mm<br>u(EX) ${fixed(u[0], 2)}, u(EY) ${fixed(u[1], 2)}, u(EZ) ${fixed(u[2], 2)} µm${tool.extrapolated[k] ? '<br>extrapolated' : ''}`);
-  return [
-    { ...segments(pairs), type: 'scatter3d', mode: 'lines', line: { width: 5, color: shades, ...scale }, hoverinfo: 'skip', showlegend: false },
-    {
-      x: column(tool.point_mm, 0), y: column(tool.point_mm, 1), z: column(tool.point_mm, 2), text, type: 'scatter3d', mode: 'markers', showlegend: false,
-      marker: { size: 1.6, color: size, ...scale, colorbar: colorBar('u [µm]', 0.88) }, hovertemplate: '%{text}<extra></extra>',
-    },
-  ];
-}
+const beforeTraces = (tool, magnification) => vectorTraces(tool, tool.error_um, (k) => {
+  const [x, y, z] = tool.error_um[k].map((v) => fixed(v, 2));
+  return `${place(tool, k)}<br>EX ${x}, EY ${y}, EZ ${z} µm<br>|E| ${fixed(norm(tool.error_um[k]), 2)} µm`;
+}, magnification);
+
+const afterTraces = (tool, magnification) => vectorTraces(tool, tool.example_um, (k) => {
+  const [x, y, z] = tool.u_um[k].map((v) => fixed(v, 2));
+  return `${place(tool, k)}<br>u(EX) ${x}, u(EY) ${y}, u(EZ) ${z} µm<br>|E| ${fixed(norm(tool.example_um[k]), 2)} µm in this example`;
+}, magnification);
 
 function setupTraces(data) {
   const instruments = [...new Set(data.setups.map((setup) => setup.instrument))];
@@ -182,7 +173,7 @@ export function renderVolume(body, data) {
   }
   controls.append(slider(view, redraw));
   const nodes = [el('div', { class: 'plot scene' }), el('div', { class: 'plot scene' })];
-  const traces = [vectorTraces, uncertaintyTraces];
+  const traces = [beforeTraces, afterTraces];
   const ready = [];
   nodes.forEach((node, k) => redraws.push(addPlot(node, () => ({
     data: [boxTrace(view.tool), ...traces[k](view.tool, view.magnification), ...(k === 0 ? setupTraces(data) : []), ...stationTraces(data.named_points, k === 0)],
@@ -196,7 +187,7 @@ export function renderVolume(body, data) {
     controls,
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
     el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
-    note('Left: error of the functional point relative to home, each line from the nominal point to the magnified actual one (dot). Right: crosses with arms of one standard uncertainty along x, y and z at the same magnification: the readings do not say in which direction the remaining error points, nor do they cover repeatability, temperature or effects that the model lacks.'),
+    note('Left: identified error of the functional point, each line from the nominal point to the magnified actual one (dot). Right, at the same magnification and with the same shades: one of the error fields that the readings leave possible once the identified errors are corrected, drawn from their joint uncertainty; its direction is not known, its size is that of the uncertainty. It does not cover repeatability, temperature or effects that the model lacks. The best rigid motion is removed from both, as `volcal validate` does; volumetric_grid.csv has the errors relative to home.'),
     note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
     ])]),
   );

@@ -22,11 +22,12 @@ constexpr double kStationMargin = 0.1;  // share of the box on each side
 constexpr double kLeastLength = 5e-3;   // m, variation of a prediction worth judging
 constexpr double kLeastAngle = 0.1;     // rad
 constexpr double kLeastCorrelation = 0.99;
+constexpr int kDigits = 4;  // of estimates from noisy readings
 
 std::string shown_mm(const Eigen::Vector3d& point) {
-  return "[" + number_text(point.x() / kMetrePerMillimetre) + ", " +
-         number_text(point.y() / kMetrePerMillimetre) + ", " + number_text(point.z() / kMetrePerMillimetre) +
-         "] mm";
+  return "[" + number_text(point.x() / kMetrePerMillimetre, kDigits) + ", " +
+         number_text(point.y() / kMetrePerMillimetre, kDigits) + ", " +
+         number_text(point.z() / kMetrePerMillimetre, kDigits) + "] mm";
 }
 
 [[noreturn]] void fail(const Campaign& campaign, const Setup& setup, const std::string& problem,
@@ -175,10 +176,10 @@ void check_units(const Campaign& campaign, const Setup& setup, std::vector<Eigen
     const bool judged =
         relation.predicted_range > least && std::abs(relation.correlation) > kLeastCorrelation;
     if (!judged || (relation.factor > 0.5 && relation.factor < 2.0)) continue;
-    throw InputError(
-        {setup.data, static_cast<int>(setup.readings.source_line.front())},
-        column + " changes by " + number_text(relation.factor) + " of what the commanded positions predict",
-        factor_remedy(relation.factor, column));
+    throw InputError({setup.data, static_cast<int>(setup.readings.source_line.front())},
+                     column + " changes by " + number_text(relation.factor, kDigits) +
+                         " of what the commanded positions predict",
+                     factor_remedy(relation.factor, column));
   }
 }
 
@@ -199,15 +200,15 @@ void check_shared_stations(const Campaign& campaign) {
       const bool both_known = sigma > 0.0 && other_sigma > 0.0;
       if (both_known && apart > allowed) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + number_text(apart / kMetrePerMillimetre) +
+             "station \"" + *name + "\" is " + number_text(apart / kMetrePerMillimetre, kDigits) +
                  " mm from where setup \"" + other->name + "\" (line " + std::to_string(other->source_line) +
                  ") puts it, over 5 sigma",
              "correct station_mm or station_sigma_mm, or give the station another name if it was moved");
       }
       if (!both_known && apart > kGuessSpread) {
         fail(campaign, *setup,
-             "station \"" + *name + "\" is " + number_text(apart) + " m from where setup \"" + other->name +
-                 "\" (line " + std::to_string(other->source_line) + ") puts it",
+             "station \"" + *name + "\" is " + number_text(apart, kDigits) + " m from where setup \"" +
+                 other->name + "\" (line " + std::to_string(other->source_line) + ") puts it",
              "correct station_mm, or give the station another name if it was moved");
       }
     }

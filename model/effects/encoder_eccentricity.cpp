@@ -54,10 +54,6 @@ std::vector<EffectSpec> encoder_eccentricities(const Campaign& campaign) {
   return specs;
 }
 
-KeySchema wave_key(const std::string& key, const std::string& help) {
-  return {.key = key, .help = help, .plausible_min = 1e-6, .plausible_max = 1e4};
-}
-
 }  // namespace
 
 const EffectKind& encoder_eccentricity_effect() {
@@ -73,8 +69,8 @@ const EffectKind& encoder_eccentricity_effect() {
                  .required = true,
                  .help = "which of the two",
                  .choices = {"azimuth", "elevation"}},
-                wave_key("cos_urad", "amplitude of the cosine of the angle read"),
-                wave_key("sin_urad", "amplitude of the sine of the angle read")}},
+                amplitude_key("cos_urad", "amplitude of the cosine of the angle read"),
+                amplitude_key("sin_urad", "amplitude of the sine of the angle read")}},
       make_encoder_eccentricity, encoder_eccentricities);
   return kind;
 }

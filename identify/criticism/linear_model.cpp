@@ -20,7 +20,7 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
   views_ = setup_views(campaign_, model_.binding(), model_.chain());
   std::vector<bool> removed;
   for (const ResidualRecord& record : result.residuals) {
-    if (record.removed) removed_by_fit_.push_back(removed.size());
+    if (record.removed && !record.left_out) removed_by_fit_.push_back(removed.size());
     removed.push_back(record.removed);
   }
   removed_ = removed_by_fit_;

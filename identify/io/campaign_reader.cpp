@@ -5,6 +5,7 @@
 
 #include "volcal/identify/io/campaign_checks.h"
 #include "volcal/identify/io/csv_table.h"
+#include "volcal/identify/io/left_out_readings.h"
 #include "volcal/identify/io/machine_reader.h"
 #include "volcal/identify/io/nearest_name.h"
 #include "volcal/identify/io/readings_reader.h"
@@ -38,6 +39,7 @@ struct DeclaredSetup {
   const InstrumentSchema* instrument = nullptr;
   ColumnMapping mapping;
   CsvFormat format;
+  std::vector<LeaveOut> leave_out;
   SourcePlace data_place;
 };
 
@@ -79,6 +81,7 @@ class CampaignReader {
       const CsvTable table = CsvTable::read(declared.setup.data, declared.format, declared.data_place);
       declared.setup.readings =
           read_readings(table, declared.mapping, campaign_.machine, *declared.instrument);
+      declared.setup.left_out = left_out_readings(declared.leave_out, declared.setup);
       check_setup(campaign_, declared.setup);
     }
     return description();
@@ -99,6 +102,7 @@ class CampaignReader {
     read_noise(table, *declared.instrument, setup);
     read_columns(table, declared.mapping);
     declared.format = read_format(table);
+    declared.leave_out = read_leave_out(table);
     return declared;
   }
 

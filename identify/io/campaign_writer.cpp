@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -129,6 +130,25 @@ std::string noise_toml(const Setup& setup, const InstrumentSchema& schema) {
   return inside.empty() ? "" : "noise = { " + inside + " }\n";
 }
 
+/// One entry per reason and column.
+std::string leave_out_toml(const Setup& setup, const InstrumentSchema& schema) {
+  if (setup.left_out.empty()) return {};
+  constexpr std::size_t kHeaderLines = 1;
+  std::map<std::pair<std::string, std::size_t>, std::string> rows;
+  for (const LeftOutReading& reading : setup.left_out) {
+    std::string& list = rows[{reading.reason, reading.channel}];
+    list += (list.empty() ? "" : ", ") + std::to_string(reading.row + 1 + kHeaderLines);
+  }
+  std::string text;
+  for (const auto& [entry, list] : rows) {
+    const auto& [reason, channel] = entry;
+    const std::string& column = schema.column_sets.at(setup.readings.column_set).at(channel).column;
+    text += fmt::format("{}{{ rows = [{}], columns = [{}], reason = {} }}", text.empty() ? "" : ", ", list,
+                        toml_text(column), toml_text(reason));
+  }
+  return "leave_out = [" + text + "]\n";
+}
+
 std::string setup_toml(const Setup& setup, const Machine& machine) {
   const InstrumentSchema& schema = schema_of(setup);
   std::string text = "\n[[setups]]\n";
@@ -141,6 +161,7 @@ std::string setup_toml(const Setup& setup, const Machine& machine) {
     if (!entry.empty()) text += entry + "\n";
   }
   if (setup.has_noise) text += noise_toml(setup, schema);
+  text += leave_out_toml(setup, schema);
   return text + "repeatability_um = " + edge_number(setup.repeatability, kMetrePerMicrometre) + "\n";
 }
 

@@ -164,7 +164,9 @@ std::string outliers_table(const FitResult& result, const Campaign& campaign) {
                   fixed_number(record.residual() * 1e6, 2),
                   residual_unit(campaign.setups[record.setup], static_cast<std::size_t>(record.channel)),
                   fixed_number(record.w, 1), fixed_number(record.redundancy, 2),
-                  record.removed ? "removed" : "kept"});
+                  record.left_out  ? "left out"
+                  : record.removed ? "removed"
+                                   : "kept"});
   }
   std::string more;
   if (flagged.size() > kListedOutliers)

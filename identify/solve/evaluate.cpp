@@ -114,6 +114,7 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
       }
     }
   }
+  for (const std::size_t observation : index.left_out()) weight[observation] = 0.0;
   const DatumSpace datum(
       model.layout(), campaign.machine, parameters, [](ErrorSymbol) { return false; },
       [](const ParameterBlock& block) { return !is_frozen_with_the_model(block); });
@@ -169,13 +170,18 @@ Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& re
   Spread spread;
   for (std::size_t i = 0; i < records.size();) {
     double squares = 0.0;
+    bool counts = false;
     const ResidualRecord& first = records[i];
     const bool angle = is_angle(first);
     do {
-      squares += records[i].residual() * records[i].residual();
+      if (!records[i].left_out) {
+        squares += records[i].residual() * records[i].residual();
+        counts = true;
+      }
       ++i;
     } while (i < records.size() && records[i].setup == first.setup && records[i].row == first.row &&
              is_angle(records[i]) == angle);
+    if (!counts) continue;
     (angle ? spread.angles : spread.lengths) += squares;
     (angle ? spread.max_angle : spread.max_length) =
         std::max(angle ? spread.max_angle : spread.max_length, std::sqrt(squares));
@@ -207,18 +213,19 @@ Validation validate(const Campaign& campaign, const FitResult& result, int threa
   figures.angle_max_after = after.max_angle;
   figures.lengths = after.length_count;
   figures.angles = after.angle_count;
-  std::size_t inside = 0;
+  std::size_t inside = 0, judged = 0;
   double chi2 = 0.0;
   for (std::size_t i = 0; i < validation.after.residuals.size(); ++i) {
     const ResidualRecord& record = validation.after.residuals[i];
+    if (record.left_out) continue;
+    ++judged;
     const double variance = record.sigma * record.sigma + std::pow(validation.after.model_u[i], 2);
     const double square = record.residual() * record.residual() / variance;
     chi2 += square;
     if (square <= 1.96 * 1.96) ++inside;
   }
   figures.reduced_chi2 = chi2 / std::max(1.0, validation.after.dof);
-  figures.coverage95 = static_cast<double>(inside) /
-                       static_cast<double>(std::max<std::size_t>(1, validation.after.residuals.size()));
+  figures.coverage95 = static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(1, judged));
   return validation;
 }
 

@@ -105,6 +105,7 @@ class Identification {
       }
     }
     removed_.assign(stated_sigma_.size(), false);
+    for (const std::size_t observation : index_.left_out()) removed_[observation] = true;
   }
 
   void group_by_instrument() {

@@ -54,6 +54,17 @@ ReadingIndex::ReadingIndex(const MeasurementModel& model) : model_(model) {
   for (const std::uint32_t i : order) sorted_.push_back(unsorted[i]);
 }
 
+std::vector<std::size_t> ReadingIndex::left_out() const {
+  std::vector<std::size_t> observations;
+  const auto& setups = model_.campaign().setups;
+  for (std::size_t setup = 0; setup < setups.size(); ++setup) {
+    for (const LeftOutReading& reading : setups[setup].left_out) {
+      observations.push_back(first_observation(setup, reading.row) + reading.channel);
+    }
+  }
+  return observations;
+}
+
 NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                                      const ceres::LossFunction* loss, int threads)
     : index_(index), weight_(weight), loss_(loss), threads_(std::max(1, threads)) {

@@ -39,6 +39,8 @@ class ReadingIndex {
   std::size_t first_observation(std::size_t setup, std::size_t row) const {
     return first_[setup] + row * static_cast<std::size_t>(model_.bound(setup).channels());
   }
+  /// Observations that the campaign leaves out, ascending.
+  std::vector<std::size_t> left_out() const;
   /// Readings sorted by knot cell, then setup.
   const std::vector<Reading>& sorted() const { return sorted_; }
   const MeasurementModel& model() const { return model_; }

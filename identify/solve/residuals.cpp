@@ -94,6 +94,7 @@ std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const st
     workers.emplace_back(work, readings * t / count, readings * (t + 1) / count);
   work(0, readings / count);
   for (std::thread& worker : workers) worker.join();
+  for (const std::size_t observation : index.left_out()) records[observation].left_out = true;
   return records;
 }
 
@@ -109,7 +110,7 @@ std::vector<std::size_t> worst_outliers(const std::vector<ResidualRecord>& recor
   for (const ResidualRecord& record : records) {
     Own& setup = setups[record.setup];
     setup.observations += 1.0;
-    setup.removed += record.removed ? 1.0 : 0.0;
+    setup.removed += record.removed && !record.left_out ? 1.0 : 0.0;
     if (in_question(record)) setup.largest = std::max(setup.largest, std::abs(record.w));
   }
   std::vector<std::size_t> worst;

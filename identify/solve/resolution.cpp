@@ -24,15 +24,24 @@ FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign&
   return function;
 }
 
+std::vector<double> measured_positions(const Campaign& campaign, AxisName axis) {
+  std::vector<double> positions;
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<bool> left_out = setup.rows_left_out();
+    const std::vector<double>& own = setup.readings.position[index_of(axis)];
+    for (std::size_t row = 0; row < own.size(); ++row) {
+      if (!left_out[row]) positions.push_back(own[row]);
+    }
+  }
+  return positions;
+}
+
 }  // namespace
 
 int automatic_intervals(const Campaign& campaign, AxisName axis) {
   const double resolution = campaign.machine.axis(axis).travel() * kDistinctShareOfTravel;
   std::set<long> distinct;
-  for (const Setup& setup : campaign.setups) {
-    for (const double q : setup.readings.position[index_of(axis)])
-      distinct.insert(std::lround(q / resolution));
-  }
+  for (const double q : measured_positions(campaign, axis)) distinct.insert(std::lround(q / resolution));
   return std::clamp(static_cast<int>(distinct.size()) - 1, 1, kMaxAutomaticIntervals);
 }
 
@@ -50,11 +59,9 @@ ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
 
 MeasuredRange measured_range(const Campaign& campaign, AxisName axis) {
   MeasuredRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const Setup& setup : campaign.setups) {
-    for (const double q : setup.readings.position[index_of(axis)]) {
-      range.min = std::min(range.min, q);
-      range.max = std::max(range.max, q);
-    }
+  for (const double q : measured_positions(campaign, axis)) {
+    range.min = std::min(range.min, q);
+    range.max = std::max(range.max, q);
   }
   return range;
 }

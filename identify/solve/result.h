@@ -33,6 +33,7 @@ struct ResidualRecord {
   double w = 0.0;           ///< residual / (sigma sqrt(redundancy)), standard normal; 0 without redundancy
   bool flagged = false;     ///< |w| above the critical value
   bool removed = false;     ///< taken out of the adjustment
+  bool left_out = false;    ///< the campaign asked for it: removed, and in no figure
 
   double residual() const { return reading - predicted; }
 };

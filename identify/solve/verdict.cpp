@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <sstream>
+#include <string>
 
 #include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/stats/chi_squared.h"
@@ -63,10 +66,27 @@ void report_noise(FitResult& result) {
   }
 }
 
+/// One message per setup and reason: rows as lines of the file.
+void report_left_out(const Campaign& campaign, FitResult& result) {
+  for (const Setup& setup : campaign.setups) {
+    std::map<std::string, std::set<std::int64_t>> rows_of_reason;
+    for (const LeftOutReading& reading : setup.left_out) {
+      rows_of_reason[reading.reason].insert(setup.readings.source_line[reading.row]);
+    }
+    for (const auto& [reason, rows] : rows_of_reason) {
+      std::string list;
+      for (const std::int64_t row : rows) list += (list.empty() ? "" : ", ") + std::to_string(row);
+      result.messages.push_back("setup \"" + setup.name + "\" leaves out " +
+                                (rows.size() == 1 ? "row " : "rows ") + list + ": " + reason);
+    }
+  }
+}
+
 void report_outliers(FitResult& result) {
   const auto flagged = std::ranges::count_if(result.residuals,
                                              [](const ResidualRecord& r) { return r.flagged && !r.removed; });
-  const auto removed = std::ranges::count_if(result.residuals, &ResidualRecord::removed);
+  const auto removed = std::ranges::count_if(
+      result.residuals, [](const ResidualRecord& r) { return r.removed && !r.left_out; });
   if (flagged > 0) {
     result.messages.push_back(std::to_string(flagged) +
                               " readings are flagged by the w-test and still in the adjustment; they are "
@@ -149,6 +169,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
   for (const std::string& sentence : result.rank.invisible) result.messages.push_back(sentence);
+  report_left_out(campaign, result);
   report_outliers(result);
   report_contradicted_priors(result);
   report_unrecorded_drivers(campaign, binding, result);

@@ -39,6 +39,7 @@ std::vector<SetupValues> values_by_setup(const Campaign& campaign, std::span<con
         {std::vector(setup.readings.channels(), empty), std::vector(setup.readings.channels(), empty), 0});
   }
   for (const ResidualRecord& record : records) {
+    if (record.left_out) continue;
     SetupValues& setup = values[record.setup];
     const auto channel = static_cast<std::size_t>(record.channel);
     setup.reading[channel][record.row] = record.reading;

@@ -31,6 +31,13 @@ struct Readings {
   std::size_t channels() const { return value.size(); }
 };
 
+/// A reading known to be wrong: no adjustment and no figure rests on it.
+struct LeftOutReading {
+  std::size_t row = 0;
+  std::size_t channel = 0;
+  std::string reason;
+};
+
 struct Setup {
   std::string name;
   std::string instrument;
@@ -42,6 +49,10 @@ struct Setup {
   bool has_noise = false;  ///< a noise table, campaign-wide or of the setup, applies
   double repeatability = 0;  ///< m, per component along the reading
   Readings readings;
+  std::vector<LeftOutReading> left_out;  ///< by row and channel, each once
+
+  /// Per row: every channel is left out.
+  std::vector<bool> rows_left_out() const;
 };
 
 struct Campaign {

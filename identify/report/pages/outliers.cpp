@@ -24,10 +24,11 @@ double chance_of_any(const FitResult& result) {
 Json outliers_page(const PageInput& input) {
   const FitResult& result = input.result;
   std::vector<const ResidualRecord*> suspects;
-  std::size_t removed = 0;
+  std::size_t removed = 0, left_out = 0;
   for (const ResidualRecord& record : result.residuals) {
     if (is_suspect(record)) suspects.push_back(&record);
-    if (record.removed) ++removed;
+    if (record.removed && !record.left_out) ++removed;
+    if (record.left_out) ++left_out;
   }
   std::ranges::stable_sort(suspects, std::greater<>(),
                            [](const auto* record) { return std::abs(record->w); });
@@ -45,13 +46,16 @@ Json outliers_page(const PageInput& input) {
                     {"sigma", rounded(record.sigma * kPerMicro, 3)},
                     {"redundancy", rounded(record.redundancy, 3)},
                     {"w", rounded(record.w, 4)},
-                    {"removed", record.removed}});
+                    {"state", record.left_out  ? "left out by the campaign"
+                              : record.removed ? "taken out"
+                                               : "kept"}});
   }
   return {{"critical", rounded(result.outlier_critical_value, 4)},
           {"chance", rounded(chance_of_any(result), 3)},
           {"observations", result.residuals.size()},
           {"suspect", suspects.size()},
           {"removed", removed},
+          {"left_out", left_out},
           {"rows", std::move(rows)}};
 }
 

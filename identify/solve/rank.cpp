@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWideDisplacement = 1e-3;
 constexpr double kWideRotation = 1e-3;
-constexpr double kWideSquareness = 10e-3;
+constexpr double kWideSquareness = 1e-3;
 constexpr double kWideNuisance = 1.0;
 constexpr double kCurvatureShare =
     1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room

@@ -1,7 +1,7 @@
 #pragma once
 /// What the data can determine, found before any covariance is asked for.
 ///
-/// Every error gets a very wide prior (1 mm, 1 mrad over the travel; squareness 10 mrad; nuisance parameters
+/// Every error gets a very wide prior (1 mm, 1 mrad over the travel and of squareness; nuisance parameters
 /// 1 m, 1 rad). A direction of the parameter space is invisible when the data improve that prior by less than
 /// a factor of ten in standard uncertainty. An error is not visible when the mean of its posterior variance
 /// over the measured travel is more than a hundredth of its prior variance. Both are free of the choice of

@@ -86,8 +86,12 @@ TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_TRUE(one.covariance == three.covariance);
 }
 
-TEST(Fit, ConvergesFromStationsGuessedFiveCentimetresOff) {
-  const auto simulated = sim::simulate(small_study(0, small_tracking()));
+class FitOfTracking : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FitOfTracking, ConvergesFromStationsGuessedFiveCentimetresOff) {
+  sim::Tracking tracking = small_tracking();
+  tracking.instrument = GetParam();
+  const auto simulated = sim::simulate(small_study(0, tracking));
   FitOptions options;
   options.noise = NoisePolicy::White;
   const FitResult good = fit(simulated.campaign, spline_model(4), options);
@@ -103,6 +107,8 @@ TEST(Fit, ConvergesFromStationsGuessedFiveCentimetresOff) {
   // Not equal to rounding: the length-proportional part of the noise is taken from the guess.
   EXPECT_LT((far.parameters - good.parameters).cwiseAbs().maxCoeff(), 0.2e-6);
 }
+
+INSTANTIATE_TEST_SUITE_P(Instruments, FitOfTracking, ::testing::Values("laser-tracer", "laser-tracker"));
 
 TEST(Fit, EstimatesAWrongStatedSigma) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));

@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 constexpr int kDegree = 3;
 constexpr double kSigma = 0.7e-6;    // m, of every reading
 constexpr double kWideError = 1e-3;  // m and rad
-constexpr double kWideSquareness = 1e-2;
+constexpr double kWideSquareness = 1e-3;
 constexpr double kWideNuisance = 1.0;  // m
 constexpr double kWeakCentre = 1e-4;   // m, default prior of a ball-bar's centre
 

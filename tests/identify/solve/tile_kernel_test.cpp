@@ -10,6 +10,11 @@
 #include "tests/support/random_matrix.h"
 
 namespace volcal {
+
+void PrintTo(InstructionSet set, std::ostream* out) {
+  *out << (set == InstructionSet::Plain ? "Plain" : set == InstructionSet::Avx2 ? "Avx2" : "Avx512");
+}
+
 namespace {
 
 using Eigen::MatrixXd;
@@ -89,7 +94,8 @@ TEST_P(TileKernelOn, AddsBlocksAndLeavesTheRestAlone) {
 
 INSTANTIATE_TEST_SUITE_P(Sets, TileKernelOn,
                          ::testing::Values(InstructionSet::Plain, InstructionSet::Avx2,
-                                           InstructionSet::Avx512));
+                                           InstructionSet::Avx512),
+                         ::testing::PrintToStringParamName());
 
 }  // namespace
 }  // namespace volcal

@@ -126,6 +126,8 @@ struct BadStudy {
   std::string expected;  ///< in the message
 };
 
+void PrintTo(const BadStudy& study, std::ostream* out) { *out << study.expected; }
+
 class BadSimulationFiles : public testing::TestWithParam<BadStudy> {};
 
 TEST_P(BadSimulationFiles, NamesLineAndProblem) {

@@ -65,6 +65,15 @@ struct Case {
   std::size_t column_set;
 };
 
+std::string name_of(const Case& tested) {
+  std::string name = tested.instrument->schema().name;
+  std::ranges::replace(name, '-', '_');
+  return name + (tested.all_keys ? "_all_keys_" : "_required_keys_") + std::to_string(tested.choice) +
+         "_columns_" + std::to_string(tested.column_set);
+}
+
+void PrintTo(const Case& tested, std::ostream* out) { *out << name_of(tested); }
+
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   for (const Instrument* instrument : instruments()) {
@@ -155,12 +164,8 @@ TEST_P(InstrumentContract, NuisanceBlocksAreNamedAndComplete) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, InstrumentContract, ::testing::ValuesIn(all_cases()), [](const auto& tested) {
-  std::string name = tested.param.instrument->schema().name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name + (tested.param.all_keys ? "_all_keys_" : "_required_keys_") +
-         std::to_string(tested.param.choice) + "_columns_" + std::to_string(tested.param.column_set);
-});
+INSTANTIATE_TEST_SUITE_P(All, InstrumentContract, ::testing::ValuesIn(all_cases()),
+                         ::testing::PrintToStringParamName());
 
 TEST(InstrumentSchemas, SayWhatTheyAre) {
   for (const Instrument* instrument : instruments()) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/stats/channels.h"
 
 namespace volcal {
 namespace {
@@ -43,8 +44,9 @@ Campaign ImaginedCampaign::extended(const Campaign& campaign) {
     for (const Tool& tool : measurement.tools) all.machine.tools.push_back(tool);
     for (Setup setup : measurement.setups) {
       if (setup.tool >= known_tools) setup.tool += first_tool - known_tools;
-      if (std::ranges::find(instruments_, setup.instrument) == instruments_.end()) {
-        instruments_.push_back(setup.instrument);
+      for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel) {
+        const std::string group = noise_group(setup, channel);
+        if (std::ranges::find(instruments_, group) == instruments_.end()) instruments_.push_back(group);
       }
       all.setups.push_back(std::move(setup));
     }
@@ -89,6 +91,11 @@ void ImaginedCampaign::map_parameters(const Campaign& campaign, const FitResult&
   }
 }
 
+std::size_t ImaginedCampaign::group_of(std::size_t setup, int channel) const {
+  const std::string group = noise_group(campaign_.setups[setup], static_cast<std::size_t>(channel));
+  return static_cast<std::size_t>(std::ranges::find(instruments_, group) - instruments_.begin());
+}
+
 ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
   const auto [first, count] = stretches_[measurement];
   std::vector<Eigen::VectorXd> derivatives;
@@ -98,8 +105,6 @@ ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
   MeasurementModel::DisturbanceRows disturbance;
   for (std::size_t setup = first; setup < first + count; ++setup) {
     const Readings& readings = campaign_.setups[setup].readings;
-    const auto group = static_cast<std::size_t>(
-        std::ranges::find(instruments_, campaign_.setups[setup].instrument) - instruments_.begin());
     std::map<std::pair<std::int32_t, int>, std::size_t> place;
     for (std::size_t i = 0; i < readings.size(); ++i) {
       model_.linearize(setup, i, parameters_, row);
@@ -107,7 +112,7 @@ ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
       for (int channel = 0; channel < row.channels; ++channel) {
         const std::int32_t run = readings.run.empty() ? 0 : readings.run[i];
         const auto [found, is_new] = place.try_emplace({run, channel}, out.data.sequences.size());
-        if (is_new) out.data.sequences.push_back({{}, {}, {}, group});
+        if (is_new) out.data.sequences.push_back({{}, {}, {}, group_of(setup, channel)});
         NoiseSequence& sequence = out.data.sequences[found->second];
         sequence.observation.push_back(derivatives.size());
         if (!readings.time.empty()) sequence.time.push_back(readings.time[i]);

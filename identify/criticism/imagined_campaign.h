@@ -46,6 +46,7 @@ class ImaginedCampaign {
   };
 
   Campaign extended(const Campaign& campaign);
+  std::size_t group_of(std::size_t setup, int channel) const;
   void map_parameters(const Campaign& campaign, const FitResult& result);
 
   std::vector<ExtraMeasurement> measurements_;

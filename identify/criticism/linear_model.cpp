@@ -45,7 +45,7 @@ void LinearModel::set_smoothing(std::vector<SmoothingTerm> smoothing) {
 void LinearModel::smooth(const Eigen::MatrixXd& gram, std::size_t observations) {
   if (smoothing_.empty()) return;
   const Eigen::Index count = gram.rows() - 1, own = reduced_.size();
-  const InstrumentEquations equations{gram.topLeftCorner(count, count), -gram.col(count).head(count),
+  const NoiseGroupEquations equations{gram.topLeftCorner(count, count), -gram.col(count).head(count),
                                       gram(count, count), static_cast<double>(observations)};
   Eigen::VectorXd from = Eigen::VectorXd::Zero(count);
   from.head(own) = reduced_;

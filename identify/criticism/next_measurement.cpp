@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/measurement_planner.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
@@ -197,7 +198,9 @@ class Proposer {
   double worth(const ExtraMeasurement& measurement) const {
     const auto& used = state_.model.instruments();
     const bool at_hand = std::ranges::all_of(measurement.setups, [&](const Setup& setup) {
-      return std::ranges::find(used, setup.instrument) != used.end();
+      return std::ranges::any_of(used, [&](const std::string& group) {
+        return instrument_of_noise_group(group) == setup.instrument;
+      });
     });
     return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kEffort;
   }

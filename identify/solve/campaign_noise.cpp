@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/even_sample.h"
 
 namespace volcal {
@@ -63,9 +64,10 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
         sequence_of.try_emplace({setup_index, run, channel}, noise.data.sequences.size());
     if (is_new) {
       noise.data.sequences.emplace_back();
-      const auto known = std::ranges::find(noise.instruments, setup.instrument);
+      const std::string group = noise_group(setup, static_cast<std::size_t>(channel));
+      const auto known = std::ranges::find(noise.instruments, group);
       noise.data.sequences.back().group = static_cast<std::size_t>(known - noise.instruments.begin());
-      if (known == noise.instruments.end()) noise.instruments.push_back(setup.instrument);
+      if (known == noise.instruments.end()) noise.instruments.push_back(group);
     }
     NoiseSequence& sequence = noise.data.sequences[found->second];
     sequence.observation.push_back(i);

@@ -18,8 +18,8 @@ constexpr double kNegligibleStep = 1e-6;  // step^T (M + P) step: a thousandth o
 constexpr int kRenewals = 4;              // of what the model holds fixed; then it stays, and steps contract
 constexpr int kMostIterations = 12;
 
-InstrumentEquations sum_of(const std::vector<InstrumentEquations>& equations) {
-  InstrumentEquations total = equations.front();
+NoiseGroupEquations sum_of(const std::vector<NoiseGroupEquations>& equations) {
+  NoiseGroupEquations total = equations.front();
   for (std::size_t g = 1; g < equations.size(); ++g) {
     total.matrix += equations[g].matrix;
     total.gradient += equations[g].gradient;
@@ -122,11 +122,11 @@ void WhitenedCampaign::fill(const std::vector<std::size_t>& observations, const 
   }
 }
 
-std::vector<InstrumentEquations> WhitenedCampaign::equations(const Eigen::VectorXd& z) const {
+std::vector<NoiseGroupEquations> WhitenedCampaign::equations(const Eigen::VectorXd& z) const {
   const Eigen::VectorXd raw = datum_.raw(z);
   const TabulatedFunctions tabulated = model_.tabulate(raw);
   const Eigen::Index size = raw.size();
-  std::vector<InstrumentEquations> equations;
+  std::vector<NoiseGroupEquations> equations;
   for (std::size_t group = 0; group < noise_.instruments.size(); ++group) {
     const Whitener::GroupGram sums = whitener_.gram_of_group(
         group, size + 1,
@@ -147,14 +147,14 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
                                        std::vector<SmoothingTerm>& terms, Eigen::VectorXd& z) {
   CorrelatedAdjustment result;
   while (!result.converged && result.iterations < kMostIterations) {
-    const std::vector<InstrumentEquations> equations = campaign.equations(z);
+    const std::vector<NoiseGroupEquations> equations = campaign.equations(z);
     if (result.iterations < evidence_rounds && !terms.empty()) {
       const std::vector<double> unscaled(equations.size(), 1.0);
       maximise_evidence(equations, z, prior, {.variance_components = false}, unscaled, terms);
     }
     GaussianPrior total = prior;
     add_smoothing(terms, total);
-    const InstrumentEquations sums = sum_of(equations);
+    const NoiseGroupEquations sums = sum_of(equations);
     const auto factor = cholesky_lower(sums.matrix + total.precision);
     if (!factor) throw std::runtime_error("adjust_correlated: the normal matrix is not positive definite");
     result.covariance = inverse_from_cholesky(*factor);

@@ -40,7 +40,7 @@ class WhitenedCampaign {
                    const std::vector<NoiseParameters>& parameters, int threads);
 
   /// Per instrument, about the reduced parameters z: M, g, squares of the whitened errors.
-  std::vector<InstrumentEquations> equations(const Eigen::VectorXd& z) const;
+  std::vector<NoiseGroupEquations> equations(const Eigen::VectorXd& z) const;
 
  private:
   void fill(const std::vector<std::size_t>& observations, const Eigen::VectorXd& raw,

@@ -15,6 +15,7 @@
 #include "volcal/identify/solve/smoothing.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/solve/verdict.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
@@ -55,13 +56,14 @@ class Identification {
         index_(model_) {
     result_.machine = campaign.machine;
     parameters_ = model_.initial_parameters();
-    set_sigma();
-    group_by_instrument();
+    start_weights();
+    group_observations();
   }
 
   FitResult run() {
     progress("nuisance parameters on the nominal machine", 0.0);
     fit_nuisance();
+    renew_sigma_of_angles();
     check_plausible();
     lap("nuisance parameters");
     progress("rank analysis", 0.1);
@@ -88,43 +90,68 @@ class Identification {
   }
   void lap(const std::string& stage) { result_.timings.push_back({stage, stopwatch_.lap()}); }
 
-  void set_sigma() {
-    stated_sigma_.resize(index_.observations());
-    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-      for (std::size_t row = 0; row < campaign_.setups[setup].readings.size(); ++row) {
-        for (int channel = 0; channel < model_.bound(setup).channels(); ++channel) {
-          const double sigma = model_.sigma(setup, row, channel, parameters_);
-          if (!(sigma > 0.0)) {
-            throw InputError({campaign_.file, campaign_.setups[setup].source_line},
-                             "setup \"" + campaign_.setups[setup].name +
-                                 "\": the standard deviation of its readings is zero",
-                             "give noise = { constant_um = ... } or a sigma_um column");
-          }
-          stated_sigma_[index_.first_observation(setup, row) + static_cast<std::size_t>(channel)] = sigma;
+  void set_sigma(std::size_t setup) {
+    for (std::size_t row = 0; row < campaign_.setups[setup].readings.size(); ++row) {
+      for (int channel = 0; channel < model_.bound(setup).channels(); ++channel) {
+        const double sigma = model_.sigma(setup, row, channel, parameters_);
+        if (!(sigma > 0.0)) {
+          throw InputError({campaign_.file, campaign_.setups[setup].source_line},
+                           "setup \"" + campaign_.setups[setup].name +
+                               "\": the standard deviation of its readings is zero",
+                           "give noise = { constant_um = ... } or a sigma_um column");
         }
+        stated_sigma_[index_.first_observation(setup, row) + static_cast<std::size_t>(channel)] = sigma;
       }
     }
+  }
+
+  void start_weights() {
+    stated_sigma_.resize(index_.observations());
+    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) set_sigma(setup);
     removed_.assign(stated_sigma_.size(), false);
     for (const std::size_t observation : index_.left_out()) removed_[observation] = true;
   }
 
-  void group_by_instrument() {
-    for (const Setup& setup : campaign_.setups) {
-      const auto found = std::ranges::find(instruments_, setup.instrument);
-      instrument_of_setup_.push_back(static_cast<std::size_t>(found - instruments_.begin()));
-      if (found == instruments_.end()) instruments_.push_back(setup.instrument);
+  /// The machine's repeatability moves an angle by its share of the distance, which was a guess.
+  void renew_sigma_of_angles() {
+    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
+      const Setup& source = campaign_.setups[setup];
+      bool angles = false;
+      for (std::size_t channel = 0; channel < source.readings.channels(); ++channel) {
+        angles = angles || is_angle_channel(source, channel);
+      }
+      if (angles) set_sigma(setup);
     }
-    scale_.assign(instruments_.size(), 1.0);
+  }
+
+  void group_observations() {
+    for (const Setup& setup : campaign_.setups) {
+      std::vector<std::size_t>& groups = group_of_channel_.emplace_back();
+      for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel) {
+        const std::string group = noise_group(setup, channel);
+        const auto found = std::ranges::find(noise_groups_, group);
+        groups.push_back(static_cast<std::size_t>(found - noise_groups_.begin()));
+        if (found == noise_groups_.end()) noise_groups_.push_back(group);
+      }
+    }
+    scale_.assign(noise_groups_.size(), 1.0);
+  }
+
+  /// Calls visit(observation, noise group) for every observation of a setup.
+  template <class Visit>
+  void for_each_observation(std::size_t setup, const Visit& visit) const {
+    const std::vector<std::size_t>& groups = group_of_channel_[setup];
+    std::size_t observation = index_.first_observation(setup, 0);
+    for (std::size_t row = 0; row < campaign_.setups[setup].readings.size(); ++row) {
+      for (const std::size_t group : groups) visit(observation++, group);
+    }
   }
 
   std::vector<double> sigma() const {
     if (!noise_.empty()) return total_sigma(campaign_noise_.data, stated_sigma_, noise_);
     std::vector<double> sigma = stated_sigma_;
     for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-      const std::size_t begin = index_.first_observation(setup, 0);
-      const std::size_t count =
-          campaign_.setups[setup].readings.size() * static_cast<std::size_t>(model_.bound(setup).channels());
-      for (std::size_t i = begin; i < begin + count; ++i) sigma[i] *= scale_[instrument_of_setup_[setup]];
+      for_each_observation(setup, [&](std::size_t i, std::size_t group) { sigma[i] *= scale_[group]; });
     }
     return sigma;
   }
@@ -245,15 +272,27 @@ class Identification {
     parameters_ = datum_->raw(z_);
   }
 
-  std::vector<InstrumentEquations> instrument_equations() const {
-    std::vector<InstrumentEquations> equations;
-    const std::vector<double> weight = weights(stated_sigma_);
-    NormalAccumulator accumulator(index_, weight, nullptr, threads_);
-    for (std::size_t g = 0; g < instruments_.size(); ++g) {
-      std::vector<bool> include;
-      for (const std::size_t instrument : instrument_of_setup_) include.push_back(instrument == g);
-      const NormalEquations& sums =
-          accumulator.accumulate(parameters_, instruments_.size() == 1 ? nullptr : &include);
+  /// Stated weights of one noise group's observations, none of the others in its setups.
+  std::vector<double> weights_of(std::size_t noise_group, const std::vector<bool>& setups) const {
+    std::vector<double> weight = weights(stated_sigma_);
+    for (std::size_t setup = 0; setup < setups.size(); ++setup) {
+      if (!setups[setup]) continue;
+      for_each_observation(setup, [&](std::size_t i, std::size_t g) {
+        if (g != noise_group) weight[i] = 0.0;
+      });
+    }
+    return weight;
+  }
+
+  std::vector<NoiseGroupEquations> noise_group_equations() const {
+    std::vector<NoiseGroupEquations> equations;
+    for (std::size_t g = 0; g < noise_groups_.size(); ++g) {
+      std::vector<bool> setups;
+      for (const auto& groups : group_of_channel_)
+        setups.push_back(std::ranges::find(groups, g) != groups.end());
+      const std::vector<double> weight = weights_of(g, setups);
+      NormalAccumulator accumulator(index_, weight, nullptr, threads_);
+      const NormalEquations& sums = accumulator.accumulate(parameters_, &setups);
       equations.push_back({datum_->reduce_matrix(sums.matrix), datum_->reduce_gradient(sums.gradient),
                            sums.squares, static_cast<double>(sums.observations)});
     }
@@ -264,7 +303,7 @@ class Identification {
     EvidenceOptions evidence;
     evidence.variance_components = options_.variance_components;
     const EvidenceState state =
-        maximise_evidence(instrument_equations(), z_, base_prior_, evidence, scale_, terms_);
+        maximise_evidence(noise_group_equations(), z_, base_prior_, evidence, scale_, terms_);
     scale_ = state.scale;
   }
 
@@ -407,18 +446,21 @@ class Identification {
   }
 
   void summarise_variance_components() {
-    for (std::size_t g = 0; g < instruments_.size(); ++g) {
-      VarianceComponent component;
-      component.instrument = instruments_[g];
-      component.scale = scale_[g];
-      for (std::size_t i = 0; i < campaign_.setups.size(); ++i) {
-        if (instrument_of_setup_[i] != g) continue;
-        component.redundancy += result_.setups[i].redundancy;
-        component.observations += result_.setups[i].observations;
-      }
+    auto& components = result_.variance_components;
+    for (std::size_t g = 0; g < noise_groups_.size(); ++g) {
+      components.emplace_back().instrument = noise_groups_[g];
+      components.back().scale = scale_[g];
+    }
+    for (const ResidualRecord& record : result_.residuals) {
+      if (record.removed) continue;
+      VarianceComponent& own =
+          components[group_of_channel_[record.setup][static_cast<std::size_t>(record.channel)]];
+      own.redundancy += record.redundancy;
+      ++own.observations;
+    }
+    for (VarianceComponent& component : components) {
       component.scale_u =
           component.redundancy > 0.0 ? component.scale / std::sqrt(2.0 * component.redundancy) : 0.0;
-      result_.variance_components.push_back(component);
     }
     for (std::size_t g = 0; g < noise_.size(); ++g) {
       auto& component = *std::ranges::find(result_.variance_components, campaign_noise_.instruments[g],
@@ -459,8 +501,8 @@ class Identification {
   ReadingIndex index_;
   std::vector<double> stated_sigma_;
   std::vector<bool> removed_;
-  std::vector<std::string> instruments_;
-  std::vector<std::size_t> instrument_of_setup_;
+  std::vector<std::string> noise_groups_;
+  std::vector<std::vector<std::size_t>> group_of_channel_;  ///< per setup
   std::vector<double> scale_;
   Eigen::VectorXd parameters_;
   std::unique_ptr<DatumSpace> datum_;

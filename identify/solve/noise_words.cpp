@@ -15,7 +15,7 @@ std::string meaning(const std::string& term) {
 }
 
 std::string unit_of(const NoiseRow& row, const std::string& instrument) {
-  if (row.unit == "m or rad") return residual_units(instrument);
+  if (row.unit == "m or rad") return noise_group_unit(instrument);
   if (row.unit == "m/m") return "um/m";
   return row.unit == "1" ? "" : row.unit;
 }

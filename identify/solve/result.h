@@ -54,7 +54,7 @@ struct SetupSummary {
 /// Variance component of one instrument: the stated sigma must be multiplied by `scale` (1 = as stated). With
 /// correlated noise that of its independent part.
 struct VarianceComponent {
-  std::string instrument;
+  std::string instrument;  ///< noise group (channels.h)
   double scale = 1.0;
   double scale_u = 0.0;  ///< standard uncertainty of the scale
   double redundancy = 0.0;

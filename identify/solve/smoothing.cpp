@@ -211,7 +211,7 @@ std::size_t common_shape(std::vector<AxisShapes>& axes) {
 
 class EvidenceSearch {
  public:
-  EvidenceSearch(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
+  EvidenceSearch(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
                  const GaussianPrior& prior, const EvidenceOptions& options,
                  const std::vector<SmoothingTerm>& terms)
       : equations_(equations), z0_(z0), prior_(prior), options_(options) {
@@ -246,7 +246,7 @@ class EvidenceSearch {
   }
 
   double updated_scale(std::size_t g, double scale, const Posterior& now) const {
-    const InstrumentEquations& instrument = equations_[g];
+    const NoiseGroupEquations& instrument = equations_[g];
     const double hat = now.covariance.cwiseProduct(instrument.matrix).sum() / (scale * scale);
     const double redundancy = instrument.observations - hat;
     if (redundancy < kMinimumRedundancy) return scale;
@@ -322,7 +322,7 @@ class EvidenceSearch {
     return {all, z0_, mine};
   }
 
-  const std::vector<InstrumentEquations>& equations_;
+  const std::vector<NoiseGroupEquations>& equations_;
   const Eigen::VectorXd& z0_;
   const GaussianPrior& prior_;
   const EvidenceOptions& options_;
@@ -366,7 +366,7 @@ void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior
   }
 }
 
-EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
+EvidenceState maximise_evidence(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
                                 const GaussianPrior& prior, const EvidenceOptions& options,
                                 std::vector<double> scale, std::vector<SmoothingTerm>& terms) {
   Hyperparameters at{{}, {}, std::move(scale)};

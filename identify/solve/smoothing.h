@@ -44,8 +44,8 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others);
 void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior);
 
-/// Quadratic model of one instrument's readings about z0: M, J^T W (predicted - reading), weighted squares.
-struct InstrumentEquations {
+/// Quadratic model of one noise group's readings about z0: M, J^T W (predicted - reading), weighted squares.
+struct NoiseGroupEquations {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd gradient;
   double squares = 0.0;
@@ -63,7 +63,7 @@ struct EvidenceState {
 
 /// Updates `terms` and the instrument scales. `equations` hold stated weights, `prior` everything but
 /// smoothing.
-EvidenceState maximise_evidence(const std::vector<InstrumentEquations>& equations, const Eigen::VectorXd& z0,
+EvidenceState maximise_evidence(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
                                 const GaussianPrior& prior, const EvidenceOptions& options,
                                 std::vector<double> scale, std::vector<SmoothingTerm>& terms);
 

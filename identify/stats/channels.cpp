@@ -1,11 +1,16 @@
 #include "volcal/identify/stats/channels.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
+
+constexpr const char* kAngles = " angles";
 
 bool is_angle_column(const std::string& column) {
   const std::string_view unit = unit_of_key(column).suffix;
@@ -42,14 +47,29 @@ std::string residual_unit(const Setup& setup, std::size_t channel) {
   return is_angle_channel(setup, channel) ? "urad" : "um";
 }
 
-std::string residual_units(const std::string& instrument) {
-  const Instrument* known = find_instrument(instrument);
+std::string noise_group(const Setup& setup, std::size_t channel) {
+  const Instrument* instrument = find_instrument(setup.instrument);
+  const bool angle = is_angle_channel(setup, channel);
+  const auto& columns = instrument->schema().column_sets.at(setup.readings.column_set);
+  const bool reads_both = angle && std::ranges::any_of(columns, [](const ColumnSchema& each) {
+                            return !is_angle_column(each.column);
+                          });
+  return setup.instrument + (reads_both ? kAngles : "");
+}
+
+std::string instrument_of_noise_group(const std::string& group) {
+  return group.ends_with(kAngles) ? group.substr(0, group.size() - std::strlen(kAngles)) : group;
+}
+
+std::string noise_group_unit(const std::string& group) {
+  if (group.ends_with(kAngles)) return "urad";
+  const Instrument* known = find_instrument(group);
   if (known == nullptr) return "um or urad";
-  bool length = false, angle = false;
-  for (const auto& columns : known->schema().column_sets) {
-    for (const auto& each : columns) (is_angle_column(each.column) ? angle : length) = true;
-  }
-  return angle && length ? "um or urad" : angle ? "urad" : "um";
+  const bool lengths = std::ranges::any_of(known->schema().column_sets, [](const auto& columns) {
+    return std::ranges::any_of(columns,
+                               [](const ColumnSchema& each) { return !is_angle_column(each.column); });
+  });
+  return lengths ? "um" : "urad";
 }
 
 }  // namespace volcal

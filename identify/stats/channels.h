@@ -17,7 +17,12 @@ bool is_angle_channel(const Setup& setup, std::size_t channel);
 std::vector<std::vector<bool>> angle_channels(const Campaign& campaign);
 /// Edge unit of a channel's residuals: "urad" or "um".
 std::string residual_unit(const Setup& setup, std::size_t channel);
-/// Of any reading of an instrument: "um", "urad", or "um or urad" of one that reads both and of one unknown.
-std::string residual_units(const std::string& instrument);
+/// Readings whose noise is estimated together: those of an instrument; of one that reads both, its lengths
+/// ("laser-tracker") and its angles ("laser-tracker angles") apart.
+std::string noise_group(const Setup& setup, std::size_t channel);
+/// Name of the instrument of a noise group.
+std::string instrument_of_noise_group(const std::string& group);
+/// Edge unit of a noise group's residuals: "urad" or "um"; "um or urad" of an unknown instrument.
+std::string noise_group_unit(const std::string& group);
 
 }  // namespace volcal

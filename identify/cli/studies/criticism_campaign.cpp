@@ -15,6 +15,7 @@
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
@@ -119,8 +120,9 @@ class Yardstick {
  private:
   std::vector<NoiseParameters> true_noise() const {
     std::vector<NoiseParameters> noise;
-    for (const std::string& instrument : model_.instruments()) {
-      const auto plan = std::ranges::find(simulated_.plans, instrument, &sim::SetupPlan::instrument);
+    for (const std::string& group : model_.instruments()) {
+      const auto plan =
+          std::ranges::find(simulated_.plans, instrument_of_noise_group(group), &sim::SetupPlan::instrument);
       noise.push_back(
           {.wander = plan->noise.wander, .tau = plan->noise.wander_time, .line = plan->noise.line});
     }

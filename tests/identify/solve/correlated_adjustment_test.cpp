@@ -176,7 +176,7 @@ TEST(CorrelatedAdjustment, RemovedReadingsHaveNoPartInTheEquations) {
   const WhitenedCampaign whitened(problem.model(), problem.datum(), noise, kTwoNoises, 1);
   const auto equations = whitened.equations(problem.z);
   double observations = 0.0;
-  for (const InstrumentEquations& own : equations) observations += own.observations;
+  for (const NoiseGroupEquations& own : equations) observations += own.observations;
   EXPECT_EQ(observations, static_cast<double>(problem.sigma.size() - 3));
 
   std::vector<Eigen::Index> kept;

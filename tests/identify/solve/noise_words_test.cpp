@@ -14,7 +14,8 @@ TEST(EdgeNoise, IsInTheUnitThatTheInstrumentReads) {
   EXPECT_EQ(edge.meaning, "slow wander");
   EXPECT_EQ(edge.unit, "um");
   EXPECT_EQ(edge_noise(wander, "angle").unit, "urad");
-  EXPECT_EQ(edge_noise(wander, "laser-tracker").unit, "um or urad");
+  EXPECT_EQ(edge_noise(wander, "laser-tracker").unit, "um");
+  EXPECT_EQ(edge_noise(wander, "laser-tracker angles").unit, "urad");
   EXPECT_EQ(edge_noise(wander, "an instrument of another version").unit, "um or urad");
 }
 

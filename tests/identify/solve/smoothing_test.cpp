@@ -133,7 +133,7 @@ TEST(PriorShapes, NoneForABasisOfStraightLines) {
 /// Functions, each read directly at 61 positions.
 struct DirectReadings {
   std::vector<SmoothingTerm> terms;
-  std::vector<InstrumentEquations> equations;
+  std::vector<NoiseGroupEquations> equations;
   GaussianPrior prior = GaussianPrior::none(0);
   Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(61, 0.0, 1.0);
   std::vector<Eigen::VectorXd> values;
@@ -272,7 +272,7 @@ TEST(MaximiseEvidence, SetsAnAxisApartThatIsPlainlyRougher) {
 
 TEST(MaximiseEvidence, FindsTheStandardDeviation) {
   DirectReadings readings(6, {4e-6, 8e-6, 2e-6, 6e-6, 5e-6, 3e-6});
-  for (InstrumentEquations& instrument : readings.equations) {  // stated twice as large as it is
+  for (NoiseGroupEquations& instrument : readings.equations) {  // stated twice as large as it is
     instrument.matrix /= 4.0;
     instrument.gradient /= 4.0;
     instrument.squares /= 4.0;

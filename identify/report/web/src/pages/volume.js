@@ -160,7 +160,7 @@ export function renderVolume(body, data) {
   const describe = () => {
     const { tool } = view;
     captions[0].replaceChildren(el('strong', {}, 'Before: '), `identified error, RMS ${fixed(tool.error_rms_um, 1)} µm, max ${fixed(tool.error_max_um, 1)} µm`);
-    captions[1].replaceChildren(el('strong', {}, 'After: '), `what perfect compensation is expected to leave, RMS ${fixed(tool.u_rms_um, 2)} µm, max ${fixed(tool.u_max_um, 2)} µm (k = 1)`);
+    captions[1].replaceChildren(el('strong', {}, 'After: '), `what correction would leave, RMS ${fixed(tool.u_rms_um, 2)} µm, max ${fixed(tool.u_max_um, 2)} µm (k = 1)`);
     tables.replaceChildren(componentTable(tool));
   };
   const controls = el('div', { class: 'controls' });

@@ -242,7 +242,7 @@ std::string remark_of(const ComparedModel& model, std::size_t i) {
 
 std::string worst_text(const Campaign& campaign, std::span<const ComparedModel> models, std::size_t count) {
   const bool two = models.size() > 1;
-  std::vector<TextColumn> columns = {{"setup", Align::Left}, {"line"}, {"channel", Align::Left}};
+  std::vector<TextColumn> columns = {{"setup", Align::Left}, {"line of file"}, {"channel", Align::Left}};
   for (std::size_t m = 0; m < models.size(); ++m)
     columns.push_back({std::string("residual") + (two ? kSuffix[m] : "")});
   if (two) columns.push_back({"B - A"});

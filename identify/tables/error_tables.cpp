@@ -52,7 +52,8 @@ const FunctionSummary* summary_of(const FitResult& result, ErrorSymbol symbol) {
 Eigen::VectorXd table_row(const FitResult& result, ErrorSymbol symbol, double q, int direction,
                           bool zero_plus) {
   Eigen::VectorXd row = Eigen::VectorXd::Zero(result.layout.size);
-  if (const auto place = result.layout.find(symbol)) {
+  const bool at_home = q == result.machine.axis(symbol.axis).home;  // where the datum makes it zero
+  if (const auto place = result.layout.find(symbol); place && !at_home) {
     const FunctionGroup& group = result.layout.groups[static_cast<std::size_t>(place->group)];
     const Eigen::VectorXd values = group.basis->row(q);
     for (int j = 0; j < group.basis->size(); ++j) row[group.index(j, place->slot)] = values[j];

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -66,6 +67,22 @@ TEST_F(TablesAtPoints, AgreeWithTheGrid) {
   }
   EXPECT_EQ(errors[0].at("tool"), row[3]);
   EXPECT_EQ(errors[0].at("extrapolated").get<bool>(), row[16] == "1");
+}
+
+/// By the datum every function is zero at home, without the rounding of its coefficients.
+TEST_F(TablesAtPoints, OfFunctionsAreZeroAtHome) {
+  const std::map<std::string, std::string> home = {{"X", "-400"}, {"Y", "-250"}, {"Z", "0"}};
+  std::istringstream lines(content(path("result/error_tables.csv")));
+  int found = 0;
+  for (std::string line; std::getline(lines, line);) {
+    for (const auto& [axis, position] : home) {
+      const std::string place = "," + axis + "," + position + ",mm,0,";
+      if (line.find(place) == std::string::npos) continue;
+      EXPECT_THAT(line, ::testing::ContainsRegex(place + "0,u(m|rad),0,0,0$"));
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, 18);
 }
 
 TEST_F(TablesAtPoints, ListEveryToolAndWriteTheTablesBeside) {

@@ -37,9 +37,8 @@ volumetric_rms_um = [15.5, 21.5]
 [[temperatures]]
 channel = "column"
 start_degC = 20.0
-drift_K_per_hour = 0.6
-amplitude_K = 0.2
-period_s = 9000.0
+amplitude_K = 3.0
+period_s = 86400.0
 
 [[measurements]]
 kind = "laser-tracer"

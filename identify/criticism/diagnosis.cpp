@@ -97,7 +97,7 @@ class Diagnostician {
 
   void list_noise() {
     diagnosis_.noise = noise_table(search_.noise_with_uncertainty());
-    diagnosis_.noise_instruments = model_.instruments();
+    diagnosis_.noise_instruments = model_.noise_groups();
   }
 
   EffectFinding finding(const FamilyTest& test) const {

@@ -24,10 +24,10 @@ BlockPlaces reduced_places(const ParameterLayout& layout, const DatumSpace& datu
 }  // namespace
 
 ImaginedCampaign::ImaginedCampaign(const Campaign& campaign, const FitResult& result,
-                                   std::vector<std::string> instruments,
+                                   std::vector<std::string> noise_groups,
                                    std::vector<ExtraMeasurement> measurements)
     : measurements_(std::move(measurements)),
-      instruments_(std::move(instruments)),
+      noise_groups_(std::move(noise_groups)),
       campaign_(extended(campaign)),
       model_(campaign_, result.adjustment->model) {
   map_parameters(campaign, result);
@@ -46,7 +46,7 @@ Campaign ImaginedCampaign::extended(const Campaign& campaign) {
       if (setup.tool >= known_tools) setup.tool += first_tool - known_tools;
       for (std::size_t channel = 0; channel < setup.readings.channels(); ++channel) {
         const std::string group = noise_group(setup, channel);
-        if (std::ranges::find(instruments_, group) == instruments_.end()) instruments_.push_back(group);
+        if (std::ranges::find(noise_groups_, group) == noise_groups_.end()) noise_groups_.push_back(group);
       }
       all.setups.push_back(std::move(setup));
     }
@@ -93,7 +93,7 @@ void ImaginedCampaign::map_parameters(const Campaign& campaign, const FitResult&
 
 std::size_t ImaginedCampaign::group_of(std::size_t setup, int channel) const {
   const std::string group = noise_group(campaign_.setups[setup], static_cast<std::size_t>(channel));
-  return static_cast<std::size_t>(std::ranges::find(instruments_, group) - instruments_.begin());
+  return static_cast<std::size_t>(std::ranges::find(noise_groups_, group) - noise_groups_.begin());
 }
 
 ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {

@@ -25,15 +25,15 @@ struct ImaginedRows {
 
 class ImaginedCampaign {
  public:
-  /// `result` must come from fit() of the campaign. `instruments`: groups of the noise model; others follow
+  /// `result` must come from fit() of the campaign. `noise_groups`: those of the noise model; others follow
   /// in the order in which they first appear. Throws InputError when a setup cannot be used.
-  ImaginedCampaign(const Campaign& campaign, const FitResult& result, std::vector<std::string> instruments,
+  ImaginedCampaign(const Campaign& campaign, const FitResult& result, std::vector<std::string> noise_groups,
                    std::vector<ExtraMeasurement> measurements);
   ImaginedCampaign(const ImaginedCampaign&) = delete;
   ImaginedCampaign& operator=(const ImaginedCampaign&) = delete;
 
   const std::vector<ExtraMeasurement>& measurements() const { return measurements_; }
-  const std::vector<std::string>& instruments() const { return instruments_; }
+  const std::vector<std::string>& noise_groups() const { return noise_groups_; }
   ImaginedRows rows(std::size_t measurement) const;
   /// Columns of an effect in the observations of rows().
   Eigen::MatrixXd columns(std::size_t measurement, const ImaginedRows& rows, const Effect& effect,
@@ -50,7 +50,7 @@ class ImaginedCampaign {
   void map_parameters(const Campaign& campaign, const FitResult& result);
 
   std::vector<ExtraMeasurement> measurements_;
-  std::vector<std::string> instruments_;
+  std::vector<std::string> noise_groups_;
   std::vector<Stretch> stretches_;
   Campaign campaign_;
   MeasurementModel model_;

@@ -26,7 +26,7 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
   removed_ = removed_by_fit_;
   CampaignNoise noise = campaign_noise(model_, stated_sigma_, removed);
   observations_ = std::move(noise.places);
-  instruments_ = std::move(noise.instruments);
+  noise_groups_ = std::move(noise.groups);
   problem_.data = std::move(noise.data);
   const DatumSpace datum(model_.layout(), campaign_.machine, result.parameters);
   linearise(model_, datum, result.parameters, observations_, problem_);

@@ -29,7 +29,7 @@ class LinearModel {
   std::size_t size() const { return observations_.size(); }
   const std::vector<Observation>& observations() const { return observations_; }
   const std::vector<SetupView>& views() const { return views_; }
-  const std::vector<std::string>& instruments() const { return instruments_; }
+  const std::vector<std::string>& noise_groups() const { return noise_groups_; }
   /// Derivatives to the parameters in datum coordinates, residuals (reading minus prediction), priors and
   /// what the noise model needs. Readings that the fit removed have an infinite sigma.
   const NoiseProblem& problem() const { return problem_; }
@@ -74,7 +74,7 @@ class LinearModel {
   MeasurementModel model_;
   std::vector<Observation> observations_;
   std::vector<Eigen::Index> parts_;
-  std::vector<std::string> instruments_;
+  std::vector<std::string> noise_groups_;
   std::vector<SetupView> views_;
   Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;
   NoiseProblem problem_;

@@ -26,7 +26,7 @@ MeasurementPlanner::MeasurementPlanner(const CriticismState& state, std::vector<
       noise_(state.noise.begin(), state.noise.end()),
       parameters_(state.model.problem().jacobian.cols()) {
   use_single_threaded_blas();
-  noise_.resize(imagined.instruments().size());
+  noise_.resize(imagined.noise_groups().size());
   for (const PlannedHypothesis& each : hypotheses_) {
     range_.push_back({columns_, state.families[each.hypothesis.family].amplitudes()});
     columns_ += range_.back().count;

@@ -51,7 +51,7 @@ class Proposer {
     if (asked.empty() && alternatives.empty() && invisible.empty()) return;
 
     const MenuContext context{state_.model.campaign(), state_.model.model().chain(), options_.readings};
-    const ImaginedCampaign imagined(state_.model.campaign(), state_.result, state_.model.instruments(),
+    const ImaginedCampaign imagined(state_.model.campaign(), state_.result, state_.model.noise_groups(),
                                     possible_measurements(context));
     if (!asked.empty()) {
       const MeasurementPlanner planner = plan(asked, imagined);
@@ -196,7 +196,7 @@ class Proposer {
 
   /// An instrument or a tool that the campaign did not use has to be worth it.
   double worth(const ExtraMeasurement& measurement) const {
-    const auto& used = state_.model.instruments();
+    const auto& used = state_.model.noise_groups();
     const bool at_hand = std::ranges::all_of(measurement.setups, [&](const Setup& setup) {
       return std::ranges::any_of(used, [&](const std::string& group) {
         return instrument_of_noise_group(group) == setup.instrument;

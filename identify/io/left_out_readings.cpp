@@ -21,8 +21,9 @@ std::vector<std::string> reading_columns(const Setup& setup) {
 
 std::size_t row_of(const LeaveOut& entry, double line, const Setup& setup) {
   const auto& lines = setup.readings.source_line;
-  const auto found = std::ranges::lower_bound(lines, static_cast<std::int64_t>(line));
-  if (found == lines.end() || static_cast<double>(*found) != line) {
+  const auto as_number = [](std::int64_t each) { return static_cast<double>(each); };
+  const auto found = std::ranges::lower_bound(lines, line, {}, as_number);
+  if (found == lines.end() || as_number(*found) != line) {
     throw InputError(entry.rows_place,
                      "setup \"" + setup.name + "\" leaves out row " + number_text(line) + ", but " +
                          setup.data + " has no reading in that line",

@@ -50,7 +50,7 @@ Json variance_components_json(const FitResult& result) {
 Json noise_json(const NoiseSummary& noise) {
   Json rows = Json::array();
   for (const NoiseRow& row : noise.rows) {
-    rows.push_back({{"instrument", noise.instruments.at(row.instrument)},
+    rows.push_back({{"instrument", noise.groups.at(row.instrument)},
                     {"term", row.term},
                     {"unit", row.unit},
                     {"value", number(row.value)},
@@ -163,9 +163,9 @@ NoiseSummary noise_from(const Json& json) {
   noise.dof = number(json.at("whitened_dof"));
   for (const Json& row : json.at("terms")) {
     const auto instrument = row.at("instrument").get<std::string>();
-    const auto known = std::ranges::find(noise.instruments, instrument);
-    const auto place = static_cast<std::size_t>(known - noise.instruments.begin());
-    if (known == noise.instruments.end()) noise.instruments.push_back(instrument);
+    const auto known = std::ranges::find(noise.groups, instrument);
+    const auto place = static_cast<std::size_t>(known - noise.groups.begin());
+    if (known == noise.groups.end()) noise.groups.push_back(instrument);
     noise.rows.push_back({.instrument = place,
                           .term = row.at("term").get<std::string>(),
                           .unit = row.at("unit").get<std::string>(),

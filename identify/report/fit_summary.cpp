@@ -133,7 +133,7 @@ std::string noise_table_text(const NoiseSummary& noise) {
                   noise.chi2 / noise.dof));
   for (const NoiseRow& row : noise.rows) {
     if (row.value == 0.0) continue;
-    const std::string& instrument = noise.instruments[row.instrument];
+    const std::string& instrument = noise.groups[row.instrument];
     const EdgeNoise edge = edge_noise(row, instrument);
     const bool of_term = std::isfinite(row.likelihood_ratio) && row.term != "tau";
     text.add_row({instrument, edge.meaning, short_number(edge.value, 3),

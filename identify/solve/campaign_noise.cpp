@@ -65,9 +65,9 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
     if (is_new) {
       noise.data.sequences.emplace_back();
       const std::string group = noise_group(setup, static_cast<std::size_t>(channel));
-      const auto known = std::ranges::find(noise.instruments, group);
-      noise.data.sequences.back().group = static_cast<std::size_t>(known - noise.instruments.begin());
-      if (known == noise.instruments.end()) noise.instruments.push_back(group);
+      const auto known = std::ranges::find(noise.groups, group);
+      noise.data.sequences.back().group = static_cast<std::size_t>(known - noise.groups.begin());
+      if (known == noise.groups.end()) noise.groups.push_back(group);
     }
     NoiseSequence& sequence = noise.data.sequences[found->second];
     sequence.observation.push_back(i);
@@ -79,9 +79,9 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
 
 CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
   if (all.places.size() <= limit) return all;
-  CampaignNoise sample{{}, {}, all.instruments};
+  CampaignNoise sample{{}, {}, all.groups};
   for (const std::size_t which : sampling_order(all.data.sequences)) {
-    const bool each_instrument = sample.data.sequences.size() >= all.instruments.size();
+    const bool each_instrument = sample.data.sequences.size() >= all.groups.size();
     if (each_instrument && sample.places.size() >= limit) break;
     const NoiseSequence& sequence = all.data.sequences[which];
     NoiseSequence kept;

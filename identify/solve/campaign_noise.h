@@ -23,8 +23,7 @@ std::vector<ObservationPlace> observation_places(const MeasurementModel& model);
 struct CampaignNoise {
   std::vector<ObservationPlace> places;  ///< of the observations of `data`
   NoiseData data;                        ///< SI; removed observations have an infinite sigma
-  std::vector<std::string>
-      instruments;  ///< of the groups (channels.h: noise_group), in the order of their first observation
+  std::vector<std::string> groups;       ///< names (channels.h), in the order of their first observation
 };
 
 /// All observations. `stated_sigma`: per observation, m or rad; `removed`: per observation, empty = none.

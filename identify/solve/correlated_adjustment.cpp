@@ -127,7 +127,7 @@ std::vector<NoiseGroupEquations> WhitenedCampaign::equations(const Eigen::Vector
   const TabulatedFunctions tabulated = model_.tabulate(raw);
   const Eigen::Index size = raw.size();
   std::vector<NoiseGroupEquations> equations;
-  for (std::size_t group = 0; group < noise_.instruments.size(); ++group) {
+  for (std::size_t group = 0; group < noise_.groups.size(); ++group) {
     const Whitener::GroupGram sums = whitener_.gram_of_group(
         group, size + 1,
         [&](const std::vector<std::size_t>& observations, Eigen::Ref<Eigen::MatrixXd> columns) {

@@ -6,9 +6,9 @@
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/residuals.h"
+#include "volcal/identify/solve/stated_sigma.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -41,6 +41,14 @@ std::vector<std::pair<int, int>> shared_parameters(const ParameterLayout& fitted
     for (int k = 0; k < block.size(); ++k) shared.emplace_back(source->offset + k, block.offset + k);
   }
   return shared;
+}
+
+/// 1 / sigma^2; 0 of what the campaign leaves out.
+std::vector<double> weights_of(const ReadingIndex& index, const std::vector<double>& sigma) {
+  std::vector<double> weight;
+  for (const double each : sigma) weight.push_back(1.0 / (each * each));
+  for (const std::size_t observation : index.left_out()) weight[observation] = 0.0;
+  return weight;
 }
 
 /// u of every prediction: the model's covariance, less what the re-estimated nuisance parameters absorb.
@@ -97,24 +105,8 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   MeasurementModel model(campaign, frozen_model(model_spec));
   const ReadingIndex index(model);
   Eigen::VectorXd parameters = model.initial_parameters();
-  std::vector<double> sigma(index.observations());
-  std::vector<double> weight(index.observations());
-  for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
-    for (std::size_t row = 0; row < campaign.setups[setup].readings.size(); ++row) {
-      for (int channel = 0; channel < model.bound(setup).channels(); ++channel) {
-        const std::size_t i = index.first_observation(setup, row) + static_cast<std::size_t>(channel);
-        sigma[i] = model.sigma(setup, row, channel, parameters);
-        if (!(sigma[i] > 0.0)) {
-          throw InputError(
-              {campaign.file, campaign.setups[setup].source_line},
-              "setup \"" + campaign.setups[setup].name + "\": the standard deviation of its readings is zero",
-              "give noise = { constant_um = ... } or a sigma_um column");
-        }
-        weight[i] = 1.0 / (sigma[i] * sigma[i]);
-      }
-    }
-  }
-  for (const std::size_t observation : index.left_out()) weight[observation] = 0.0;
+  std::vector<double> sigma = stated_sigma(index, parameters);
+  std::vector<double> weight = weights_of(index, sigma);
   const DatumSpace datum(
       model.layout(), campaign.machine, parameters, [](ErrorSymbol) { return false; },
       [](const ParameterBlock& block) { return !is_frozen_with_the_model(block); });
@@ -132,6 +124,10 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   options.threads = threads;
   model.set_second_order_remainder(parameters);
   minimise(index, weight, datum, prior, options, z);
+  if (renew_sigma_of_angles(index, datum.raw(z), sigma)) {
+    weight = weights_of(index, sigma);
+    minimise(index, weight, datum, prior, options, z);
+  }
   parameters = datum.raw(z);
 
   const NormalEquations sums = NormalAccumulator(index, weight, nullptr, threads).accumulate(parameters);

@@ -13,6 +13,7 @@
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/solve/stated_sigma.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/solve/verdict.h"
 #include "volcal/identify/stats/channels.h"
@@ -63,7 +64,7 @@ class Identification {
   FitResult run() {
     progress("nuisance parameters on the nominal machine", 0.0);
     fit_nuisance();
-    renew_sigma_of_angles();
+    renew_sigma_of_angles(index_, parameters_, stated_sigma_);
     check_plausible();
     lap("nuisance parameters");
     progress("rank analysis", 0.1);
@@ -90,38 +91,10 @@ class Identification {
   }
   void lap(const std::string& stage) { result_.timings.push_back({stage, stopwatch_.lap()}); }
 
-  void set_sigma(std::size_t setup) {
-    for (std::size_t row = 0; row < campaign_.setups[setup].readings.size(); ++row) {
-      for (int channel = 0; channel < model_.bound(setup).channels(); ++channel) {
-        const double sigma = model_.sigma(setup, row, channel, parameters_);
-        if (!(sigma > 0.0)) {
-          throw InputError({campaign_.file, campaign_.setups[setup].source_line},
-                           "setup \"" + campaign_.setups[setup].name +
-                               "\": the standard deviation of its readings is zero",
-                           "give noise = { constant_um = ... } or a sigma_um column");
-        }
-        stated_sigma_[index_.first_observation(setup, row) + static_cast<std::size_t>(channel)] = sigma;
-      }
-    }
-  }
-
   void start_weights() {
-    stated_sigma_.resize(index_.observations());
-    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) set_sigma(setup);
+    stated_sigma_ = stated_sigma(index_, parameters_);
     removed_.assign(stated_sigma_.size(), false);
     for (const std::size_t observation : index_.left_out()) removed_[observation] = true;
-  }
-
-  /// The machine's repeatability moves an angle by its share of the distance, which was a guess.
-  void renew_sigma_of_angles() {
-    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-      const Setup& source = campaign_.setups[setup];
-      bool angles = false;
-      for (std::size_t channel = 0; channel < source.readings.channels(); ++channel) {
-        angles = angles || is_angle_channel(source, channel);
-      }
-      if (angles) set_sigma(setup);
-    }
   }
 
   void group_observations() {
@@ -366,7 +339,7 @@ class Identification {
     }
     result_.noise.estimated = true;
     result_.noise.more_than_white = is_more_than_white(estimate);
-    result_.noise.instruments = campaign_noise_.instruments;
+    result_.noise.groups = campaign_noise_.groups;
     result_.noise.rows = noise_table(estimate);
     for (const InstrumentNoise& own : estimate.instruments) white_log_u_.push_back(own.log_uncertainty.white);
   }
@@ -463,7 +436,7 @@ class Identification {
           component.redundancy > 0.0 ? component.scale / std::sqrt(2.0 * component.redundancy) : 0.0;
     }
     for (std::size_t g = 0; g < noise_.size(); ++g) {
-      auto& component = *std::ranges::find(result_.variance_components, campaign_noise_.instruments[g],
+      auto& component = *std::ranges::find(result_.variance_components, campaign_noise_.groups[g],
                                            &VarianceComponent::instrument);
       component.scale = noise_[g].white;
       if (std::isfinite(white_log_u_[g])) component.scale_u = component.scale * white_log_u_[g];

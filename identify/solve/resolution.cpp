@@ -24,16 +24,16 @@ FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign&
   return function;
 }
 
-std::vector<double> measured_positions(const Campaign& campaign, AxisName axis) {
-  std::vector<double> positions;
+/// Of readings that are not left out.
+template <class Visit>
+void for_each_measured_position(const Campaign& campaign, AxisName axis, const Visit& visit) {
   for (const Setup& setup : campaign.setups) {
     const std::vector<bool> left_out = setup.rows_left_out();
     const std::vector<double>& own = setup.readings.position[index_of(axis)];
     for (std::size_t row = 0; row < own.size(); ++row) {
-      if (!left_out[row]) positions.push_back(own[row]);
+      if (!left_out[row]) visit(own[row]);
     }
   }
-  return positions;
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::vector<double> measured_positions(const Campaign& campaign, AxisName axis) 
 int automatic_intervals(const Campaign& campaign, AxisName axis) {
   const double resolution = campaign.machine.axis(axis).travel() * kDistinctShareOfTravel;
   std::set<long> distinct;
-  for (const double q : measured_positions(campaign, axis)) distinct.insert(std::lround(q / resolution));
+  for_each_measured_position(campaign, axis, [&](double q) { distinct.insert(std::lround(q / resolution)); });
   return std::clamp(static_cast<int>(distinct.size()) - 1, 1, kMaxAutomaticIntervals);
 }
 
@@ -59,10 +59,10 @@ ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
 
 MeasuredRange measured_range(const Campaign& campaign, AxisName axis) {
   MeasuredRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const double q : measured_positions(campaign, axis)) {
+  for_each_measured_position(campaign, axis, [&](double q) {
     range.min = std::min(range.min, q);
     range.max = std::max(range.max, q);
-  }
+  });
   return range;
 }
 

@@ -18,7 +18,7 @@ int automatic_intervals(const Campaign& campaign, AxisName axis);
 /// KnotChoice::Automatic.
 ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign);
 
-/// Range of commanded positions of an axis in the campaign, m or rad.
+/// Range of commanded positions of an axis in the campaign, m or rad; rows that are left out do not count.
 struct MeasuredRange {
   double min = 0.0;
   double max = 0.0;

@@ -65,10 +65,10 @@ struct VarianceComponent {
 struct NoiseSummary {
   bool estimated = false;        ///< false: independent readings were assumed, nothing else was tried
   bool more_than_white = false;  ///< weights are Sigma^-1 of `rows`; else 1 / sigma^2 of independent readings
-  std::vector<std::string> instruments;
-  std::vector<NoiseRow> rows;  ///< of all instruments; empty when not estimated
-  double chi2 = 0.0;           ///< of the whitened residuals, with the estimated noise
-  double dof = 0.0;            ///< observations minus what the parameters take
+  std::vector<std::string> groups;  ///< names of the noise groups (channels.h)
+  std::vector<NoiseRow> rows;       ///< of all instruments; empty when not estimated
+  double chi2 = 0.0;                ///< of the whitened residuals, with the estimated noise
+  double dof = 0.0;                 ///< observations minus what the parameters take
 };
 
 /// How well one error (function, squareness) is seen.

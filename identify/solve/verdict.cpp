@@ -41,7 +41,7 @@ void report_stated_sigma(FitResult& result) {
 
 /// "slow wander of 0.41 um over 580 s", empty for what stands in no sentence of its own.
 std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
-  const EdgeNoise edge = edge_noise(row, noise.instruments[row.instrument]);
+  const EdgeNoise edge = edge_noise(row, noise.groups[row.instrument]);
   if (row.term == "line") return fmt::format("offsets of lines of {:.2g} {}", edge.value, edge.unit);
   if (row.term == "per_metre") return fmt::format("{:.2g} {} in proportion to length", edge.value, edge.unit);
   if (row.term != "wander") return {};
@@ -53,7 +53,7 @@ std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
 }
 
 void report_noise(FitResult& result) {
-  for (std::size_t g = 0; g < result.noise.instruments.size(); ++g) {
+  for (std::size_t g = 0; g < result.noise.groups.size(); ++g) {
     std::string phrases;
     for (const NoiseRow& row : result.noise.rows) {
       if (row.instrument != g || row.value == 0.0) continue;
@@ -61,7 +61,7 @@ void report_noise(FitResult& result) {
       if (!phrase.empty()) phrases += (phrases.empty() ? "" : ", ") + phrase;
     }
     if (phrases.empty()) continue;
-    result.messages.push_back(result.noise.instruments[g] + ": its noise is not independent (" + phrases +
+    result.messages.push_back(result.noise.groups[g] + ": its noise is not independent (" + phrases +
                               "); weights and uncertainties allow for it");
   }
 }

@@ -1,5 +1,6 @@
 #include "volcal/identify/stats/remaining_error.h"
 
+#include <cstdint>
 #include <random>
 
 #include "volcal/identify/numeric/dense.h"

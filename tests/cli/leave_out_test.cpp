@@ -106,6 +106,8 @@ TEST_F(LeaveOutProgram, TakesNoPartInAFitOrAJudgement) {
   EXPECT_THAT(run.output, HasSubstr("setup \"" + name_ + "\" leaves out row 12: beam interrupted"));
   EXPECT_THAT(run.output, ::testing::ContainsRegex(name_ + " +12 .*left out"));
   EXPECT_THAT(run.output, ::testing::Not(HasSubstr("removed by the w-test")));
+  EXPECT_THAT(content(path("result/residuals.csv")),
+              ::testing::ContainsRegex(name_ + ",12,[^\n]*,length_mm,1\n"));
   expect_same_numbers(nlohmann::json::parse(judged(compare)).at("models")[0].at("total"), total);
   expect_same_numbers(nlohmann::json::parse(judged(validate)), figures);
 }

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,7 +13,6 @@
 namespace volcal {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::ContainsRegex;
 using testing::content;
 using ::testing::HasSubstr;

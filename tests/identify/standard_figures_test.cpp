@@ -239,6 +239,21 @@ TEST(StandardFigures, TargetsMetFromOneDirectionAreCounted) {
   EXPECT_EQ(figures.lines[0].figures.readings.targets[2].positive.count, 4);
 }
 
+/// The second reading of run 1, at 0.2 m, is left out and 1 mm off: what remains there from below is 5 um.
+TEST(StandardFigures, ReadingsLeftOutDoNotCount) {
+  Campaign campaign = empty_campaign();
+  volcal::Setup& setup = add_setup(campaign, "line_X", "displacement", x_line(0.5, 0.0, +1));
+  setup.options.set("direction", Vector3d(1, 0, 0));
+  setup.readings.value[0][1] += 1e-3;
+  auto records = records_of(campaign, [](auto, auto, double reading) { return reading; });
+  records[1].removed = records[1].left_out = true;
+  const auto figures = standard_figures(campaign, records);
+  ASSERT_EQ(figures.lines.size(), 1U);
+  const PositioningTarget& target = figures.lines[0].figures.readings.targets[1];
+  EXPECT_EQ(target.positive.count, 1);
+  EXPECT_NEAR(target.positive.mean, 5e-6, 1e-12);
+}
+
 TEST(StandardFigures, BeamAcrossTheMotionIsNoPositioningTest) {
   Campaign campaign = empty_campaign();
   add_setup(campaign, "line_X", "displacement", x_line(0.5, 0.0, +1))

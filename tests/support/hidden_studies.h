@@ -78,7 +78,7 @@ inline Projector white_projector(const LinearModel& model, const Eigen::VectorXd
   NoiseProblem problem = model.problem();
   problem.residual = residual;
   problem.prior_mean.setZero();
-  const std::vector<NoiseParameters> white(model.instruments().size());
+  const std::vector<NoiseParameters> white(model.noise_groups().size());
   return {problem, problem.data, white, 1, model.parts()};
 }
 

@@ -120,7 +120,7 @@ class Yardstick {
  private:
   std::vector<NoiseParameters> true_noise() const {
     std::vector<NoiseParameters> noise;
-    for (const std::string& group : model_.instruments()) {
+    for (const std::string& group : model_.noise_groups()) {
       const auto plan =
           std::ranges::find(simulated_.plans, instrument_of_noise_group(group), &sim::SetupPlan::instrument);
       noise.push_back(

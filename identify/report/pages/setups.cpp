@@ -49,7 +49,7 @@ Json setups_page(const PageInput& input) {
             {"more_than_white", noise.more_than_white},
             {"reduced",
              rounded(noise.dof > 0 ? noise.chi2 / noise.dof : std::numeric_limits<double>::quiet_NaN(), 4)},
-            {"rows", noise_rows(noise.rows, noise.instruments)}}}};
+            {"rows", noise_rows(noise.rows, noise.groups)}}}};
 }
 
 }  // namespace volcal::report

@@ -157,7 +157,7 @@ class Planner : public ::testing::Test {
 
 /// Rows that were measured, imagined once more, have the derivatives that they had; a dead path of their own.
 TEST_F(Planner, ImaginedRowsAreThoseOfTheSamePositions) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.instruments(), possible(campaign_));
+  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const ImaginedRows rows = imagined.rows(0);  // revisit of P1_short
   const auto picked = spread_rows(campaign_.setups[0], 48);
   ASSERT_EQ(rows.model.rows(), static_cast<Eigen::Index>(picked.size()));
@@ -183,7 +183,7 @@ TEST_F(Planner, ImaginedRowsAreThoseOfTheSamePositions) {
 
 /// Gram matrices of the planner against (H^T S^-1 H - B^T A^-1 B) with everything stacked.
 TEST_F(Planner, AgreesWithStackedMatrices) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.instruments(), possible(campaign_));
+  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const std::vector<PlannedHypothesis> both = {planned("station-drift"), planned("dead-path")};
   const MeasurementPlanner planner(state_, both, 0, imagined);
   const NoiseProblem& problem = model_.problem();
@@ -220,7 +220,7 @@ TEST_F(Planner, AgreesWithStackedMatrices) {
 
 /// More readings never take separation away.
 TEST_F(Planner, SeparationGrows) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.instruments(), possible(campaign_));
+  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const MeasurementPlanner planner(state_, {planned("station-drift"), planned("dead-path")}, 0, imagined);
   const double now = planner.separation(planner.now(), 0, 1);
   EXPECT_GT(now, 0.0);

@@ -113,7 +113,7 @@ double relative(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) { return (a 
 TEST(CorrelatedAdjustment, EquationsAreThoseOfTheFullCovariance) {
   const Linearised problem;
   const CampaignNoise noise = problem.noise();
-  ASSERT_EQ(noise.instruments, (std::vector<std::string>{"laser-tracer", "ball-bar"}));
+  ASSERT_EQ(noise.groups, (std::vector<std::string>{"laser-tracer", "ball-bar"}));
   const WhitenedCampaign whitened(problem.model(), problem.datum(), noise, kTwoNoises, 2);
   const auto equations = whitened.equations(problem.z);
   ASSERT_EQ(equations.size(), 2U);

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -109,7 +110,61 @@ TEST_P(FitOfTracking, ConvergesFromStationsGuessedFiveCentimetresOff) {
   EXPECT_LT(((far.parameters - good.parameters).array().abs() / u).maxCoeff(), 0.1);
 }
 
+/// The machine's repeatability as an angle depends on the distance, of which a judgement knows a guess too.
+TEST_P(FitOfTracking, IsJudgedAlikeFromStationsGuessedFiveCentimetresOff) {
+  sim::Tracking tracking = small_tracking();
+  tracking.instrument = GetParam();
+  auto simulated = sim::simulate(small_study(0, tracking));
+  FitOptions options;
+  options.noise = NoisePolicy::White;
+  const FitResult result = fit(simulated.campaign, spline_model(4), options);
+  const double good = validate(simulated.campaign, result).figures.reduced_chi2;
+  for (volcal::Setup& setup : simulated.campaign.setups) {
+    const Eigen::Vector3d station = *setup.options.vector("station");
+    setup.options.set("station", Eigen::Vector3d(station + Eigen::Vector3d::Constant(0.05)));
+  }
+  EXPECT_NEAR(validate(simulated.campaign, result).figures.reduced_chi2 / good, 1.0, 0.01);
+}
+
 INSTANTIATE_TEST_SUITE_P(Instruments, FitOfTracking, ::testing::Values("laser-tracer", "laser-tracker"));
+
+TEST(Validate, RestsOnNothingThatIsLeftOut) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  const FitResult result = fit(simulated.campaign, spline_model(4));
+  volcal::Setup& points = simulated.validation.setups.front();
+  const double other_components = validate(simulated.validation, result).figures.rms_after;
+  points.left_out = {{3, 1, "one component"}, {5, 0, "all"}, {5, 1, "all"}, {5, 2, "all"}};
+  const ValidationFigures sound = validate(simulated.validation, result).figures;
+  EXPECT_EQ(sound.lengths, points.readings.size() - 1);
+  EXPECT_NE(sound.rms_after, other_components);
+  for (const LeftOutReading& reading : points.left_out) {
+    points.readings.value[reading.channel][reading.row] += 1e-4;
+  }
+  const ValidationFigures spoilt = validate(simulated.validation, result).figures;
+  EXPECT_NEAR(spoilt.rms_before / sound.rms_before, 1.0, 1e-9);
+  EXPECT_NEAR(spoilt.rms_after / sound.rms_after, 1.0, 1e-9);
+  EXPECT_NEAR(spoilt.max_after / sound.max_after, 1.0, 1e-9);
+  EXPECT_NEAR(spoilt.reduced_chi2 / sound.reduced_chi2, 1.0, 1e-9);
+  EXPECT_EQ(spoilt.coverage95, sound.coverage95);
+}
+
+/// Positions 0, 0.1 ... 1 of X; the last row is left out whole, the first in one of two channels.
+TEST(Resolution, ComesFromReadingsThatAreNotLeftOut) {
+  Campaign campaign;
+  campaign.machine = sim::reference_machines()[0];
+  volcal::Setup& setup = campaign.setups.emplace_back();
+  setup.readings.value.assign(2, std::vector<double>(11, 0.0));
+  for (int i = 0; i <= 10; ++i) {
+    setup.readings.position[0].push_back(0.1 * i);
+    setup.readings.source_line.push_back(i + 2);
+  }
+  EXPECT_EQ(measured_range(campaign, AxisName::X).max, 1.0);
+  EXPECT_EQ(automatic_intervals(campaign, AxisName::X), 10);
+  setup.left_out = {{0, 1, "half"}, {10, 0, "whole"}, {10, 1, "whole"}};
+  EXPECT_EQ(measured_range(campaign, AxisName::X).min, 0.0);
+  EXPECT_EQ(measured_range(campaign, AxisName::X).max, 0.9);
+  EXPECT_EQ(automatic_intervals(campaign, AxisName::X), 9);
+}
 
 TEST(Fit, EstimatesAWrongStatedSigma) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));

@@ -78,6 +78,13 @@ TEST(WorstOutliers, StopWhereTooMuchOfASetupHasLeft) {
   EXPECT_TRUE(worst_outliers(flagged_records(w, 0, 3), 0.7, 0.25).empty());
 }
 
+/// What the campaign asked for says nothing against the model.
+TEST(WorstOutliers, DoNotCountWhatTheCampaignLeavesOut) {
+  auto records = flagged_records({12.0, 12.0, 12.0, 9.0, 0.3, 0.5, 0.2, 0.1}, 0, 3);
+  records[0].left_out = true;
+  EXPECT_EQ(worst_outliers(records, 0.7, 0.25), (std::vector<std::size_t>{3}));
+}
+
 /// Lengths of 3, 4 and 5 um and angles, of which some are removed: sqrt((9 + 16 + 25) / 3) um.
 TEST_F(SetupSummaries, OfATrackerAreMeansOfItsLengths) {
   const auto summaries = of({{0, 0, 0, 3e-6},

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -80,6 +81,8 @@ TEST_F(LeftOutReadings, AreRefusedWithPlaceAndRemedy) {
   const std::vector<Case> cases = {
       {"{ rows = [2], reason = \"r\" }", "has no reading in that line", "3 to 6"},
       {"{ rows = [3.5], reason = \"r\" }", "leaves out row 3.5", "3 to 6"},
+      {"{ rows = [1e300], reason = \"r\" }", "leaves out row 1e+300", "3 to 6"},
+      {"{ rows = [-1], reason = \"r\" }", "leaves out row -1", "3 to 6"},
       {"{ rows = [], reason = \"r\" }", "rows is empty", "name lines of the file"},
       {"{ reason = \"r\" }", "rows is missing", ""},
       {"{ rows = [3] }", "reason is missing", ""},

@@ -105,7 +105,7 @@ TEST(ResultJson, ReturnsTheNoise) {
   const FitResult read = result_from_json(result_json(written), "result.json");
   EXPECT_TRUE(read.noise.estimated);
   EXPECT_TRUE(read.noise.more_than_white);
-  EXPECT_EQ(read.noise.instruments, written.noise.instruments);
+  EXPECT_EQ(read.noise.groups, written.noise.groups);
   EXPECT_EQ(read.noise.chi2, 812.5);
   EXPECT_EQ(read.noise.dof, 800.25);
   ASSERT_EQ(read.noise.rows.size(), 2U);

@@ -252,7 +252,7 @@ SyntheticFit synthetic_fit(int scale) {
   result.noise = {
       .estimated = true,
       .more_than_white = true,
-      .instruments = {"laser-tracer"},
+      .groups = {"laser-tracer"},
       .rows = {{0, "white", "1", 1.02, 0.98, 1.06, none, ""},
                {0, "wander", "m or rad", 0.41e-6, 0.3e-6, 0.56e-6, 41.5, ""},
                {0, "tau", "s", 540.0, 280.0, 1040.0, 41.5, ""},

@@ -97,7 +97,7 @@ TEST(ResultJson, ReturnsTheNoise) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   written.noise = {.estimated = true,
                    .more_than_white = true,
-                   .instruments = {"laser-tracer", "angle"},
+                   .groups = {"laser-tracer", "angle"},
                    .rows = {{0, "wander", "m or rad", 0.4e-6, 0.3e-6, 0.5e-6, 31.5, ""},
                             {1, "white", "1", 1.25, none, none, none, "stated: too few redundant readings"}},
                    .chi2 = 812.5,

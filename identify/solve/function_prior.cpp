@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/datum.h"
@@ -11,6 +13,8 @@ namespace {
 
 constexpr int kPointsPerPiece = 4;
 constexpr int kHighestDegree = 30;
+constexpr int kAnalysisPoints = 64;
+constexpr int kDegrees = kHighestDegree - 1;  // beyond straight lines
 constexpr double kNugget = 1e-7;  // of the mean variance: keeps the covariance of smooth shapes invertible
 
 struct LengthRange {
@@ -45,22 +49,24 @@ Eigen::MatrixXd projection(const Basis& basis, const Eigen::VectorXd& points) {
   return solve_positive_definite(values.transpose() * values, values.transpose());
 }
 
-/// Columns sqrt(2n + 1) P_n(t), n = 2, 3, ...
+/// Columns sqrt(2n + 1) P_n(t), n = 0, 1, ...
 Eigen::MatrixXd legendre_columns(const Eigen::ArrayXd& t) {
-  Eigen::MatrixXd columns(t.size(), kHighestDegree - 1);
+  Eigen::MatrixXd columns(t.size(), kHighestDegree + 1);
   Eigen::ArrayXd previous = Eigen::ArrayXd::Ones(t.size());
   Eigen::ArrayXd current = t;
+  columns.col(0) = previous;
+  columns.col(1) = std::sqrt(3.0) * current;
   for (int n = 2; n <= kHighestDegree; ++n) {
     const Eigen::ArrayXd next = ((2 * n - 1) * t * current - (n - 1) * previous) / n;
     previous = current;
     current = next;
-    columns.col(n - 2) = std::sqrt(2.0 * n + 1.0) * current;
+    columns.col(n) = std::sqrt(2.0 * n + 1.0) * current;
   }
   return columns;
 }
 
 Eigen::MatrixXd legendre_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
-  Eigen::MatrixXd columns = legendre_columns(t);
+  Eigen::MatrixXd columns = legendre_columns(t).rightCols(kDegrees);
   for (int n = 2; n <= kHighestDegree; ++n) {
     const double exponent = roughness == Roughness::Heat ? n * length * n * length : n * length;
     columns.col(n - 2) *= std::exp(-exponent);
@@ -97,18 +103,26 @@ Eigen::MatrixXd shape_covariance(Roughness roughness, double length, const Eigen
   return deviation * (static_cast<double>(t.size()) / deviation.trace());
 }
 
-/// `contrasts`: combinations of raw coefficients that are zero for straight lines, as columns.
-PriorShape intrinsic_shape(Roughness roughness, double length, const Eigen::MatrixXd& of_coefficients,
-                           const Eigen::MatrixXd& contrasts, const Eigen::MatrixXd& datum_basis) {
-  Eigen::MatrixXd covariance = contrasts.transpose() * of_coefficients * contrasts;
-  covariance.diagonal().array() += kNugget * covariance.diagonal().mean();
-  const std::optional<Eigen::MatrixXd> root = cholesky_lower(covariance);
-  if (!root) throw std::runtime_error("the prior covariance of an error function is not positive definite");
-  Eigen::MatrixXd half = contrasts.transpose() * datum_basis;
-  solve_lower(*root, half);
-  PriorShape shape{roughness, length, half.transpose() * half, 0.0, static_cast<int>(contrasts.cols())};
-  shape.log_determinant = -log_determinant(*root);
-  return shape;
+/// Of all shapes, in their order; of an axis or a basis they know nothing.
+const std::vector<Eigen::VectorXd>& spectra() {
+  static const std::vector<Eigen::VectorXd> all = [] {
+    constexpr double kHalfStep = 1.0 / kAnalysisPoints;
+    const Eigen::ArrayXd t = Eigen::ArrayXd::LinSpaced(kAnalysisPoints, kHalfStep - 1.0, 1.0 - kHalfStep);
+    const Eigen::MatrixXd columns = legendre_columns(t);
+    const Eigen::MatrixXd analyse =
+        solve_positive_definite(columns.transpose() * columns, columns.transpose()).bottomRows(kDegrees);
+    std::vector<Eigen::VectorXd> result;
+    for (int kind = 0; kind < kRoughnessKinds; ++kind) {
+      const auto roughness = static_cast<Roughness>(kind);
+      for (int place = 0; place < kPriorLengths; ++place) {
+        const Eigen::MatrixXd covariance = shape_covariance(roughness, length_at(roughness, place), t);
+        const Eigen::VectorXd variances = (analyse * covariance * analyse.transpose()).diagonal();
+        result.emplace_back(variances / variances.sum());
+      }
+    }
+    return result;
+  }();
+  return all;
 }
 
 }  // namespace
@@ -127,8 +141,16 @@ std::string_view to_string(Roughness roughness) {
   return "";
 }
 
-std::vector<PriorShape> prior_shapes(const Basis& basis, const Axis& axis,
-                                     const Eigen::MatrixXd& datum_basis) {
+double PriorShape::correlation_length() const {
+  double slope = 0.0;
+  for (Eigen::Index i = 0; i < spectrum.size(); ++i) {
+    const double n = static_cast<double>(i) + 2.0;
+    slope += spectrum[i] * n * (n + 1.0);  // mean of (1 - t^2) (2n + 1) P_n'^2
+  }
+  return 0.5 * std::sqrt(spectrum.sum() * 2.0 / 3.0 / slope);
+}
+
+FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen::MatrixXd& datum_basis) {
   const Eigen::VectorXd points = collocation_points(basis);
   const Eigen::ArrayXd t =
       (2.0 * points.array() - axis.travel_min - axis.travel_max) / (axis.travel_max - axis.travel_min);
@@ -137,18 +159,58 @@ std::vector<PriorShape> prior_shapes(const Basis& basis, const Axis& axis,
   straight.row(0) = project.rowwise().sum().transpose();
   straight.row(1) = (project * t.matrix()).transpose();
   const Eigen::MatrixXd contrasts = null_space(straight);
-  std::vector<PriorShape> shapes;
-  if (contrasts.cols() == 0) return shapes;
+  if (contrasts.cols() == 0) return;
+  const Eigen::MatrixXd of_values = contrasts.transpose() * project;
+  of_reduced_ = contrasts.transpose() * datum_basis;
+  of_legendre_ = of_values * legendre_columns(t).rightCols(kDegrees);
   for (int kind = 0; kind < kRoughnessKinds; ++kind) {
     const auto roughness = static_cast<Roughness>(kind);
     for (int place = 0; place < kPriorLengths; ++place) {
       const double length = length_at(roughness, place);
-      const Eigen::MatrixXd covariance =
-          project * shape_covariance(roughness, length, t) * project.transpose();
-      shapes.push_back(intrinsic_shape(roughness, length, covariance, contrasts, datum_basis));
+      const Eigen::MatrixXd covariance = shape_covariance(roughness, length, t);
+      PriorShape shape = with_covariance(of_values * covariance * of_values.transpose());
+      shape.roughness = roughness;
+      shape.length = length;
+      shape.spectrum = spectra()[shapes_.size()];
+      shapes_.push_back(std::make_shared<const PriorShape>(std::move(shape)));
     }
   }
-  return shapes;
+}
+
+PriorShape FunctionPriors::with_covariance(Eigen::MatrixXd of_contrasts) const {
+  of_contrasts.diagonal().array() += kNugget * of_contrasts.diagonal().mean();
+  const std::optional<Eigen::MatrixXd> root = cholesky_lower(of_contrasts);
+  if (!root) throw std::runtime_error("the prior covariance of an error function is not positive definite");
+  Eigen::MatrixXd half = of_reduced_;
+  solve_lower(*root, half);
+  PriorShape shape;
+  shape.precision = half.transpose() * half;
+  shape.log_determinant = -log_determinant(*root);
+  shape.rank = static_cast<int>(of_contrasts.cols());
+  return shape;
+}
+
+PriorShape FunctionPriors::with_spectrum(const PriorShape& like, const Eigen::VectorXd& variances) const {
+  const Eigen::VectorXd spectrum = variances / variances.sum();
+  PriorShape shape = with_covariance(of_legendre_ * spectrum.asDiagonal() * of_legendre_.transpose());
+  shape.roughness = like.roughness;
+  shape.length = like.length;
+  shape.spectrum = spectrum;
+  return shape;
+}
+
+Eigen::VectorXd FunctionPriors::expected_squares(const PriorShape& prior, double lambda,
+                                                 const Eigen::VectorXd& mean,
+                                                 const Eigen::Ref<const Eigen::MatrixXd>& covariance) const {
+  const Eigen::MatrixXd across = prior.spectrum.asDiagonal() * of_legendre_.transpose();
+  Eigen::MatrixXd of_contrasts = of_legendre_ * across;
+  of_contrasts.diagonal().array() += kNugget * of_contrasts.diagonal().mean();
+  const Eigen::MatrixXd gain = solve_positive_definite(of_contrasts, across.transpose()).transpose();
+  const Eigen::MatrixXd coefficients = gain * of_reduced_;
+  const Eigen::VectorXd known = (coefficients * mean).cwiseAbs2() +
+                                (coefficients * covariance).cwiseProduct(coefficients).rowwise().sum();
+  const Eigen::VectorXd open = prior.spectrum - gain.cwiseProduct(across).rowwise().sum();
+  return lambda * known + open;
 }
 
 }  // namespace volcal

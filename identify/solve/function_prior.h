@@ -11,8 +11,12 @@
 ///   eq. 4.9, 4.17),
 /// scaled to a mean variance of 1 over the travel, projected on the basis by least squares and expressed in
 /// the coordinates of the datum (Z of datum.h).
+///
+/// Of a chosen one only the spectrum is kept in the end, the variance of each Legendre coefficient, which the
+/// functions that share it may then correct degree by degree (smoothing.h).
 
 #include <Eigen/Core>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -31,14 +35,41 @@ struct PriorShape {
   Roughness roughness = Roughness::Geometric;
   /// Share of the travel: correlation length, or 1 / degree at which Legendre coefficients have fallen by e.
   double length = 0.0;
+  /// Variances of the coefficients of sqrt(2n + 1) P_n, n = 2, 3, ..., of unit amplitude.
+  Eigen::VectorXd spectrum;
   Eigen::MatrixXd precision;     ///< of unit amplitude, reduced coordinates, singular for the straight part
   double log_determinant = 0.0;  ///< of its regular part, up to a constant common to all shapes of a function
   int rank = 0;
+
+  /// Standard deviation of the deviation from a straight line over that of its slope, weighted by 1 - t^2, a
+  /// share of the travel: about the length of a squared exponential covariance, less where that is long.
+  double correlation_length() const;
 };
 
-/// All shapes that evidence chooses from, for one basis and datum: kind by kind, lengths ascending, lengths
-/// with the same index being about as smooth. Empty when the basis holds straight lines only.
-std::vector<PriorShape> prior_shapes(const Basis& basis, const Axis& axis,
-                                     const Eigen::MatrixXd& datum_basis);
+/// The priors that a function may have, for one basis and datum.
+class FunctionPriors {
+ public:
+  FunctionPriors(const Basis& basis, const Axis& axis, const Eigen::MatrixXd& datum_basis);
+
+  /// What evidence chooses from: kind by kind, lengths ascending, lengths with the same index being about as
+  /// smooth. Empty when the basis holds straight lines only.
+  const std::vector<std::shared_ptr<const PriorShape>>& shapes() const { return shapes_; }
+
+  /// Independent Legendre coefficients with these variances up to a common factor.
+  PriorShape with_spectrum(const PriorShape& like, const Eigen::VectorXd& variances) const;
+
+  /// Expected squares of a function's Legendre coefficients, in units of 1 / lambda, given its posterior in
+  /// reduced coordinates under independent coefficients with the spectrum of `prior`.
+  Eigen::VectorXd expected_squares(const PriorShape& prior, double lambda, const Eigen::VectorXd& mean,
+                                   const Eigen::Ref<const Eigen::MatrixXd>& covariance) const;
+
+ private:
+  /// Precision, determinant and rank alone.
+  PriorShape with_covariance(Eigen::MatrixXd of_contrasts) const;
+
+  Eigen::MatrixXd of_reduced_;   ///< contrasts (combinations that vanish for straight lines) x reduced
+  Eigen::MatrixXd of_legendre_;  ///< contrasts x degrees
+  std::vector<std::shared_ptr<const PriorShape>> shapes_;
+};
 
 }  // namespace volcal

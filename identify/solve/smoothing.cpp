@@ -27,10 +27,16 @@ constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
+// Of coefficients, that what a spectrum is expected to be is worth: little beside a machine's eighteen
+// functions or an axis' six.
+constexpr double kWorthOfExpectation = 2.0;
+
+using Prior = std::shared_ptr<const PriorShape>;
 
 /// What the evidence decides.
 struct Hyperparameters {
   std::vector<std::size_t> shape;  ///< per term
+  std::vector<Prior> prior;        ///< per term, about the shape
   std::vector<double> lambda;      ///< per term
   std::vector<double> scale;       ///< per instrument
 };
@@ -56,12 +62,12 @@ struct Stretch {
 };
 
 Posterior posterior(const Quadratic& cost, const Eigen::VectorXd& z0, const std::vector<Stretch>& stretches,
-                    const std::vector<std::size_t>& shapes, const std::vector<double>& lambda) {
+                    const std::vector<Prior>& priors, const std::vector<double>& lambda) {
   Eigen::MatrixXd precision = cost.precision;
   Eigen::VectorXd gradient = cost.gradient;
   double minus_log = cost.constant;
   for (std::size_t t = 0; t < stretches.size(); ++t) {
-    const PriorShape& shape = (*stretches[t].term->shapes)[shapes[t]];
+    const PriorShape& shape = *priors[t];
     const Eigen::Index n = shape.precision.rows();
     const auto z = z0.segment(stretches[t].offset, n);
     const Eigen::VectorXd pull = lambda[t] * (shape.precision * z);
@@ -131,13 +137,13 @@ class AxisEvidence {
 
   /// A shape with its amplitudes, from those given.
   Choice with_shape(std::size_t shape, std::vector<double> lambda) const {
-    const std::vector<std::size_t> shapes(stretches_.size(), shape);
-    Posterior now = posterior(cost_, z0_, stretches_, shapes, lambda);
+    std::vector<Prior> priors;
+    for (const Stretch& stretch : stretches_) priors.push_back(stretch.term->family->shapes()[shape]);
+    Posterior now = posterior(cost_, z0_, stretches_, priors, lambda);
     for (int step = 0; step < kAmplitudeSteps; ++step) {
-      for (std::size_t t = 0; t < lambda.size(); ++t) {
-        lambda[t] = updated_lambda(stretches_[t], (*stretches_[t].term->shapes)[shape], lambda[t], now);
-      }
-      now = posterior(cost_, z0_, stretches_, shapes, lambda);
+      for (std::size_t t = 0; t < lambda.size(); ++t)
+        lambda[t] = updated_lambda(stretches_[t], *priors[t], lambda[t], now);
+      now = posterior(cost_, z0_, stretches_, priors, lambda);
     }
     return {shape, std::move(lambda), now.log_evidence};
   }
@@ -209,6 +215,23 @@ std::size_t common_shape(std::vector<AxisShapes>& axes) {
   return common;
 }
 
+/// Squares of Legendre coefficients expected of some functions, in units of their amplitudes.
+struct CoefficientSquares {
+  Eigen::VectorXd sum;
+  double functions = 0.0;
+
+  void add(const Eigen::VectorXd& squares) {
+    if (functions == 0.0) sum = Eigen::VectorXd::Zero(squares.size());
+    sum += squares;
+    functions += 1.0;
+  }
+
+  /// Highest point of the posterior, in the mean of the variances' inverse, where they are expected to be so.
+  Eigen::VectorXd variances(const Eigen::VectorXd& expected) const {
+    return (kWorthOfExpectation * expected + sum) / (kWorthOfExpectation + functions);
+  }
+};
+
 class EvidenceSearch {
  public:
   EvidenceSearch(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
@@ -219,16 +242,23 @@ class EvidenceSearch {
       stretches_.push_back({&terms[t], terms[t].offset});
       axes_[terms[t].symbol.axis].push_back(t);
     }
+    for (const auto& [axis, own] : axes_) groups_[is_rotary(axis) ? axis : AxisName::X].push_back(axis);
   }
 
   /// Returns log evidence.
   double run(Hyperparameters& at) const {
+    Hyperparameters corrected = at;
+    use_shapes(at);
     double log_evidence = settle(at);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       if (!choose_shapes(at)) break;
       log_evidence = settle(at);
     }
-    return log_evidence;
+    if (corrected.shape != at.shape) corrected = at;
+    const double with_correction = settle(corrected, &EvidenceSearch::correct_spectra);
+    if (with_correction <= log_evidence) return log_evidence;
+    at = corrected;
+    return with_correction;
   }
 
  private:
@@ -256,31 +286,36 @@ class EvidenceSearch {
     return squares > 0.0 ? std::sqrt(squares / redundancy) : scale;
   }
 
-  /// All amplitudes and variance components to their common fixed point.
-  double settle(Hyperparameters& at) const {
-    Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.shape, at.lambda);
+  using Update = void (EvidenceSearch::*)(const Posterior& now, const Hyperparameters& from,
+                                          Hyperparameters& at) const;
+
+  /// All amplitudes and variance components, and what `also` updates, to their common fixed point.
+  double settle(Hyperparameters& at, Update also = nullptr) const {
+    Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
     for (int step = 0; step < kSettlingSteps; ++step) {
       const double before = now.log_evidence;
-      for (const auto& [axis, terms] : axes_) {
-        for (const std::size_t t : terms) {
-          at.lambda[t] =
-              updated_lambda(stretches_[t], (*stretches_[t].term->shapes)[at.shape[t]], at.lambda[t], now);
-        }
-      }
+      const Hyperparameters from = at;
+      for (std::size_t t = 0; t < stretches_.size(); ++t)
+        at.lambda[t] = updated_lambda(stretches_[t], *from.prior[t], from.lambda[t], now);
       for (std::size_t g = 0; options_.variance_components && g < equations_.size(); ++g)
-        at.scale[g] = updated_scale(g, at.scale[g], now);
-      now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.shape, at.lambda);
+        at.scale[g] = updated_scale(g, from.scale[g], now);
+      if (also) (this->*also)(now, from, at);
+      now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
       if (std::abs(now.log_evidence - before) < kSettled) break;
     }
     return now.log_evidence;
   }
 
+  void use_shapes(Hyperparameters& at) const {
+    for (std::size_t t = 0; t < stretches_.size(); ++t)
+      at.prior[t] = stretches_[t].term->family->shapes()[at.shape[t]];
+  }
+
   /// True when other shapes are better. Linear axes share one unless they depart; rotary axes do not.
   bool choose_shapes(Hyperparameters& at) const {
-    std::map<AxisName, std::vector<AxisName>> groups;  // linear axes under X
-    for (const auto& [axis, terms] : axes_) groups[is_rotary(axis) ? axis : AxisName::X].push_back(axis);
     const Hyperparameters before = at;
-    for (const auto& [first, group] : groups) choose_shapes(group, before, at);
+    for (const auto& [first, group] : groups_) choose_shapes(group, before, at);
+    use_shapes(at);
     return at.shape != before.shape;
   }
 
@@ -306,6 +341,40 @@ class EvidenceSearch {
     }
   }
 
+  void correct_spectra(const Posterior& now, const Hyperparameters& from, Hyperparameters& at) const {
+    for (const auto& [first, group] : groups_) {
+      std::map<AxisName, CoefficientSquares> of_axis;
+      CoefficientSquares common, of_shapes;
+      for (const AxisName axis : group) {
+        for (const std::size_t t : axes_.at(axis)) {
+          const Eigen::VectorXd squares = expected_squares(t, now, from);
+          of_axis[axis].add(squares);
+          common.add(squares);
+          of_shapes.add(stretches_[t].term->family->shapes()[at.shape[t]]->spectrum);
+        }
+      }
+      const Eigen::VectorXd expected = common.variances(of_shapes.sum / of_shapes.functions);
+      for (const AxisName axis : group) set_spectrum(axis, of_axis.at(axis).variances(expected), at);
+    }
+  }
+
+  Eigen::VectorXd expected_squares(std::size_t t, const Posterior& now, const Hyperparameters& from) const {
+    const auto& [term, offset] = stretches_[t];
+    const Eigen::Index n = from.prior[t]->precision.rows();
+    return term->family->expected_squares(*from.prior[t], from.lambda[t], now.mean.segment(offset, n),
+                                          now.covariance.block(offset, offset, n, n));
+  }
+
+  void set_spectrum(AxisName axis, const Eigen::VectorXd& variances, Hyperparameters& at) const {
+    std::map<const FunctionPriors*, Prior> made;
+    for (const std::size_t t : axes_.at(axis)) {
+      const auto& family = stretches_[t].term->family;
+      Prior& prior = made[family.get()];
+      if (!prior) prior = std::make_shared<const PriorShape>(family->with_spectrum(*at.prior[t], variances));
+      at.prior[t] = prior;
+    }
+  }
+
   /// These functions with the other axes' smoothing held.
   AxisEvidence axis_evidence(const std::vector<std::size_t>& terms, const Hyperparameters& at) const {
     Quadratic all = readings_and_priors(at.scale);
@@ -314,7 +383,7 @@ class EvidenceSearch {
     for (std::size_t t = 0; t < stretches_.size(); ++t) {
       if (std::ranges::find(terms, t) != terms.end()) continue;
       const auto& [term, offset] = stretches_[t];
-      const Eigen::MatrixXd smoothing = at.lambda[t] * (*term->shapes)[at.shape[t]].precision;
+      const Eigen::MatrixXd smoothing = at.lambda[t] * at.prior[t]->precision;
       const Eigen::Index n = smoothing.rows();
       all.precision.block(offset, offset, n, n) += smoothing;
       all.gradient.segment(offset, n) += smoothing * z0_.segment(offset, n);
@@ -328,27 +397,27 @@ class EvidenceSearch {
   const EvidenceOptions& options_;
   std::vector<Stretch> stretches_;  ///< one per term
   std::map<AxisName, std::vector<std::size_t>> axes_;
+  std::map<AxisName, std::vector<AxisName>> groups_;  ///< linear axes under X, rotary ones each
 };
 
 }  // namespace
 
 std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const DatumSpace& datum) {
   std::vector<SmoothingTerm> terms;
-  std::map<std::pair<int, bool>, std::shared_ptr<const std::vector<PriorShape>>> shapes_of;
+  std::map<std::pair<int, bool>, std::shared_ptr<const FunctionPriors>> family_of;
   for (const auto& function : datum.functions()) {
     const FunctionSpec& spec = model.spec().function(function.symbol);
     const int group = model.layout().find(function.symbol)->group;
     const Basis& basis = *model.layout().groups[static_cast<std::size_t>(group)].basis;
     if (spec.knots != KnotChoice::Automatic || basis.roughness_order() == 0 || function.size() == 0) continue;
-    auto& shapes = shapes_of[{group, function.symbol.is_straightness()}];
-    if (!shapes) {
+    auto& family = family_of[{group, function.symbol.is_straightness()}];
+    if (!family) {
       const Axis& axis = model.campaign().machine.axis(function.symbol.axis);
-      shapes = std::make_shared<const std::vector<PriorShape>>(prior_shapes(basis, axis, function.basis));
+      family = std::make_shared<const FunctionPriors>(basis, axis, function.basis);
     }
-    if (shapes->empty()) continue;
-    SmoothingTerm term{function.symbol, function.offset, shapes, kStartPlace,
-                       1.0 / (kStartAmplitude * kStartAmplitude)};
-    terms.push_back(std::move(term));
+    if (family->shapes().empty()) continue;
+    terms.push_back({function.symbol, function.offset, family, kStartPlace,
+                     1.0 / (kStartAmplitude * kStartAmplitude), family->shapes()[kStartPlace]});
   }
   return terms;
 }
@@ -369,14 +438,16 @@ void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior
 EvidenceState maximise_evidence(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
                                 const GaussianPrior& prior, const EvidenceOptions& options,
                                 std::vector<double> scale, std::vector<SmoothingTerm>& terms) {
-  Hyperparameters at{{}, {}, std::move(scale)};
+  Hyperparameters at{{}, {}, {}, std::move(scale)};
   for (const SmoothingTerm& term : terms) {
     at.shape.push_back(term.shape);
+    at.prior.push_back(term.prior);
     at.lambda.push_back(term.lambda);
   }
   const double log_evidence = EvidenceSearch(equations, z0, prior, options, terms).run(at);
   for (std::size_t t = 0; t < terms.size(); ++t) {
     terms[t].shape = at.shape[t];
+    terms[t].prior = at.prior[t];
     terms[t].lambda = at.lambda[t];
   }
   return {std::move(at.scale), log_evidence};

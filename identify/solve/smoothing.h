@@ -14,6 +14,12 @@
 /// from the next one by a few units of log likelihood or less, so that axes left to themselves stray, and a
 /// prior that is too smooth costs more than one that is too rough.
 ///
+/// Then the variances of Legendre's coefficients are corrected degree by degree, by expectation and
+/// maximisation with conjugate priors (scaled inverse chi-squared; Gelman et al. 2013, Bayesian Data
+/// Analysis, 2.6): those common to the linear axes about the shape's, those of an axis about the common ones.
+/// The correction takes the coefficients as independent, which those of stationary shapes are not; it holds
+/// where the evidence is higher with it.
+///
 /// The posterior covariance C then contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such
 /// intervals cover the truth at the stated rate on average over the positions).
 
@@ -29,12 +35,12 @@ namespace volcal {
 struct SmoothingTerm {
   ErrorSymbol symbol;
   int offset = 0;  ///< in the reduced vector
-  std::shared_ptr<const std::vector<PriorShape>> shapes;
-  std::size_t shape = 0;
-  double lambda = 0.0;  ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
+  std::shared_ptr<const FunctionPriors> family;
+  std::size_t shape = 0;  ///< of the family's, that the prior is about
+  double lambda = 0.0;    ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
+  std::shared_ptr<const PriorShape> prior;
 
-  const PriorShape& prior_shape() const { return (*shapes)[shape]; }
-  const Eigen::MatrixXd& precision() const { return prior_shape().precision; }  ///< of unit amplitude
+  const Eigen::MatrixXd& precision() const { return prior->precision; }  ///< of unit amplitude
 };
 
 /// Terms for the functions that are smoothed, with a wide start.

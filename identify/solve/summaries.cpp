@@ -23,9 +23,9 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
     for (const SmoothingTerm& term : terms) {
       if (term.symbol != function.symbol) continue;
       summary.smoothed = true;
-      summary.prior = to_string(term.prior_shape().roughness);
+      summary.prior = to_string(term.prior->roughness);
       summary.correlation_length =
-          term.prior_shape().length * campaign.machine.axis(function.symbol.axis).travel();
+          term.prior->correlation_length() * campaign.machine.axis(function.symbol.axis).travel();
       const auto n = term.precision().rows();
       summary.effective_parameters -=
           term.lambda * covariance.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();

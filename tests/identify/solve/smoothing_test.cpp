@@ -81,7 +81,8 @@ TEST_P(Prior, PosteriorIsThatOfGaussianProcessRegression) {
   const Axis axis = axis_of_one_metre();
   const auto basis = fine_splines(axis);
   const auto identity = Eigen::MatrixXd::Identity(basis->size(), basis->size());
-  const PriorShape shape = prior_shapes(*basis, axis, identity)[GetParam()];
+  const FunctionPriors family(*basis, axis, identity);
+  const PriorShape& shape = *family.shapes()[GetParam()];
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(31, 0.0, 1.0);
   const Eigen::VectorXd y = (q.array() * 9.0).sin() + 3.0 * q.array() + 1.0;
   const double variance = 0.01;
@@ -115,10 +116,64 @@ TEST(PriorShapes, LeaveStraightLinesFree) {
   const Eigen::MatrixXd datum = null_space(datum_constraints(*basis, positioning, axis));
   const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(100, 0.0, 1.0);
   const Eigen::VectorXd line = (rows_at(*basis, q) * datum).colPivHouseholderQr().solve(q);
-  for (const PriorShape& shape : prior_shapes(*basis, axis, datum)) {
-    EXPECT_LT(line.dot(shape.precision * line), 1e-6) << to_string(shape.roughness) << " " << shape.length;
-    EXPECT_EQ(shape.rank, basis->size() - 2);
+  const FunctionPriors family(*basis, axis, datum);
+  for (const auto& shape : family.shapes()) {
+    EXPECT_LT(line.dot(shape->precision * line), 1e-6) << to_string(shape->roughness) << " " << shape->length;
+    EXPECT_EQ(shape->rank, basis->size() - 2);
   }
+}
+
+TEST(PriorShapes, OfSeriesFollowFromTheirSpectrum) {
+  const Axis axis = axis_of_one_metre();
+  const auto basis = fine_splines(axis);
+  const FunctionPriors family(*basis, axis, Eigen::MatrixXd::Identity(basis->size(), basis->size()));
+  for (const Roughness roughness : {Roughness::Geometric, Roughness::Heat}) {
+    const PriorShape& shape = *family.shapes()[static_cast<std::size_t>(roughness) * kPriorLengths + 5];
+    const PriorShape again = family.with_spectrum(shape, 7.0 * shape.spectrum);
+    EXPECT_NEAR(shape.spectrum.sum(), 1.0, 1e-12);
+    EXPECT_NEAR(again.spectrum.sum(), 1.0, 1e-12);
+    const Eigen::MatrixXd readings = 1e3 * Eigen::MatrixXd::Identity(basis->size(), basis->size());
+    const Eigen::MatrixXd posterior = (readings + shape.precision).inverse();
+    EXPECT_LT(((readings + again.precision).inverse() - posterior).norm(), 0.01 * posterior.norm())
+        << to_string(shape.roughness) << " " << shape.length;
+  }
+}
+
+TEST(PriorShapes, KnowTheirCorrelationLength) {
+  PriorShape parabolas;
+  parabolas.spectrum = Eigen::VectorXd::Unit(29, 0);  // n = 2: slope 6, weighted mean square 2 * 3
+  EXPECT_NEAR(parabolas.correlation_length(), 1.0 / 6.0, 1e-12);
+
+  const Axis axis = axis_of_one_metre();
+  const auto basis = fine_splines(axis);
+  const FunctionPriors family(*basis, axis, Eigen::MatrixXd::Identity(basis->size(), basis->size()));
+  const PriorShape& squared_exponential = *family.shapes()[2 * kPriorLengths + 3];
+  // Without its straight part a function is a little rougher.
+  EXPECT_LT(squared_exponential.correlation_length(), squared_exponential.length);
+  EXPECT_GT(squared_exponential.correlation_length(), 0.75 * squared_exponential.length);
+}
+
+TEST(PriorShapes, ExpectTheirSpectrumWithoutReadingsAndTheSquaresOfWhatIsKnown) {
+  const Axis axis = axis_of_one_metre();
+  const auto basis = fine_splines(axis);
+  const Eigen::Index n = basis->size();
+  const FunctionPriors family(*basis, axis, Eigen::MatrixXd::Identity(n, n));
+  const PriorShape& shape = *family.shapes()[6];
+  const double lambda = 1.0 / 9e-12;
+  const Eigen::MatrixXd unknown =
+      (lambda * shape.precision + 1e-6 * lambda * Eigen::MatrixXd::Identity(n, n)).inverse();
+  const Eigen::VectorXd without = family.expected_squares(shape, lambda, Eigen::VectorXd::Zero(n), unknown);
+  EXPECT_LT((without - shape.spectrum).norm(), 3e-3);
+
+  const Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(200, 0.0, 1.0);
+  Eigen::VectorXd values(q.size());
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    values[i] = 3e-6 * std::legendre(2, 2.0 * q[i] - 1.0) - 2e-6 * std::legendre(5, 2.0 * q[i] - 1.0);
+  const Eigen::VectorXd known = rows_at(*basis, q).colPivHouseholderQr().solve(values);
+  const Eigen::VectorXd squares =
+      family.expected_squares(shape, lambda, known, Eigen::MatrixXd::Zero(n, n)) / lambda;
+  EXPECT_NEAR(squares[0], 9e-12 / 5.0, 1e-14);
+  EXPECT_NEAR(squares[3], 4e-12 / 11.0, 1e-14);
 }
 
 TEST(PriorShapes, NoneForABasisOfStraightLines) {
@@ -127,7 +182,7 @@ TEST(PriorShapes, NoneForABasisOfStraightLines) {
   spec.degree = 1;
   spec.breakpoints = uniform_breakpoints(axis, 1);
   const auto basis = find_basis(spec.basis)->make(spec, axis);
-  EXPECT_TRUE(prior_shapes(*basis, axis, Eigen::MatrixXd::Identity(2, 2)).empty());
+  EXPECT_TRUE(FunctionPriors(*basis, axis, Eigen::MatrixXd::Identity(2, 2)).shapes().empty());
 }
 
 /// Functions, each read directly at 61 positions.
@@ -136,6 +191,7 @@ struct DirectReadings {
   std::vector<NoiseGroupEquations> equations;
   GaussianPrior prior = GaussianPrior::none(0);
   Eigen::VectorXd q = Eigen::VectorXd::LinSpaced(61, 0.0, 1.0);
+  Eigen::MatrixXd rows;
   std::vector<Eigen::VectorXd> values;
   double sigma = 0.2e-6;
 
@@ -153,9 +209,8 @@ struct DirectReadings {
     const Axis axis = axis_of_one_metre();
     const auto basis = fine_splines(axis);
     const int n = basis->size();
-    const auto shapes = std::make_shared<const std::vector<PriorShape>>(
-        prior_shapes(*basis, axis, Eigen::MatrixXd::Identity(n, n)));
-    const Eigen::MatrixXd rows = rows_at(*basis, q);
+    const auto family = std::make_shared<const FunctionPriors>(*basis, axis, Eigen::MatrixXd::Identity(n, n));
+    rows = rows_at(*basis, q);
     const auto count = static_cast<Eigen::Index>(functions.size());
     equations.push_back({Eigen::MatrixXd::Zero(n * count, n * count), Eigen::VectorXd::Zero(n * count), 0.0,
                          static_cast<double>(q.size() * count)});
@@ -164,8 +219,8 @@ struct DirectReadings {
     std::normal_distribution<double> normal;
     for (Eigen::Index f = 0; f < count; ++f) {
       const auto& [function_axis, shape, amplitude] = functions[static_cast<std::size_t>(f)];
-      Eigen::MatrixXd covariance =
-          kernel_matrix((*shapes)[shape], q, q) * (amplitude * amplitude / mean_variance((*shapes)[shape]));
+      const PriorShape& kind = *family->shapes()[shape];
+      Eigen::MatrixXd covariance = kernel_matrix(kind, q, q) * (amplitude * amplitude / mean_variance(kind));
       covariance.diagonal().array() += sigma * sigma;
       Eigen::VectorXd white(q.size());
       for (double& value : white) value = normal(engine);
@@ -174,7 +229,7 @@ struct DirectReadings {
       equations[0].gradient.segment(f * n, n) = -rows.transpose() * values.back() / (sigma * sigma);
       equations[0].squares += values.back().squaredNorm() / (sigma * sigma);
       terms.push_back({ErrorSymbol{kAllComponents[static_cast<std::size_t>(f)], function_axis},
-                       static_cast<int>(f) * n, shapes, 6, 1.0 / (5e-6 * 5e-6)});
+                       static_cast<int>(f) * n, family, 6, 1.0 / (5e-6 * 5e-6), family->shapes()[6]});
     }
   }
 
@@ -184,21 +239,49 @@ struct DirectReadings {
     return functions;
   }
 
-  /// Shapes by evidence, per function.
-  std::vector<std::size_t> chosen_shapes() {
+  void set_values(const std::function<double(std::size_t, double)>& function) {
+    equations[0].squares = 0.0;
+    const Eigen::Index n = equations[0].matrix.rows() / static_cast<Eigen::Index>(values.size());
+    for (std::size_t f = 0; f < values.size(); ++f) {
+      for (Eigen::Index i = 0; i < q.size(); ++i) values[f][i] = function(f, q[i]);
+      equations[0].gradient.segment(static_cast<Eigen::Index>(f) * n, n) =
+          -rows.transpose() * values[f] / (sigma * sigma);
+      equations[0].squares += values[f].squaredNorm() / (sigma * sigma);
+    }
+  }
+
+  void maximise() {
     EvidenceOptions options;
     options.variance_components = false;
     maximise_evidence(equations, Eigen::VectorXd::Zero(prior.mean.size()), prior, options, {1.0}, terms);
+  }
+
+  /// Shapes by evidence, per function.
+  std::vector<std::size_t> chosen_shapes() {
+    maximise();
     std::vector<std::size_t> chosen;
     for (const SmoothingTerm& term : terms) chosen.push_back(term.shape);
     return chosen;
   }
 
-  /// log density of the values under a shape and amplitudes, vague lines, by dense covariances.
-  double log_density(const PriorShape& shape, const std::vector<double>& lambda) const {
+  Eigen::MatrixXd of_kernel(const PriorShape& shape) const {
+    return kernel_matrix(shape, q, q) / mean_variance(shape);
+  }
+  Eigen::MatrixXd of_spectrum(const Eigen::VectorXd& spectrum) const {
+    Eigen::MatrixXd polynomials(q.size(), spectrum.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      for (unsigned n = 2; n < spectrum.size() + 2; ++n)
+        polynomials(i, n - 2) = std::sqrt(2.0 * n + 1.0) * std::legendre(n, 2.0 * q[i] - 1.0);
+    }
+    return polynomials * spectrum.asDiagonal() * polynomials.transpose();
+  }
+
+  /// log density of the values under a covariance of unit amplitude and amplitudes, vague lines, by dense
+  /// covariances.
+  double log_density(const Eigen::MatrixXd& of_unit, const std::vector<double>& lambda) const {
     double sum = 0.0;
     for (std::size_t f = 0; f < values.size(); ++f) {
-      Eigen::MatrixXd covariance = kernel_matrix(shape, q, q) / mean_variance(shape) / lambda[f];
+      Eigen::MatrixXd covariance = of_unit / lambda[f];
       covariance += 1e-4 * (Eigen::MatrixXd::Ones(q.size(), q.size()) + q * q.transpose());
       covariance.diagonal().array() += sigma * sigma;
       const Eigen::LLT<Eigen::MatrixXd> root(covariance);
@@ -224,26 +307,23 @@ TEST(SmoothingTerms, AreAlikeUpToAQuarterOfAnAmplitude) {
 
 TEST(MaximiseEvidence, FindsTheHighestPointOfTheDenseLikelihood) {
   DirectReadings readings(2 * kPriorLengths + 6, {4e-6, 8e-6, 2e-6, 6e-6, 5e-6, 3e-6});
-  EvidenceOptions options;
-  options.variance_components = false;
-  maximise_evidence(readings.equations, Eigen::VectorXd::Zero(readings.prior.mean.size()), readings.prior,
-                    options, {1.0}, readings.terms);
+  const PriorShape& true_shape = *readings.terms[0].family->shapes()[2 * kPriorLengths + 6];
+  readings.maximise();
   std::vector<double> lambda;
   for (const SmoothingTerm& term : readings.terms) lambda.push_back(term.lambda);
-  const std::size_t shape = readings.terms[0].shape;
-  const auto& shapes = *readings.terms[0].shapes;
-  const double best = readings.log_density(shapes[shape], lambda);
+  const Eigen::MatrixXd prior = readings.of_kernel(*readings.terms[0].prior);
+  const double best = readings.log_density(prior, lambda);
   for (std::size_t f = 0; f < lambda.size(); ++f) {
     for (const double factor : {0.5, 2.0}) {
       std::vector<double> other = lambda;
       other[f] *= factor;
-      EXPECT_GT(best, readings.log_density(shapes[shape], other)) << "function " << f << " x " << factor;
+      EXPECT_GT(best, readings.log_density(prior, other)) << "function " << f << " x " << factor;
     }
   }
   const double at_truth = readings.log_density(
-      shapes[2 * kPriorLengths + 6],
+      readings.of_kernel(true_shape),
       {1.0 / 16e-12, 1.0 / 64e-12, 1.0 / 4e-12, 1.0 / 36e-12, 1.0 / 25e-12, 1.0 / 9e-12});
-  EXPECT_GT(best, at_truth - 1.0) << to_string(shapes[shape].roughness) << " " << shapes[shape].length;
+  EXPECT_GT(best, at_truth - 1.0);
 }
 
 // The second axis alone would choose another shape than the first.
@@ -256,18 +336,33 @@ TEST(MaximiseEvidence, GivesAxesThatAreHardToTellApartOneShape) {
 }
 
 TEST(MaximiseEvidence, SetsAnAxisApartThatIsPlainlyRougher) {
-  const auto chosen = DirectReadings({{AxisName::X, 8, 4e-6},
-                                      {AxisName::X, 8, 6e-6},
-                                      {AxisName::Y, 8, 5e-6},
-                                      {AxisName::Y, 8, 3e-6},
-                                      {AxisName::Z, 0, 4e-6},
-                                      {AxisName::Z, 0, 6e-6}})
-                          .chosen_shapes();
-  EXPECT_EQ(chosen[0], chosen[1]);
-  EXPECT_EQ(chosen[0], chosen[2]);
-  EXPECT_EQ(chosen[0], chosen[3]);
-  EXPECT_EQ(chosen[4], chosen[5]);
-  EXPECT_LT(chosen[4] % kPriorLengths + 2, chosen[0] % kPriorLengths);
+  DirectReadings readings({{AxisName::X, 8, 4e-6},
+                           {AxisName::X, 8, 6e-6},
+                           {AxisName::Y, 8, 5e-6},
+                           {AxisName::Y, 8, 3e-6},
+                           {AxisName::Z, 0, 4e-6},
+                           {AxisName::Z, 0, 6e-6}});
+  readings.maximise();
+  std::vector<double> length;
+  for (const SmoothingTerm& term : readings.terms) length.push_back(term.prior->correlation_length());
+  EXPECT_EQ(length[0], length[1]);
+  EXPECT_NEAR(length[2], length[0], 0.4 * length[0]);
+  EXPECT_EQ(length[4], length[5]);
+  EXPECT_LT(length[4], 0.6 * length[0]);
+}
+
+TEST(MaximiseEvidence, CorrectsTheSpectrumWhereReadingsShowAnother) {
+  DirectReadings readings(6, std::vector<double>(6, 1e-6));
+  const Eigen::VectorXd start = readings.terms[0].family->shapes()[6]->spectrum;
+  readings.set_values([](std::size_t f, double q) {
+    const double sign = f % 2 == 0 ? 1.0 : -1.0;
+    return sign * 5e-6 * std::legendre(2, 2.0 * q - 1.0) + 4e-6 * std::legendre(6, 2.0 * q - 1.0);
+  });
+  readings.maximise();
+  const Eigen::VectorXd spectrum = readings.terms[0].prior->spectrum;
+  const double c2 = 25.0 / 5.0, c6 = 16.0 / 13.0;  // sqrt(2n + 1) P_n has a mean square of 1
+  EXPECT_NEAR(spectrum[4] / spectrum[0], c6 / c2, 0.05 * c6 / c2);
+  EXPECT_LT(spectrum[2] / spectrum[0], 0.5 * start[2] / start[0]);
 }
 
 TEST(MaximiseEvidence, FindsTheStandardDeviation) {
@@ -295,10 +390,10 @@ TEST(AmplitudeCovariance, IsThatOfDifferencesOfTheDenseLikelihood) {
   const double step = 0.05;
   const double up = term.lambda * std::exp(step), down = term.lambda * std::exp(-step);
   const Eigen::VectorXd change = (mean(up) - mean(down)) / (2.0 * step);
-  const PriorShape& shape = term.prior_shape();
+  const Eigen::MatrixXd of_unit = readings.of_kernel(*term.prior);
   const double curvature =
-      -(readings.log_density(shape, {up}) - 2.0 * readings.log_density(shape, {term.lambda}) +
-        readings.log_density(shape, {down})) /
+      -(readings.log_density(of_unit, {up}) - 2.0 * readings.log_density(of_unit, {term.lambda}) +
+        readings.log_density(of_unit, {down})) /
       (step * step);
   ASSERT_GT(curvature, 0.5);
   const Eigen::MatrixXd expected = change * change.transpose() / (curvature + 1.0 / 9.0);

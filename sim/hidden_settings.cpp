@@ -84,6 +84,7 @@ LocationSymbol HiddenSettings::location_symbol() const {
                      (is_rotary(symbol->axis) || std::ranges::find(squareness, *symbol) != squareness.end());
   if (known) return *symbol;
   std::vector<std::string> names;
+  names.reserve(squareness.size());
   for (const LocationSymbol& each : squareness) names.push_back(each.name());
   fail("\"" + name + "\" is no location error of this machine", "with this datum there are " + joined(names));
 }
@@ -140,6 +141,7 @@ const TemperatureChannel& HiddenSettings::channel(const std::string& stem) const
   const auto found = std::ranges::find(channels, name, &TemperatureChannel::name);
   if (found != channels.end()) return *found;
   std::vector<std::string> names;
+  names.reserve(channels.size());
   for (const TemperatureChannel& each : channels) names.push_back(each.name);
   fail("the study does not simulate the temperature \"" + name + "\"",
        "add a [[temperatures]] table, or use one of: " + joined(names));

@@ -140,9 +140,10 @@ constexpr std::array<SimulatedInstrument, 7> kInstruments = {{
 }};
 
 ReadFunction find_instrument(const std::string& name) {
-  const auto found = std::ranges::find(kInstruments, name, &SimulatedInstrument::name);
-  if (found == kInstruments.end()) throw std::invalid_argument("instrument " + name + " is not simulated");
-  return found->read;
+  for (const SimulatedInstrument& instrument : kInstruments) {
+    if (instrument.name == name) return instrument.read;
+  }
+  throw std::invalid_argument("instrument " + name + " is not simulated");
 }
 
 /// How far each axis has gone since it last turned round. Turning on the spot, it overruns the point.

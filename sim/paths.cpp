@@ -84,6 +84,7 @@ CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fracti
 std::vector<CommandedPoint> straight_path(const CommandedPoint& start, const CommandedPoint& end, int count,
                                           int runs, bool bidirectional) {
   std::vector<CommandedPoint> forward;
+  forward.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     forward.push_back(between(start, end, static_cast<double>(i) / (count - 1)));
   }

@@ -13,9 +13,10 @@ namespace {
 
 std::vector<Eigen::Vector3d> true_tool_offsets(const Study& study) {
   std::vector<Eigen::Vector3d> offsets;
+  offsets.reserve(study.machine.tools.size());
   for (const Tool& tool : study.machine.tools) {
     RandomStream random(study.seed, "tool " + tool.name);
-    offsets.push_back(tool.offset + tool.offset_sigma * random.normal_vector());
+    offsets.emplace_back(tool.offset + tool.offset_sigma * random.normal_vector());
   }
   return offsets;
 }

@@ -44,11 +44,11 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc,
     const std::string word = argv[i];
     if (word == "--") break;
     if (word.starts_with("--")) {
-      const std::string problem =
+      std::string problem =
           unknown_word("option", word.substr(0, word.find('=')), "", names_of_options(*current));
       if (!problem.empty()) return problem;
     } else if (const auto names = names_of_commands(*current); !word.starts_with("-") && !names.empty()) {
-      const std::string problem = unknown_word("command", word, path, names);
+      std::string problem = unknown_word("command", word, path, names);
       if (!problem.empty()) return problem;
       current = current->get_subcommand(word);
       path += word + " ";

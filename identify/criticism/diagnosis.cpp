@@ -331,40 +331,65 @@ class Diagnostician {
   }
 
   void conclude() {
-    const bool more = !diagnosis_.unknown.empty();
-    const auto sets = sets_of_alternatives(diagnosis_);
-    auto& words = diagnosis_.words;
     if (!diagnosis_.effects.empty()) {
-      const bool open = more || !sets.empty() || search_.more_is_known();
-      diagnosis_.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
-      for (const EffectFinding& effect : diagnosis_.effects)
-        words.push_back("The missing effect is: " + sentence(effect));
-      for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
-      if (search_.more_is_known()) words.emplace_back(kKnownMore);
-      if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
-    } else if (!sets.empty() && !more) {
-      diagnosis_.verdict = Verdict::OneOf;
-      for (const auto* set : sets) {
-        words.push_back("One of these is missing, and these readings do not tell them apart: " + names(*set));
-      }
-      if (search_.more_is_known()) words.emplace_back(kKnownMore);
-    } else if (more) {
-      diagnosis_.verdict = Verdict::Unknown;
-      words.push_back("An effect that is in no catalogue: " + sentence(diagnosis_.unknown.front()));
-      for (const auto* set : sets) {
-        words.push_back("Nearest in the catalogue, but not all of it: " + names(*set));
-      }
-    } else if (mostly_invisible()) {
+      conclude_named();
+    } else if (!diagnosis_.unknown.empty()) {
+      conclude_unknown();
+    } else if (!sets_of_alternatives(diagnosis_).empty()) {
+      conclude_one_of();
+    } else {
+      conclude_nothing();
+    }
+    add_remarks();
+  }
+
+  void conclude_named() {
+    const auto sets = sets_of_alternatives(diagnosis_);
+    const bool more = !diagnosis_.unknown.empty();
+    const bool open = more || !sets.empty() || search_.more_is_known();
+    auto& words = diagnosis_.words;
+    diagnosis_.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
+    for (const EffectFinding& effect : diagnosis_.effects)
+      words.push_back("The missing effect is: " + sentence(effect));
+    for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
+    if (search_.more_is_known()) words.emplace_back(kKnownMore);
+    if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
+  }
+
+  void conclude_unknown() {
+    auto& words = diagnosis_.words;
+    diagnosis_.verdict = Verdict::Unknown;
+    words.push_back("An effect that is in no catalogue: " + sentence(diagnosis_.unknown.front()));
+    for (const auto* set : sets_of_alternatives(diagnosis_)) {
+      words.push_back("Nearest in the catalogue, but not all of it: " + names(*set));
+    }
+  }
+
+  void conclude_one_of() {
+    auto& words = diagnosis_.words;
+    diagnosis_.verdict = Verdict::OneOf;
+    for (const auto* set : sets_of_alternatives(diagnosis_)) {
+      words.push_back("One of these is missing, and these readings do not tell them apart: " + names(*set));
+    }
+    if (search_.more_is_known()) words.emplace_back(kKnownMore);
+  }
+
+  void conclude_nothing() {
+    if (mostly_invisible()) {
       diagnosis_.verdict = Verdict::NotVisible;
-      words.push_back(fmt::format(
+      diagnosis_.words.push_back(fmt::format(
           "Nothing is above the noise, but {} of {} effects would not be visible with this measurement.",
           diagnosis_.not_visible.size(), diagnosis_.families));
     } else {
       diagnosis_.verdict = Verdict::NothingAbove;
-      words.emplace_back(
+      diagnosis_.words.emplace_back(
           "Nothing is above the noise; what would have been found is in the table of smallest detectable "
           "amplitudes.");
     }
+  }
+
+  void add_remarks() {
+    auto& words = diagnosis_.words;
     for (const auto& [family, reason] : search_.given_up()) {
       words.push_back("Not named " + families_[family].label() + ": " + reason + ".");
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -350,7 +351,7 @@ void EffectSearch::keep_one_step() {
   more_is_known_ = std::any_of(first + 1, added_.end(), is_effect);
   const std::vector<AddedEffect> before(added_.begin(), first + 1);
   std::vector<FamilyTest> kept;
-  for (const AddedEffect& effect : before) kept.push_back(effect.test);
+  std::ranges::transform(before, std::back_inserter(kept), &AddedEffect::test);
   add_again(kept);
   for (std::size_t i = 0; i < before.size(); ++i) added_[i].rivals = before[i].rivals;
   test();

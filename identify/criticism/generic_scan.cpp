@@ -239,69 +239,101 @@ class GenericScanner {
   double log_count_ = 0.0;
 };
 
+/// Variables in the order in which they are added, without those that are constant over the observations.
+class ScanVariables {
+ public:
+  explicit ScanVariables(const LinearModel& model) : model_(model), campaign_(model.campaign()) {}
+
+  void add_positions_and_directions() {
+    for (const Axis& axis : campaign_.machine.axes) {
+      const std::size_t k = index_of(axis.name);
+      const std::string letter(1, lower_letter_of(axis.name));
+      add(letter,
+          [k](const Setup& setup, std::size_t, std::size_t row) { return setup.readings.position[k][row]; });
+      add("dir_" + letter, [k](const Setup& setup, std::size_t, std::size_t row) {
+        const auto& direction = setup.readings.direction[k];
+        return direction.empty() ? 0.0 : static_cast<double>(direction[row]);
+      });
+    }
+  }
+
+  void add_time_and_temperatures() {
+    const double start = time_span(campaign_).first;
+    add("time", [start](const Setup& setup, std::size_t, std::size_t row) {
+      return setup.readings.time.empty() ? start : setup.readings.time[row];
+    });
+    for (const std::string& channel : temperature_channels(campaign_)) {
+      add("T_" + channel, [&channel](const Setup& setup, std::size_t, std::size_t row) {
+        const auto found = setup.readings.temperature.find(channel);
+        return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
+                                                         : found->second[row];
+      });
+    }
+  }
+
+  void add_beam_geometry() {
+    add("length", [this](const Setup&, std::size_t setup, std::size_t row) {
+      return model_.views()[setup].length[static_cast<Eigen::Index>(row)];
+    });
+    add("elevation", [this](const Setup& setup, std::size_t of, std::size_t row) {
+      const auto station = setup.options.vector("station");
+      if (!station) return 0.0;
+      const Eigen::Vector3d beam = model_.views()[of].nominal_point_w[row] - *station;
+      return std::atan2(beam.z(), beam.head<2>().norm());
+    });
+  }
+
+  void add_run_and_feed() {
+    add("run", [](const Setup& setup, std::size_t, std::size_t row) {
+      return setup.readings.run.empty() ? 0.0 : static_cast<double>(setup.readings.run[row]);
+    });
+    add("feed", [](const Setup& setup, std::size_t, std::size_t row) {
+      return setup.readings.feed.empty() ? 0.0 : setup.readings.feed[row];
+    });
+  }
+
+  void add_tools_and_stations() {
+    for (const std::string& tool : tools_in_use(campaign_)) {
+      add("tool " + tool, [&](const Setup& setup, std::size_t, std::size_t) {
+        return campaign_.machine.tools[setup.tool].name == tool ? 1.0 : 0.0;
+      });
+    }
+    for (const std::string& station : station_names(campaign_)) {
+      add("station " + station, [&station](const Setup& setup, std::size_t, std::size_t) {
+        return station_of(setup) == station ? 1.0 : 0.0;
+      });
+    }
+  }
+
+  std::vector<ScanVariable> take() { return std::move(variables_); }
+
+ private:
+  /// `of_reading(setup, its number, row)` is the value.
+  template <class OfReading>
+  void add(const std::string& name, const OfReading& of_reading) {
+    Eigen::VectorXd value(static_cast<Eigen::Index>(model_.size()));
+    for (std::size_t i = 0; i < model_.size(); ++i) {
+      const auto& [setup, row, channel] = model_.observations()[i];
+      value[static_cast<Eigen::Index>(i)] = of_reading(campaign_.setups[setup], setup, row);
+    }
+    add_variable(variables_, name, std::move(value));
+  }
+
+  const LinearModel& model_;
+  const Campaign& campaign_;
+  std::vector<ScanVariable> variables_;
+};
+
 }  // namespace
 
 std::vector<ScanVariable> scan_variables(const LinearModel& model) {
-  const Campaign& campaign = model.campaign();
-  std::vector<ScanVariable> variables;
-  const auto over_observations = [&](const auto& of_reading) {
-    Eigen::VectorXd value(static_cast<Eigen::Index>(model.size()));
-    for (std::size_t i = 0; i < model.size(); ++i) {
-      const auto& [setup, row, channel] = model.observations()[i];
-      value[static_cast<Eigen::Index>(i)] = of_reading(campaign.setups[setup], setup, row);
-    }
-    return value;
-  };
-  const auto add = [&](const std::string& name, const auto& of_reading) {
-    add_variable(variables, name, over_observations(of_reading));
-  };
-  for (const Axis& axis : campaign.machine.axes) {
-    const std::size_t k = index_of(axis.name);
-    const std::string letter(1, lower_letter_of(axis.name));
-    add(letter,
-        [k](const Setup& setup, std::size_t, std::size_t row) { return setup.readings.position[k][row]; });
-    add("dir_" + letter, [k](const Setup& setup, std::size_t, std::size_t row) {
-      const auto& direction = setup.readings.direction[k];
-      return direction.empty() ? 0.0 : static_cast<double>(direction[row]);
-    });
-  }
-  const double start = time_span(campaign).first;
-  add("time", [start](const Setup& setup, std::size_t, std::size_t row) {
-    return setup.readings.time.empty() ? start : setup.readings.time[row];
-  });
-  for (const std::string& channel : temperature_channels(campaign)) {
-    add("T_" + channel, [&channel](const Setup& setup, std::size_t, std::size_t row) {
-      const auto found = setup.readings.temperature.find(channel);
-      return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
-                                                       : found->second[row];
-    });
-  }
-  add("length", [&model](const Setup&, std::size_t setup, std::size_t row) {
-    return model.views()[setup].length[static_cast<Eigen::Index>(row)];
-  });
-  add("elevation", [&model](const Setup& setup, std::size_t of, std::size_t row) {
-    const auto station = setup.options.vector("station");
-    if (!station) return 0.0;
-    const Eigen::Vector3d beam = model.views()[of].nominal_point_w[row] - *station;
-    return std::atan2(beam.z(), beam.head<2>().norm());
-  });
-  add("run", [](const Setup& setup, std::size_t, std::size_t row) {
-    return setup.readings.run.empty() ? 0.0 : static_cast<double>(setup.readings.run[row]);
-  });
-  add("feed", [](const Setup& setup, std::size_t, std::size_t row) {
-    return setup.readings.feed.empty() ? 0.0 : setup.readings.feed[row];
-  });
-  for (const std::string& tool : tools_in_use(campaign)) {
-    add("tool " + tool, [&](const Setup& setup, std::size_t, std::size_t) {
-      return campaign.machine.tools[setup.tool].name == tool ? 1.0 : 0.0;
-    });
-  }
-  for (const std::string& station : station_names(campaign)) {
-    add("station " + station, [&station](const Setup& setup, std::size_t, std::size_t) {
-      return station_of(setup) == station ? 1.0 : 0.0;
-    });
-  }
-  return variables;
+  ScanVariables variables(model);
+  variables.add_positions_and_directions();
+  variables.add_time_and_temperatures();
+  variables.add_beam_geometry();
+  variables.add_run_and_feed();
+  variables.add_tools_and_stations();
+  return variables.take();
 }
 
 Eigen::MatrixXd scan_powers(const ScanVariable& variable) {

@@ -21,6 +21,13 @@ BlockPlaces reduced_places(const ParameterLayout& layout, const DatumSpace& datu
   return places;
 }
 
+void continue_sequence(NoiseSequence& sequence, std::size_t observation, const Readings& readings,
+                       std::size_t row) {
+  sequence.observation.push_back(observation);
+  if (!readings.time.empty()) sequence.time.push_back(readings.time[row]);
+  if (!readings.line.empty()) sequence.line.push_back(readings.line[row]);
+}
+
 }  // namespace
 
 ImaginedCampaign::ImaginedCampaign(const Campaign& campaign, const FitResult& result,
@@ -80,12 +87,12 @@ void ImaginedCampaign::map_parameters(const Campaign& campaign, const FitResult&
     const ParameterBlock& source = layout.blocks[block.block];
     const auto found = known.find(source.name);
     for (int k = 0; k < block.size; ++k) {
-      const auto at = static_cast<std::size_t>(block.offset + k);
+      const int at = block.offset + k;
       if (found != known.end() && found->second.second == block.size) {
-        place_[at] = found->second.first + k;
+        place_[static_cast<std::size_t>(at)] = found->second.first + k;
       } else {
         const double sigma = source.prior_sigma[k] > 0.0 ? source.prior_sigma[k] : kWideNuisance;
-        new_precision_[block.offset + k] = 1.0 / (sigma * sigma);
+        new_precision_[at] = 1.0 / (sigma * sigma);
       }
     }
   }
@@ -96,52 +103,56 @@ std::size_t ImaginedCampaign::group_of(std::size_t setup, int channel) const {
   return static_cast<std::size_t>(std::ranges::find(noise_groups_, group) - noise_groups_.begin());
 }
 
-ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
-  const auto [first, count] = stretches_[measurement];
-  std::vector<Eigen::VectorXd> derivatives;
-  std::vector<Eigen::VectorXd> sensitivities;
-  ImaginedRows out;
+/// Observations with the same run and channel follow each other in one sequence.
+void ImaginedCampaign::observe(std::size_t setup, Derivatives& derivatives, NoiseData& data) const {
+  const Readings& readings = campaign_.setups[setup].readings;
+  std::map<std::pair<std::int32_t, int>, std::size_t> sequence_of;
   RowJacobian row;
   MeasurementModel::DisturbanceRows disturbance;
-  for (std::size_t setup = first; setup < first + count; ++setup) {
-    const Readings& readings = campaign_.setups[setup].readings;
-    std::map<std::pair<std::int32_t, int>, std::size_t> place;
-    for (std::size_t i = 0; i < readings.size(); ++i) {
-      model_.linearize(setup, i, parameters_, row);
-      model_.disturbance_rows(setup, i, parameters_, disturbance);
-      for (int channel = 0; channel < row.channels; ++channel) {
-        const std::int32_t run = readings.run.empty() ? 0 : readings.run[i];
-        const auto [found, is_new] = place.try_emplace({run, channel}, out.data.sequences.size());
-        if (is_new) out.data.sequences.push_back({{}, {}, {}, group_of(setup, channel)});
-        NoiseSequence& sequence = out.data.sequences[found->second];
-        sequence.observation.push_back(derivatives.size());
-        if (!readings.time.empty()) sequence.time.push_back(readings.time[i]);
-        if (!readings.line.empty()) sequence.line.push_back(readings.line[i]);
-        out.data.sigma.push_back(model_.sigma(setup, i, channel, parameters_));
-        out.data.length.push_back(views_[setup].length[static_cast<Eigen::Index>(i)]);
-        derivatives.emplace_back(
-            datum_.front().reduce_rows(dense_row(model_.layout(), row, channel).transpose()).transpose());
-        sensitivities.emplace_back(disturbance.row(channel).transpose());
-      }
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    model_.linearize(setup, i, parameters_, row);
+    model_.disturbance_rows(setup, i, parameters_, disturbance);
+    const std::int32_t run = readings.run.empty() ? 0 : readings.run[i];
+    for (int channel = 0; channel < row.channels; ++channel) {
+      const auto [found, is_new] = sequence_of.try_emplace({run, channel}, data.sequences.size());
+      if (is_new) data.sequences.push_back({{}, {}, {}, group_of(setup, channel)});
+      continue_sequence(data.sequences[found->second], derivatives.model.size(), readings, i);
+      data.sigma.push_back(model_.sigma(setup, i, channel, parameters_));
+      data.length.push_back(views_[setup].length[static_cast<Eigen::Index>(i)]);
+      derivatives.model.emplace_back(
+          datum_.front().reduce_rows(dense_row(model_.layout(), row, channel).transpose()).transpose());
+      derivatives.sensitivity.emplace_back(disturbance.row(channel).transpose());
     }
   }
-  const auto size = static_cast<Eigen::Index>(derivatives.size());
-  std::vector<Eigen::Index> fresh;
+}
+
+std::vector<Eigen::Index> ImaginedCampaign::new_parameters(const Derivatives& derivatives) const {
+  std::vector<Eigen::Index> found;
   for (std::size_t k = 0; k < place_.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
     const auto moves = [at](const Eigen::VectorXd& each) { return each[at] != 0.0; };
-    if (place_[k] < 0 && std::ranges::any_of(derivatives, moves)) fresh.push_back(at);
+    if (place_[k] < 0 && std::ranges::any_of(derivatives.model, moves)) found.push_back(at);
   }
+  return found;
+}
+
+ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
+  const auto [first, count] = stretches_[measurement];
+  ImaginedRows out;
+  Derivatives derivatives;
+  for (std::size_t setup = first; setup < first + count; ++setup) observe(setup, derivatives, out.data);
+  const auto size = static_cast<Eigen::Index>(derivatives.model.size());
+  const std::vector<Eigen::Index> fresh = new_parameters(derivatives);
   out.model = Eigen::MatrixXd::Zero(size, known_parameters_);
   out.nuisance.resize(size, static_cast<Eigen::Index>(fresh.size()));
   out.sensitivity.resize(size, kDisturbances);
   for (Eigen::Index i = 0; i < size; ++i) {
-    const Eigen::VectorXd& derivative = derivatives[static_cast<std::size_t>(i)];
+    const Eigen::VectorXd& derivative = derivatives.model[static_cast<std::size_t>(i)];
     for (std::size_t k = 0; k < place_.size(); ++k) {
       if (place_[k] >= 0) out.model(i, place_[k]) = derivative[static_cast<Eigen::Index>(k)];
     }
     out.nuisance.row(i) = derivative(fresh).transpose();
-    out.sensitivity.row(i) = sensitivities[static_cast<std::size_t>(i)].transpose();
+    out.sensitivity.row(i) = derivatives.sensitivity[static_cast<std::size_t>(i)].transpose();
   }
   out.nuisance_precision = new_precision_(fresh);
   return out;

@@ -44,10 +44,18 @@ class ImaginedCampaign {
     std::size_t first = 0;  ///< setup of the extended campaign
     std::size_t count = 0;
   };
+  /// Of observations one after the other.
+  struct Derivatives {
+    std::vector<Eigen::VectorXd> model;        ///< to the reduced parameters of the extended campaign
+    std::vector<Eigen::VectorXd> sensitivity;  ///< to disturbances
+  };
 
   Campaign extended(const Campaign& campaign);
   std::size_t group_of(std::size_t setup, int channel) const;
   void map_parameters(const Campaign& campaign, const FitResult& result);
+  void observe(std::size_t setup, Derivatives& derivatives, NoiseData& data) const;
+  /// Those of new setups that any of the observations depends on.
+  std::vector<Eigen::Index> new_parameters(const Derivatives& derivatives) const;
 
   std::vector<ExtraMeasurement> measurements_;
   std::vector<std::string> noise_groups_;

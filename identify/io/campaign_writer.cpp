@@ -199,7 +199,9 @@ std::string truth_csv(const sim::TruthMachine& truth) {
 
 std::string readings_file_name(const Setup& setup) {
   std::string name = setup.name;
-  const auto awkward = [](unsigned char c) { return !std::isalnum(c) && c != '_' && c != '-' && c != '.'; };
+  const auto awkward = [](unsigned char c) {
+    return std::isalnum(c) == 0 && c != '_' && c != '-' && c != '.';
+  };
   std::ranges::replace_if(name, awkward, '_');
   return name + ".csv";
 }

@@ -30,7 +30,8 @@ std::vector<std::size_t> sampling_order(const std::vector<NoiseSequence>& sequen
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, scrambled);
   std::set<std::size_t> seen;
-  std::ranges::stable_partition(order, [&](std::size_t i) { return seen.insert(sequences[i].group).second; });
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return seen.insert(sequences[i].group).second; });
   return order;
 }
 

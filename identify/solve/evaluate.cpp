@@ -45,8 +45,8 @@ std::vector<std::pair<int, int>> shared_parameters(const ParameterLayout& fitted
 
 /// 1 / sigma^2; 0 of what the campaign leaves out.
 std::vector<double> weights_of(const ReadingIndex& index, const std::vector<double>& sigma) {
-  std::vector<double> weight;
-  for (const double each : sigma) weight.push_back(1.0 / (each * each));
+  std::vector<double> weight(sigma.size());
+  std::ranges::transform(sigma, weight.begin(), [](double each) { return 1.0 / (each * each); });
   for (const std::size_t observation : index.left_out()) weight[observation] = 0.0;
   return weight;
 }

@@ -213,11 +213,12 @@ class Identification {
     base_prior_ = priors;
     hold_undetermined(wide);
     terms_ = smoothing_terms(model_, *datum_);
-    const auto unseen = std::ranges::stable_partition(terms_, [this](const SmoothingTerm& term) {
+    const auto is_visible = [this](const SmoothingTerm& term) {
       return std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
-    });
-    std::vector<SmoothingTerm> held(unseen.begin(), unseen.end());
-    terms_.erase(unseen.begin(), unseen.end());
+    };
+    const auto unseen = std::stable_partition(terms_.begin(), terms_.end(), is_visible);
+    std::vector<SmoothingTerm> held(unseen, terms_.end());
+    terms_.erase(unseen, terms_.end());
     for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
     add_smoothing(held, base_prior_);
   }
@@ -412,7 +413,7 @@ class Identification {
     result_.identified = identified_model(spec_, model_.layout(), parameters_);
     summarise_temperature(campaign_, result_);
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
-      result_.messages.push_back(
+      result_.messages.emplace_back(
           "robust loss: readings are taken as independent; wander and offsets of lines were not looked for");
     }
     judge(campaign_, model_.binding(), {converged_, rank_.deficient}, result_);

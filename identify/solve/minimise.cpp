@@ -181,7 +181,7 @@ struct ReducedBlocks {
     for (const auto& block : datum.blocks()) add(block.offset, block.size);
   }
   void add(int offset, int size) {
-    if (size > 0) blocks.push_back({offset, size});
+    if (size > 0) blocks.emplace_back(offset, size);
   }
   std::vector<std::pair<int, int>> blocks;  ///< offset, size
 };
@@ -277,8 +277,8 @@ MinimiseSummary minimise_per_reading(const ReadingIndex& index, const std::vecto
   const Eigen::VectorXd start = z;
   std::vector<int> block_at(static_cast<std::size_t>(datum.size()));
   for (std::size_t b = 0; b < all.blocks.size(); ++b) {
-    for (int k = 0; k < all.blocks[b].second; ++k)
-      block_at[static_cast<std::size_t>(all.blocks[b].first + k)] = static_cast<int>(b);
+    const auto& [offset, size] = all.blocks[b];
+    std::fill_n(block_at.begin() + offset, size, static_cast<int>(b));
   }
   ceres::Problem problem;
   for (std::size_t setup = 0; setup < model.campaign().setups.size(); ++setup) {

@@ -83,6 +83,7 @@ void NormalAccumulator::for_each_chunk(const Work& work) const {
   };
   std::vector<std::thread> workers;
   const int extra = std::min<int>(threads_, static_cast<int>(chunk_ends_.size())) - 1;
+  workers.reserve(chunk_ends_.size());
   for (int i = 0; i < extra; ++i) workers.emplace_back(run);
   run();
   for (std::thread& worker : workers) worker.join();

@@ -27,7 +27,9 @@ double* outer_product(const double* basis, int support, const double* weight, in
   return out;
 }
 
-int round_up(int size) { return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment; }
+std::ptrdiff_t round_up(std::ptrdiff_t size) {
+  return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment;
+}
 
 }  // namespace
 
@@ -135,7 +137,7 @@ void NormalTile::flush_rows() {
 
 void NormalTile::flush_cell() {
   if (!tile_is_filled_) return;
-  const int matrix_stride = static_cast<int>(matrix_.rows());
+  const std::ptrdiff_t matrix_stride = matrix_.rows();
   int column = 0;
   for (std::size_t g = 0; g < segments_.size(); ++g) {
     const Segment& across = segments_[g];

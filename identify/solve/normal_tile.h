@@ -3,6 +3,7 @@
 /// matrix as one dense product.
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "volcal/identify/solve/tile_kernel.h"
@@ -15,7 +16,7 @@ namespace volcal {
 class TileArray {
  public:
   /// Sets all to zero.
-  void resize(int size) {
+  void resize(std::ptrdiff_t size) {
     lines_.assign(static_cast<std::size_t>(size + kTileAlignment - 1) / kTileAlignment, {});
   }
   double* data() { return lines_.data()->values; }
@@ -63,7 +64,7 @@ class NormalTile {
   std::vector<int> start_;      ///< the cell
   std::vector<int> own_index_;  ///< own parameters of the run: rows with the same station, dead path ...
   int size_ = 0;                ///< functions and shared tail of a row; error and own parameters follow
-  int stride_ = 0;
+  std::ptrdiff_t stride_ = 0;
   int columns_ = 0;
   int run_begin_ = 0;
   bool in_cell_ = false;

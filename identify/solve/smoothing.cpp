@@ -177,7 +177,8 @@ class AxisShapes {
 
  private:
   double log_evidence(int kind, int place) {
-    return with(static_cast<std::size_t>(kind * kPriorLengths + place)).log_evidence;
+    const int shape = kind * kPriorLengths + place;
+    return with(static_cast<std::size_t>(shape)).log_evidence;
   }
 
   /// From a place to the nearest length that is better than its neighbours.
@@ -324,8 +325,8 @@ class EvidenceSearch {
     std::vector<AxisShapes> axes;
     for (const AxisName name : group) {
       const std::vector<std::size_t>& terms = axes_.at(name);
-      std::vector<double> lambda;
-      for (const std::size_t t : terms) lambda.push_back(before.lambda[t]);
+      std::vector<double> lambda(terms.size());
+      std::ranges::transform(terms, lambda.begin(), [&](std::size_t t) { return before.lambda[t]; });
       axes.emplace_back(axis_evidence(terms, before), before.shape[terms.front()], lambda);
     }
     const std::size_t common = common_shape(axes);
@@ -378,8 +379,8 @@ class EvidenceSearch {
   /// These functions with the other axes' smoothing held.
   AxisEvidence axis_evidence(const std::vector<std::size_t>& terms, const Hyperparameters& at) const {
     Quadratic all = readings_and_priors(at.scale);
-    std::vector<Stretch> mine;
-    for (const std::size_t t : terms) mine.push_back(stretches_[t]);
+    std::vector<Stretch> mine(terms.size());
+    std::ranges::transform(terms, mine.begin(), [&](std::size_t t) { return stretches_[t]; });
     for (std::size_t t = 0; t < stretches_.size(); ++t) {
       if (std::ranges::find(terms, t) != terms.end()) continue;
       const auto& [term, offset] = stretches_[t];

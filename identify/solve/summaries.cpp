@@ -49,6 +49,7 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
   const FunctionGroup& group = result.layout.groups[static_cast<std::size_t>(place.group)];
   const MeasuredRange range = measured_range(campaign, symbol->axis);
   std::vector<int> raw;
+  raw.reserve(static_cast<std::size_t>(group.basis->size()));
   for (int j = 0; j < group.basis->size(); ++j) raw.push_back(group.index(j, place.slot));
   const Eigen::MatrixXd covariance = result.covariance(raw, raw);
   double sum = 0.0;

@@ -4,6 +4,8 @@
 /// the order of the observations. This header must stay free of inline code, which the linker could merge
 /// across instruction sets.
 
+#include <cstddef>
+
 namespace volcal {
 
 /// Strides of all arrays are multiples of this, so that kernels read and write whole vectors.
@@ -14,14 +16,15 @@ inline constexpr int kTileAlignment = 8;
 struct TileKernel {
   /// product(i, j) = sum over k of a(i, k) a(j, k) for i <= j < size, added to what is there when `add`;
   /// `product` has the stride of `a`. Some elements below the diagonal are changed as well.
-  void (*outer_upper)(const double* a, int stride, int size, int observations, bool add, double* product);
+  void (*outer_upper)(const double* a, std::ptrdiff_t stride, int size, int observations, bool add,
+                      double* product);
   /// product(i, j) = sum over k of a(i, k) b(j, k) for i < size, j < b_size; `b` and `product` have the
   /// stride of `a`.
-  void (*multiply)(const double* a, const double* b, int stride, int size, int b_size, int observations,
-                   double* product);
+  void (*multiply)(const double* a, const double* b, std::ptrdiff_t stride, int size, int b_size,
+                   int observations, double* product);
   /// to(i, j) += from(i, j), i < rows, j < columns; i <= j only when `upper`.
-  void (*add)(const double* from, int from_stride, int rows, int columns, bool upper, double* to,
-              int to_stride);
+  void (*add)(const double* from, std::ptrdiff_t from_stride, int rows, int columns, bool upper, double* to,
+              std::ptrdiff_t to_stride);
 };
 
 enum class InstructionSet { Plain, Avx2, Avx512 };

@@ -9,29 +9,30 @@ namespace {
 
 /// out(i, j) (+)= sum over k of a(i, k) b(j, k), kVectors vectors of rows by kColumns columns.
 template <int kVectors, int kColumns, bool kAdd>
-void multiply_block(const double* a, const double* b, int stride, int observations, double* out) {
+void multiply_block(const double* a, const double* b, std::ptrdiff_t stride, int observations, double* out) {
   Simd::Vector sum[kColumns][kVectors];
   for (int c = 0; c < kColumns; ++c) {
-    for (int v = 0; v < kVectors; ++v) {
+    for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
       sum[c][v] = kAdd ? Simd::load(out + c * stride + v * Simd::kLanes) : Simd::zero();
     }
   }
   for (int k = 0; k < observations; ++k, a += stride, b += stride) {
     Simd::Vector rows[kVectors];
-    for (int v = 0; v < kVectors; ++v) rows[v] = Simd::load(a + v * Simd::kLanes);
+    for (std::ptrdiff_t v = 0; v < kVectors; ++v) rows[v] = Simd::load(a + v * Simd::kLanes);
     for (int c = 0; c < kColumns; ++c) {
       const Simd::Vector column = Simd::broadcast(b[c]);
-      for (int v = 0; v < kVectors; ++v) sum[c][v] = Simd::multiply_add(rows[v], column, sum[c][v]);
+      for (std::ptrdiff_t v = 0; v < kVectors; ++v)
+        sum[c][v] = Simd::multiply_add(rows[v], column, sum[c][v]);
     }
   }
   for (int c = 0; c < kColumns; ++c) {
-    for (int v = 0; v < kVectors; ++v) Simd::store(sum[c][v], out + c * stride + v * Simd::kLanes);
+    for (std::ptrdiff_t v = 0; v < kVectors; ++v) Simd::store(sum[c][v], out + c * stride + v * Simd::kLanes);
   }
 }
 
 /// All `vectors` vectors of rows by kColumns columns.
 template <int kColumns, bool kAdd>
-void multiply_columns(const double* a, const double* b, int stride, int vectors, int observations,
+void multiply_columns(const double* a, const double* b, std::ptrdiff_t stride, int vectors, int observations,
                       double* out) {
   constexpr int kStep = 3;
   int v = 0;
@@ -44,10 +45,10 @@ void multiply_columns(const double* a, const double* b, int stride, int vectors,
   if (vectors - v == 1) multiply_block<1, kColumns, kAdd>(a + row, b, stride, observations, out + row);
 }
 
-int vectors_for(int size) { return (size + Simd::kLanes - 1) / Simd::kLanes; }
+inline int vectors_for(int size) { return (size + Simd::kLanes - 1) / Simd::kLanes; }
 
 template <bool kAdd>
-void outer_upper(const double* a, int stride, int size, int observations, double* product) {
+void outer_upper(const double* a, std::ptrdiff_t stride, int size, int observations, double* product) {
   for (int column = 0; column < size; column += Simd::kColumns) {
     const int rows = column + Simd::kColumns < size ? column + Simd::kColumns : size;
     multiply_columns<Simd::kColumns, kAdd>(a, a + column, stride, vectors_for(rows), observations,
@@ -55,7 +56,8 @@ void outer_upper(const double* a, int stride, int size, int observations, double
   }
 }
 
-void outer_upper(const double* a, int stride, int size, int observations, bool add, double* product) {
+inline void outer_upper(const double* a, std::ptrdiff_t stride, int size, int observations, bool add,
+                        double* product) {
   if (add) {
     outer_upper<true>(a, stride, size, observations, product);
   } else {
@@ -63,8 +65,8 @@ void outer_upper(const double* a, int stride, int size, int observations, bool a
   }
 }
 
-void multiply(const double* a, const double* b, int stride, int size, int b_size, int observations,
-              double* product) {
+inline void multiply(const double* a, const double* b, std::ptrdiff_t stride, int size, int b_size,
+                     int observations, double* product) {
   constexpr int kColumns = 4;
   for (int column = 0; column < b_size; column += kColumns) {
     multiply_columns<kColumns, false>(a, b + column, stride, vectors_for(size), observations,
@@ -72,7 +74,8 @@ void multiply(const double* a, const double* b, int stride, int size, int b_size
   }
 }
 
-void add(const double* from, int from_stride, int rows, int columns, bool upper, double* to, int to_stride) {
+inline void add(const double* from, std::ptrdiff_t from_stride, int rows, int columns, bool upper, double* to,
+                std::ptrdiff_t to_stride) {
   for (int c = 0; c < columns; ++c, from += from_stride, to += to_stride) {
     const int count = upper ? c + 1 : rows;
     int i = 0;

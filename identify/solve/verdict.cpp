@@ -175,7 +175,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   report_unrecorded_drivers(campaign, binding, result);
   if (lack) report_lack_of_fit(result);
   if (!end.converged)
-    result.messages.push_back("not converged: the cost still fell after the last iteration");
+    result.messages.emplace_back("not converged: the cost still fell after the last iteration");
   result.status = !end.converged       ? FitStatus::NotConverged
                   : end.rank_deficient ? FitStatus::RankDeficient
                   : lack               ? FitStatus::LackOfFit

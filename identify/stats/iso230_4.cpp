@@ -71,11 +71,10 @@ RadialRange radial_range(const std::vector<CircleReading>& readings, double nomi
 }
 
 double largest_gap(const std::vector<CircleReading>& readings) {
-  std::vector<double> angles;
-  for (const auto& reading : readings) {
-    angles.push_back(reading.angle -
-                     2.0 * std::numbers::pi * std::floor(reading.angle / (2.0 * std::numbers::pi)));
-  }
+  std::vector<double> angles(readings.size());
+  std::ranges::transform(readings, angles.begin(), [](const CircleReading& reading) {
+    return reading.angle - 2.0 * std::numbers::pi * std::floor(reading.angle / (2.0 * std::numbers::pi));
+  });
   std::sort(angles.begin(), angles.end());
   double gap = angles.front() + 2.0 * std::numbers::pi - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);

@@ -244,7 +244,8 @@ void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupVa
   }
   if (points.empty()) return;
   std::vector<Vector3d> difference;
-  for (std::size_t i = 0; i < points.size(); ++i) difference.push_back(readings[i] - model[i]);
+  difference.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) difference.emplace_back(readings[i] - model[i]);
   PointsTest test{setup.name, {}, volumetric_figures(difference), common_notes(values)};
   if (setup.options.text("alignment").value_or("rigid") == "rigid") {
     readings = without_rigid_motion(points, readings);

@@ -31,15 +31,18 @@ EffectSchema coupling_schema() {
                                                 "change per metre, metre^2 or metre^3 of the other axis")})};
 }
 
+const Power& power_of(const EffectTable& table, const std::string& shape) {
+  for (const Power& power : kPowers) {
+    if (shape == power.shape) return power;
+  }
+  table.fail("\"" + shape + "\" is no shape", "write linear, quadratic or cubic");
+}
+
 std::unique_ptr<FormulaEffect> make_coupling(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const AxisName axis = table.axis("axis");
   const std::string shape = table.spec.options.text("shape").value_or("linear");
-  const auto power_found =
-      std::ranges::find_if(kPowers, [&](const Power& each) { return shape == each.shape; });
-  if (power_found == kPowers.end())
-    table.fail("\"" + shape + "\" is no shape", "write linear, quadratic or cubic");
-  const Power power = *power_found;
+  const Power power = power_of(table, shape);
   if (axis == symbol.axis) {
     table.fail(symbol.name() + " depending on its own axis is the error function itself",
                "name another axis");

@@ -199,8 +199,8 @@ class CustomFormula {
   explicit CustomFormula(const EffectTable& table)
       : place_(table.place), target_(target_of(table)), expression_(expression_of(table)) {
     for (const std::string& name : expression_.variables()) {
-      const auto parameter = std::ranges::find(kParameters, name);
-      (parameter == kParameters.end() ? variables_ : parameters_).push_back(name);
+      const bool is_parameter = std::ranges::find(kParameters, name) != kParameters.end();
+      (is_parameter ? parameters_ : variables_).push_back(name);
     }
     if (variables_.empty()) table.fail("its expression depends on nothing", "write a variable into it");
     for (const std::string parameter : kParameters) check_parameter(table, parameter);

@@ -2,6 +2,7 @@
 // Instruments that stand on the floor, and levels, see a rotation; a ball-bar or an interferometer between
 // spindle and table does not. Without instruments of the second kind it is the same as an error motion: the
 // rotations of the axis next to the workpiece, functions of its own position or axis-coupling by another.
+#include <algorithm>
 #include <set>
 
 #include "volcal/model/effects/formula_effect.h"
@@ -19,10 +20,8 @@ bool stands_on_floor(const Setup& setup) {
 }
 
 bool some_stand_on_floor(const Campaign& campaign, bool wanted) {
-  for (const Setup& setup : campaign.setups) {
-    if (stands_on_floor(setup) == wanted) return true;
-  }
-  return false;
+  return std::ranges::any_of(campaign.setups,
+                             [&](const Setup& setup) { return stands_on_floor(setup) == wanted; });
 }
 
 std::unique_ptr<FormulaEffect> make_foundation_tilt(const EffectTable& table) {

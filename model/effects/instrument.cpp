@@ -132,6 +132,7 @@ std::vector<Eigen::VectorXd> event_times(const Campaign& campaign, const std::st
   for (std::size_t i = 1; i < kEventTimes; ++i) ranks.insert(i * times.size() / kEventTimes);
   ranks.erase(0);
   std::vector<Eigen::VectorXd> values;
+  values.reserve(ranks.size());
   for (const std::size_t rank : ranks) {
     values.emplace_back(Eigen::VectorXd::Constant(1, 0.5 * (times[rank - 1] + times[rank])));
   }

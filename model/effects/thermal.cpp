@@ -22,8 +22,8 @@ Eigen::ArrayXd growth(const SetupView& view, double time_constant) {
 }
 
 EffectShape time_constant(const EffectTable& table, const std::string& label) {
-  const EffectShape shape = shape_parameter(table, label + ": time constant", "time_constant", "s",
-                                            kUsualTimeConstant, kShortestTimeConstant, kLongestTimeConstant);
+  EffectShape shape = shape_parameter(table, label + ": time constant", "time_constant", "s",
+                                      kUsualTimeConstant, kShortestTimeConstant, kLongestTimeConstant);
   if (!(shape.value > 0.0)) table.fail("its time constant is not positive", "give time_constant_s = 1800.0");
   return shape;
 }

@@ -71,7 +71,7 @@ ParameterBlock nuisance_block(const NuisanceBlock& nuisance) {
   const bool is_scale = block.name.starts_with("length scale");
   for (int k = 0; k < nuisance.size(); ++k) {
     const bool angle = nuisance.is_angle[static_cast<std::size_t>(k)];
-    block.units.push_back(is_scale ? "ppm" : angle ? "urad" : "mm");
+    block.units.emplace_back(is_scale ? "ppm" : angle ? "urad" : "mm");
     block.si_per_unit.push_back(angle ? 1e-6 : 1e-3);
   }
   return block;

@@ -19,7 +19,7 @@ struct MeasurementModel::RowState {
   Eigen::Matrix3d rotation_wt;     ///< filled when the tool's offset is uncertain
   Eigen::Vector3d floor_arm_w;     ///< from the pivot of the floor to the functional point
 
-  double* motion(int joint) { return disturbance + 6 * joint; }
+  double* motion(std::ptrdiff_t joint) { return disturbance + 6 * joint; }
   ToolState<double> tool;
 };
 
@@ -143,7 +143,7 @@ void MeasurementModel::move_tool(RowState& state) const {
 void MeasurementModel::disturbance_sensitivity(const RowState& state, const Linearization& reading,
                                                int channel, bool all, double* sensitivity) const {
   for (std::size_t i = 0; i < joint_turns_.size(); ++i) {
-    motion_weights(state.levers[i], joint_turns_[i], reading.d_state[channel], sensitivity + 6 * i);
+    motion_weights(state.levers[i], joint_turns_[i] != 0, reading.d_state[channel], sensitivity + 6 * i);
   }
   if (binding_.effects.empty() && !all) return;
   const Eigen::Map<const Eigen::Vector3d> d_point(reading.d_state[channel]);

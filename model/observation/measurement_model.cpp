@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
 
-MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& spec)
+MeasurementModel::MeasurementModel(const Campaign& campaign, ModelSpec spec)
     : campaign_(campaign),
-      spec_(spec),
+      spec_(std::move(spec)),
       chain_(campaign.machine),
       binding_(bind_campaign(campaign_, spec_, chain_)),
       tables_(campaign_, binding_.layout) {
@@ -30,7 +31,7 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, const ModelSpec& sp
   }
   bool turns = false;
   for (const Joint& joint : campaign.machine.structure.joints) {
-    joint_turns_.push_back(turns || (is_rotary(joint.axis) && joint.workpiece_side));
+    joint_turns_.push_back(turns || (is_rotary(joint.axis) && joint.workpiece_side) ? 1 : 0);
     turns = turns || is_rotary(joint.axis);
   }
 }

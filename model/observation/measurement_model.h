@@ -23,7 +23,7 @@ inline constexpr std::size_t kMaxSharedTerms = 256;
 class MeasurementModel {
  public:
   /// `spec` must be resolved: every function that uses knots has breakpoints. Throws InputError.
-  MeasurementModel(const Campaign& campaign, const ModelSpec& spec);
+  MeasurementModel(const Campaign& campaign, ModelSpec spec);
   MeasurementModel(const MeasurementModel&) = delete;
   MeasurementModel& operator=(const MeasurementModel&) = delete;
 

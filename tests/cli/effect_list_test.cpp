@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -38,12 +39,11 @@ std::vector<std::string> listed(const std::string& text, const std::string& titl
 bool is_listed(const std::vector<std::string>& words, const std::string& name) {
   static const std::regex special("[().^$|*+?-]");
   static const std::regex place("[A-Z]{3,}");
-  for (const std::string& word : words) {
-    if (word == "TARGET" || word == "VARIABLES" || word == "EXPRESSION") continue;  // of custom effects alone
+  return std::ranges::any_of(words, [&](const std::string& word) {
+    if (word == "TARGET" || word == "VARIABLES" || word == "EXPRESSION") return false;  // of custom effects
     const std::string literal = std::regex_replace(word, special, "\\$&");
-    if (std::regex_match(name, std::regex(std::regex_replace(literal, place, ".+")))) return true;
-  }
-  return false;
+    return std::regex_match(name, std::regex(std::regex_replace(literal, place, ".+")));
+  });
 }
 
 TEST(EffectList, HoldsEveryIdentifierOfARealDiagnosis) {

@@ -31,6 +31,7 @@ void add_path(std::vector<CircleReading>& readings, int sense, double first_deg,
 /// Both: D = (10 - 3) / 2 = 3.5; G(b) = 14 - (-5) = 19.
 std::vector<CircleReading> hand_example() {
   std::vector<CircleReading> readings;
+  readings.reserve(16);
   const double ccw[] = {14, 10, 6, 10, 14, 10, 6, 10};
   const double cw[] = {-1, -3, -5, -3, -1, -3, -5, -3};
   for (int i = 0; i < 8; ++i) readings.push_back({45.0 * i * kDegree, ccw[i] * kMicrometre, +1});

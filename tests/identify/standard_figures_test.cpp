@@ -196,6 +196,7 @@ TEST(StandardFigures, TwoMovingAxesAreAFaceDiagonal) {
   const double along[] = {0.0, 0.25, 0.5, 0.5, 0.25, 0.0};
   const double deviation_um[] = {0, 4, 10, 12, 6, 2};
   std::vector<Point> points;
+  points.reserve(6);
   for (int k = 0; k < 6; ++k) {
     points.push_back({Vector3d(0.8 - 0.6 * along[k], 0.1 + 0.8 * along[k], 0.2),
                       along[k] + deviation_um[k] * 1e-6, k < 3 ? 0 : 1});

@@ -58,7 +58,7 @@ double difference_after_alignment(const TruthMachine& a, const TruthMachine& b, 
   for (const CommandedPoint& commanded : random_points(a.machine(), 200, random)) {
     const MachineState state{commanded.position, commanded.direction, 0.0, {}};
     point.push_back(a.nominal_point(state, tool));
-    difference.push_back(a.point(state, tool) - b.point(state, tool));
+    difference.emplace_back(a.point(state, tool) - b.point(state, tool));
   }
   return rms_after_alignment(point, difference);
 }

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <set>
+#include <string_view>
 
 #include "volcal/sim/hidden_effects.h"
 #include "volcal/sim/instruments.h"
@@ -187,26 +189,25 @@ Study every_instrument() {
   return study;
 }
 
+const char* any_name(const HiddenKind& kind, std::string_view key) {
+  static const std::map<std::string_view, const char*> names = {
+      {"about", "y"}, {"by", "Y"}, {"and", "Z"}, {"axis", "X"}, {"tool", "side_x"}, {"minus", "column"}};
+  if (key == "symbol") return kind.kind.starts_with("squareness") ? "EC0Y" : "EAX";
+  const auto found = names.find(key);
+  return found == names.end() ? "air" : found->second;
+}
+
 /// Plausible settings from the schema alone.
 HiddenEffect any_effect(const HiddenKind& kind) {
   HiddenEffect effect{kind.kind, {}};
   for (const KeySchema& key : kind.keys) {
-    if (key.type == KeyType::Number && key.required) {
+    if (!key.required) continue;
+    if (key.type == KeyType::Number) {
       const bool time = key.key.ends_with("_s");
       effect.options.set(std::string(key.key.substr(0, key.key.rfind('_'))), time ? 900.0 : 0.15);
     }
-    if (key.type == KeyType::Vector3 && key.required)
-      effect.options.set("direction", Eigen::Vector3d(1, 1, 0));
-    if (key.type != KeyType::Text || !key.required) continue;
-    const bool location = kind.kind.starts_with("squareness");
-    effect.options.set(key.key, text(key.key == "symbol"  ? (location ? "EC0Y" : "EAX")
-                                     : key.key == "about" ? "y"
-                                     : key.key == "by"    ? "Y"
-                                     : key.key == "and"   ? "Z"
-                                     : key.key == "axis"  ? "X"
-                                     : key.key == "tool"  ? "side_x"
-                                     : key.key == "minus" ? "column"
-                                                          : "air"));
+    if (key.type == KeyType::Vector3) effect.options.set("direction", Eigen::Vector3d(1, 1, 0));
+    if (key.type == KeyType::Text) effect.options.set(key.key, text(any_name(kind, key.key)));
   }
   return effect;
 }

@@ -17,7 +17,7 @@ inline constexpr std::size_t kEffectRows = 24;
 inline Readings varied_readings(double start_s, double phase) {
   Readings readings;
   for (std::size_t row = 0; row < kEffectRows; ++row) {
-    const double t = static_cast<double>(row);
+    const auto t = static_cast<double>(row);
     for (const AxisName axis : kAllAxes) {
       const double k = static_cast<double>(index_of(axis)) + 1.0;
       readings.position[index_of(axis)].push_back(0.25 + 0.2 * std::sin(1.7 * k * t + phase + k));

@@ -17,7 +17,7 @@
 
 namespace volcal::testing_support {
 
-inline sim::Study hiding(std::vector<sim::HiddenEffect> hidden, Eigen::Vector3i grid = {6, 5, 5}) {
+inline sim::Study hiding(std::vector<sim::HiddenEffect> hidden, const Eigen::Vector3i& grid = {6, 5, 5}) {
   sim::Study study;
   study.machine = sim::reference_machines()[0];
   study.seed = 31;

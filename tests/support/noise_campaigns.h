@@ -47,7 +47,7 @@ inline double dense_log_likelihood(const NoiseProblem& problem, const std::vecto
   Eigen::MatrixXd information = problem.jacobian.transpose() * weighted;
   Eigen::VectorXd right = weighted.transpose() * problem.residual;
   double value = log_det(sigma) + problem.residual.dot(factor.solve(problem.residual));
-  double freedom = static_cast<double>(n - p);
+  auto freedom = static_cast<double>(n - p);
   if (problem.prior_precision.size() > 0) {
     information += problem.prior_precision;
     right += problem.prior_precision * problem.prior_mean;
@@ -71,17 +71,44 @@ struct GridPlan {
   std::size_t group = 0;
 };
 
+inline Eigen::Vector3d grid_station(int s) {
+  return {-0.3 - 0.2 * (s % 3), 1.6 * (s % 2) - 0.3, -0.4 + 0.5 * (s % 5)};
+}
+
+/// Point k of a line, in a unit cube.
+inline Eigen::Vector3d grid_point(const GridPlan& plan, int line, int k) {
+  const int x = line % 2 == 0 ? k : plan.points(0) - 1 - k;
+  const int y = line % plan.points(1);
+  const int z = line / plan.points(1);
+  return {(x + 0.5) / plan.points(0), (y + 0.5) / plan.points(1), (z + 0.5) / plan.points(2)};
+}
+
+inline Eigen::RowVectorXd grid_derivatives(const GridPlan& plan, int s, const Eigen::Vector3d& at,
+                                           const Eigen::Vector3d& beam) {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(plan.stations + 9 * plan.terms);
+  row(s) = 1.0;
+  for (int c = 0; c < 3; ++c) {
+    for (int d = 0; d < 3; ++d) {
+      for (int t = 0; t < plan.terms; ++t) {
+        row(plan.stations + (3 * c + d) * plan.terms + t) =
+            std::cos(std::numbers::pi * (t + 1) * at(c)) * beam(d) / beam.norm();
+      }
+    }
+  }
+  return row;
+}
+
 inline void add_grid(const GridPlan& plan, std::mt19937_64& generator, NoiseProblem& problem) {
   std::uniform_real_distribution<double> jitter(0.8, 1.2);
-  const int per_station = plan.points.prod();
-  const Eigen::Index p = plan.stations + 9 * plan.terms;
+  const Eigen::Index readings = Eigen::Index{plan.stations} * plan.points.prod();
+  const int p = plan.stations + 9 * plan.terms;
   const Eigen::Index first = problem.jacobian.rows();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(first + plan.stations * per_station, p);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(first + readings, p);
   if (first > 0) rows.topRows(first) = problem.jacobian;
   problem.jacobian = std::move(rows);
   Eigen::Index i = first;
   for (int s = 0; s < plan.stations; ++s) {
-    const Eigen::Vector3d station(-0.3 - 0.2 * (s % 3), 1.6 * (s % 2) - 0.3, -0.4 + 0.5 * (s % 5));
+    const Eigen::Vector3d station = grid_station(s);
     NoiseSequence sequence;
     sequence.group = plan.group;
     double time = 1e4 * s;
@@ -89,25 +116,14 @@ inline void add_grid(const GridPlan& plan, std::mt19937_64& generator, NoiseProb
       time += plan.line_gap * jitter(generator);
       for (int k = 0; k < plan.points(0); ++k, ++i) {
         time += plan.gap * jitter(generator);
-        const int along = line % 2 == 0 ? k : plan.points(0) - 1 - k;
-        const Eigen::Vector3d at((along + 0.5) / plan.points(0),
-                                 (line % plan.points(1) + 0.5) / plan.points(1),
-                                 (line / plan.points(1) + 0.5) / plan.points(2));
+        const Eigen::Vector3d at = grid_point(plan, line, k);
         const Eigen::Vector3d beam = at - station;
         sequence.observation.push_back(static_cast<std::size_t>(i));
         sequence.time.push_back(time);
         sequence.line.push_back(line);
         problem.data.sigma.push_back(plan.sigma * jitter(generator));
         problem.data.length.push_back(beam.norm());
-        problem.jacobian(i, s) = 1.0;
-        for (int c = 0; c < 3; ++c) {
-          for (int d = 0; d < 3; ++d) {
-            for (int t = 0; t < plan.terms; ++t) {
-              problem.jacobian(i, plan.stations + (3 * c + d) * plan.terms + t) =
-                  std::cos(std::numbers::pi * (t + 1) * at(c)) * beam(d) / beam.norm();
-            }
-          }
-        }
+        problem.jacobian.row(i) = grid_derivatives(plan, s, at, beam);
       }
     }
     problem.data.sequences.push_back(std::move(sequence));

@@ -1,8 +1,7 @@
 #pragma once
 /// A folder of its own for a test, removed at the end.
 
-#include <stdlib.h>
-
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>

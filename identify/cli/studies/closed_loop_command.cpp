@@ -94,6 +94,7 @@ std::vector<Row> rows_of(const ClosedLoopCampaigns& campaigns) {
     by_structure[campaign.structure].push_back(campaign);
   }
   std::vector<Row> rows;
+  rows.reserve(order.size() + 1);
   for (const std::string& structure : order) rows.push_back(row_of(structure, by_structure[structure]));
   rows.push_back(row_of("all", campaigns));
   return rows;

@@ -1,5 +1,6 @@
 #include "volcal/identify/cli/studies/criticism_hidden.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -42,10 +43,7 @@ class Drawer {
 
  private:
   bool is(std::initializer_list<const char*> kinds) const {
-    for (const char* kind : kinds) {
-      if (effect_.kind == kind) return true;
-    }
-    return false;
+    return std::ranges::any_of(kinds, [&](const char* kind) { return effect_.kind == kind; });
   }
   void set(const std::string& stem, OptionValue value) { effect_.options.set(stem, std::move(value)); }
   template <class Values>

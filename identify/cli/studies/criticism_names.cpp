@@ -57,53 +57,79 @@ class Answerer {
     }
   }
 
-  // One line per kind of sim/ that the catalogue holds.
+  /// A candidate of the catalogue's if it holds the kind.
   void name() {
+    name_drive();
+    name_temperature();
+    name_coupling();
+    name_tool();
+    name_instrument();
+  }
+
+  // One line per kind of sim/ that the catalogue holds.
+  void name_drive() {
     const std::string symbol = text("symbol");
-    const std::string channel = "T_" + text("channel");
-    const std::string by_time_or_channel = has("channel") ? channel : "time";
-    static const std::array<const char*, 3> kPowers = {"linear", "quadratic", "cubic"};
-    const auto power = std::clamp<std::size_t>(
-        static_cast<std::size_t>(hidden_.options.number("power").value_or(1.0)), 1, 3);
     if (is({"reversal"})) set("reversal", symbol, "");
     if (is({"reversal-position"})) set("position-reversal", symbol, "");
     if (is({"screw-lead"})) set("lead-error", symbol, "");
     if (is({"encoder-subdivision"})) set("encoder-subdivision", symbol, "");
-    if (is({"screw-heating"})) set("screw-heating", positioning(text("axis")), "");
-    if (is({"scale-expansion"})) set("scale-expansion", positioning(text("axis")), channel);
-    if (is({"tool-growth"}) && !has("tool")) set("spindle-growth", "tool", "");
-    if (is({"tool-growth-channel"}) && !has("tool")) set("tool-expansion", "tool", channel);
+    if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");
+  }
+
+  void name_temperature() {
+    const std::string symbol = text("symbol"), axis = text("axis"), channel = temperature();
+    if (is({"screw-heating"})) set("screw-heating", positioning(axis), "");
+    if (is({"scale-expansion"})) set("scale-expansion", positioning(axis), channel);
     if (is({"thermal-tilt"}) && !has("by")) set("thermal-drift", symbol, channel);
     if (is({"lagged-temperature"}) && !has("by")) set("lagged-temperature", symbol, channel);
     if (is({"squareness-drift"})) set("squareness-drift", symbol, "time");
     if (is({"squareness-channel"})) set("squareness-drift", symbol, channel);
-    if (is({"cross-axis"})) set("axis-coupling", symbol, lower(text("by")), kPowers[power - 1]);
-    if (is({"cross-product"})) {
-      const std::string by = lower(text("by")), with = lower(text("and"));
-      const std::string first = std::min(by, with), second = std::max(by, with);
-      // The catalogue holds a displacement once, under the first axis.
-      const bool displacement = symbol[1] >= 'X';
-      const std::string target =
-          displacement ? symbol.substr(0, 2) + static_cast<char>(std::toupper(first[0])) : symbol;
-      set("product-coupling", target, first + " " + second);
-    }
-    if (is({"foundation-tilt"})) {
-      set("foundation-tilt", "machine about " + text("about"), lower(text("by")), kPowers[power - 1]);
-    }
-    if (is({"tool-load"}) && !has("by")) set("tool-load", symbol, "tool " + text("tool"));
-    if (is({"length-scale"}) && !has("setup")) {
-      set("length-scale", has("station") ? "station " + text("station") : "readings", "");
-    }
-    if (is({"dead-path-air"})) set("dead-path", "readings of " + text("setup"), by_time_or_channel);
-    if (is({"station-drift"})) set("station-drift", "station " + text("station"), "");
-    if (is({"station-event"})) set("station-event", "station " + text("station"), "");
-    if (is({"tool-offset"})) set("tool-offset", "tool " + text("tool"), "");
+  }
+
+  void name_coupling() {
+    const std::string by = lower(text("by"));
+    if (is({"cross-axis"})) set("axis-coupling", text("symbol"), by, power());
+    if (is({"cross-product"})) name_product();
+    if (is({"foundation-tilt"})) set("foundation-tilt", "machine about " + text("about"), by, power());
+  }
+
+  void name_product() {
+    const std::string symbol = text("symbol"), by = lower(text("by")), with = lower(text("and"));
+    const std::string first = std::min(by, with), second = std::max(by, with);
+    // The catalogue holds a displacement once, under the first axis.
+    const bool displacement = symbol[1] >= 'X';
+    const std::string target =
+        displacement ? symbol.substr(0, 2) + static_cast<char>(std::toupper(first[0])) : symbol;
+    set("product-coupling", target, first + " " + second);
+  }
+
+  void name_tool() {
+    const std::string tool = "tool " + text("tool");
+    if (is({"tool-growth"}) && !has("tool")) set("spindle-growth", "tool", "");
+    if (is({"tool-growth-channel"}) && !has("tool")) set("tool-expansion", "tool", temperature());
+    if (is({"tool-load"}) && !has("by")) set("tool-load", text("symbol"), tool);
+    if (is({"tool-offset"})) set("tool-offset", tool, "");
+  }
+
+  void name_instrument() {
+    const std::string station = "station " + text("station"), setup = "readings of " + text("setup");
+    if (is({"length-scale"}) && !has("setup")) set("length-scale", has("station") ? station : "readings", "");
+    if (is({"dead-path-air"})) set("dead-path", setup, has("channel") ? temperature() : "time");
+    if (is({"station-drift"})) set("station-drift", station, "");
+    if (is({"station-event"})) set("station-event", station, "");
     if (is({"bar-length"})) set("ball-bar-length", "readings", "");
-    if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");
-    if (is({"beam-cosine"})) set("beam-misalignment", "readings of " + text("setup"), "");
+    if (is({"beam-cosine"})) set("beam-misalignment", setup, "");
     if (is({"encoder-eccentricity"})) {
-      set("encoder-eccentricity", "station " + text("station"), has("encoder") ? text("encoder") : "azimuth");
+      set("encoder-eccentricity", station, has("encoder") ? text("encoder") : "azimuth");
     }
+  }
+
+  std::string temperature() const { return "T_" + text("channel"); }
+  std::string power() const {
+    static const std::array<const char*, 3> kPowers = {"linear", "quadratic", "cubic"};
+    const auto power = std::clamp<std::size_t>(
+        static_cast<std::size_t>(hidden_.options.number("power").value_or(1.0)), 1, 3);
+    return kPowers[power - 1];
   }
 
   void drivers() {

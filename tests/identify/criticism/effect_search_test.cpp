@@ -36,6 +36,7 @@ Diagnosis diagnosed(const FittedStudy& study, bool climb) {
 
 std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
   std::vector<std::string> all;
+  all.reserve(findings.size());
   for (const EffectFinding& finding : findings) all.push_back(finding.name.kind + " " + finding.name.target);
   return all;
 }

@@ -12,7 +12,7 @@
 namespace volcal {
 namespace {
 
-NoiseProblem grid(std::mt19937_64& generator, const NoiseParameters& noise, Eigen::Vector3i points,
+NoiseProblem grid(std::mt19937_64& generator, const NoiseParameters& noise, const Eigen::Vector3i& points,
                   int stations) {
   NoiseProblem problem;
   test::GridPlan plan;

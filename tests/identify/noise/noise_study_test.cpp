@@ -48,7 +48,7 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
   Moments white, wander, tau, line;
   int wander_on = 0, line_on = 0, per_metre_on = 0, covered = 0, intervals = 0;
   const auto cover = [&](double found, double expected, double u) {
-    covered += std::abs(std::log(found / expected)) < 1.96 * u;
+    covered += std::abs(std::log(found / expected)) < 1.96 * u ? 1 : 0;
     ++intervals;
   };
   for (int k = 0; k < kCampaigns; ++k) {
@@ -56,9 +56,9 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
     const InstrumentNoise own = estimate_noise(problem).instruments[0];
     white.values.push_back(own.parameters.white);
     cover(own.parameters.white, truth.white, own.log_uncertainty.white);
-    wander_on += own.wander.on;
-    line_on += own.line.on;
-    per_metre_on += own.per_metre.on;
+    wander_on += own.wander.on ? 1 : 0;
+    line_on += own.line.on ? 1 : 0;
+    per_metre_on += own.per_metre.on ? 1 : 0;
     if (own.wander.on) {
       wander.values.push_back(std::log(own.parameters.wander));
       tau.values.push_back(std::log(own.parameters.tau));
@@ -97,10 +97,10 @@ TEST(NoiseStudy, WhiteStaysWhite) {
   for (int k = 0; k < kCampaigns; ++k) {
     problem.residual = test::draw_noise(problem.data, {{1.3, 0.0, 600.0, 0.0, 0.0}}, generator);
     const InstrumentNoise own = estimate_noise(problem).instruments[0];
-    without_wander += !own.wander.on;
-    without_line += !own.line.on;
-    without_per_metre += !own.per_metre.on;
-    white += !own.wander.on && !own.line.on && !own.per_metre.on;
+    without_wander += own.wander.on ? 0 : 1;
+    without_line += own.line.on ? 0 : 1;
+    without_per_metre += own.per_metre.on ? 0 : 1;
+    white += !own.wander.on && !own.line.on && !own.per_metre.on ? 1 : 0;
   }
   RecordProperty("without_wander", without_wander);
   RecordProperty("without_line", without_line);
@@ -157,8 +157,8 @@ TEST(NoiseStudy, ScoresAreCalibratedWithEstimatedNoise) {
     for (const bool of_time : {true, false}) {
       const Eigen::VectorXd column = smooth_column(problem, of_time, generator);
       probability.push_back(score_probability(whitener, problem, column, false));
-      alarms += probability.back() < 0.05;
-      ordinary_alarms += score_probability(ordinary, problem, column, true) < 0.05;
+      alarms += probability.back() < 0.05 ? 1 : 0;
+      ordinary_alarms += score_probability(ordinary, problem, column, true) < 0.05 ? 1 : 0;
     }
   }
   std::ranges::sort(probability);

@@ -224,7 +224,7 @@ struct DirectReadings {
       covariance.diagonal().array() += sigma * sigma;
       Eigen::VectorXd white(q.size());
       for (double& value : white) value = normal(engine);
-      values.push_back(Eigen::LLT<Eigen::MatrixXd>(covariance).matrixL() * white + 5e-6 * q);
+      values.emplace_back(Eigen::LLT<Eigen::MatrixXd>(covariance).matrixL() * white + 5e-6 * q);
       equations[0].matrix.block(f * n, f * n, n, n) = rows.transpose() * rows / (sigma * sigma);
       equations[0].gradient.segment(f * n, n) = -rows.transpose() * values.back() / (sigma * sigma);
       equations[0].squares += values.back().squaredNorm() / (sigma * sigma);
@@ -235,6 +235,7 @@ struct DirectReadings {
 
   static std::vector<Function> functions_of_x(std::size_t shape, const std::vector<double>& amplitudes) {
     std::vector<Function> functions;
+    functions.reserve(amplitudes.size());
     for (const double amplitude : amplitudes) functions.push_back({AxisName::X, shape, amplitude});
     return functions;
   }

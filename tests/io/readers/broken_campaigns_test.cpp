@@ -31,7 +31,7 @@ std::optional<InputError> refusal(const fs::path& folder) {
 }
 
 fs::path copy_of_good_campaign(const testing::ScratchFolder& scratch) {
-  const fs::path folder = scratch.path() / "campaign";
+  fs::path folder = scratch.path() / "campaign";
   fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "tests/data/small", folder);
   return folder;
 }

@@ -88,7 +88,7 @@ TEST_F(ReportTest, ShowsAllEighteenFunctionsWithTheirState) {
 
 TEST_F(ReportTest, FunctionValuesAreThoseOfTheBasisInMicrometres) {
   const json functions = page_data(*document_, "functions").at("functions");
-  const json eyx = functions.at(1);
+  const json& eyx = functions.at(1);
   ASSERT_EQ(eyx.at("symbol"), "EYX");
   const FitResult& result = fit_->result;
   const ErrorSymbol symbol{Component::Y, AxisName::X};
@@ -153,7 +153,7 @@ TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
 TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
   const json data = page_data(*document_, "outliers");
   EXPECT_EQ(data.at("removed"), 1);
-  const json rows = data.at("rows");
+  const json& rows = data.at("rows");
   ASSERT_GE(rows.size(), 6u);
   EXPECT_EQ(rows.size(), data.at("suspect").get<std::size_t>());
   for (std::size_t i = 1; i < rows.size(); ++i) {

@@ -225,7 +225,7 @@ TEST(Fourier, OrthogonalOverAFullTurn) {
   EXPECT_NEAR(m.zeroth[0], 2 * pi, 1e-13);
   EXPECT_LT(m.zeroth.tail(2 * kHarmonics).norm(), 1e-13);
   // int q sin kq = -(-1)^k 2 pi / k
-  for (int k = 1; k <= kHarmonics; ++k) {
+  for (Eigen::Index k = 1; k <= kHarmonics; ++k) {
     EXPECT_NEAR(m.first[2 * k], (k % 2 == 0 ? -2.0 : 2.0) * pi / k, 1e-12) << k;
   }
 }

@@ -7,25 +7,50 @@
 
 #include "volcal/identify/cli/axis_position.h"
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/report/compensation_text.h"
 #include "volcal/identify/report/volumetric_text.h"
 #include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/tables/volume_check.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::cli {
 namespace {
+
+constexpr double kDefaultTolerance_um = 0.2;
 
 struct TablesArguments {
   std::string result;
   std::string output;
   std::string format = "csv";
+  std::string type;
   std::string zero = "mean";
+  std::string lines;
   int positions = 0;
   int grid = 5;
+  double step_mm = 0.0;
+  double tolerance_um = 0.0;
   std::vector<std::string> at;
   std::string tool;
+  std::vector<std::string> settings;
+  std::vector<std::string> records;
+  bool dry_run = false;
+  bool list = false;
   bool json = false;
+};
+
+/// Tables that were made, and what they leave.
+struct MadeTables {
+  const TableFormat* format = nullptr;
+  TableFormatOptions options;
+  StepChoice step;
+  double tolerance = 0.0;  ///< m; 0 = the step was given or is the format's own
+  std::vector<TableFile> files;
+  VolumeCheck check;
+  std::vector<std::string> effects_left_out;
 };
 
 std::string format_help() {
@@ -36,15 +61,21 @@ std::string format_help() {
   return text;
 }
 
+/// A format that is known; of one that is not written, the reason.
+std::string check_format_name(const std::string& name) {
+  if (find_table_format(name) != nullptr) return {};
+  for (const RefusedFormat& refused : refused_table_formats()) {
+    if (refused.name == name) return fmt::format("{} is not written: {}", name, refused.reason);
+  }
+  return fmt::format("{} is no table format; there are {}", name, fmt::join(table_format_names(), ", "));
+}
+
 /// All of them when none is named.
 std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) {
   if (name.empty()) return machine.tools;
-  std::string names;
-  for (const Tool& tool : machine.tools) {
-    if (tool.name == name) return {tool};
-    names += (names.empty() ? "" : ", ") + tool.name;
-  }
-  throw InputError({}, "--tool " + name + ": the machine has no such tool", "its tools are " + names);
+  TableFormatOptions options;
+  options.tool = name;
+  return {tool_of(machine, options)};
 }
 
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
@@ -57,67 +88,193 @@ std::vector<VolumetricError> errors_at_points(const FitResult& result, const Tab
   return errors;
 }
 
+bool makes_tables(const TablesArguments& arguments) { return !arguments.output.empty() || arguments.dry_run; }
+
 void require_something_to_do(const TablesArguments& arguments) {
-  if (arguments.at.empty() && !arguments.tool.empty())
-    throw InputError({}, "--tool is given without --at", "the tables hold every tool; leave --tool out");
-  if (arguments.at.empty() && arguments.output.empty())
-    throw InputError({}, "neither a folder nor a point is given", "give -o FOLDER, or --at X=100,Y=50");
+  if (arguments.result.empty())
+    throw InputError({}, "no result is given", "give the folder that volcal fit wrote, or --list");
+  if (arguments.at.empty() && !makes_tables(arguments))
+    throw InputError({}, "neither a folder nor a point is given",
+                     "give -o FOLDER, --dry-run, or --at X=100,Y=50");
 }
 
-std::vector<std::string> write_tables(const FitResult& result, const TablesArguments& arguments) {
+/// NAME=VALUE of an option that may be repeated.
+std::map<std::string, std::string> named_values(const std::string& option,
+                                                const std::vector<std::string>& given) {
+  std::map<std::string, std::string> values;
+  for (const std::string& text : given) {
+    const auto equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw InputError({}, option + " " + text, "write NAME=VALUE");
+    if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
+      throw InputError({}, option + " " + text.substr(0, equals) + " is given twice", "give it once");
+  }
+  return values;
+}
+
+TableFormatOptions table_options(const TableFormat& format, const FitResult& result,
+                                 const TablesArguments& arguments) {
   TableFormatOptions options;
   options.functions.positions = arguments.positions;
   options.functions.zero_plus = arguments.zero == "plus";
   options.grid_per_axis = arguments.grid;
-  const auto files = find_table_format(arguments.format)->write(result, options);
-  AtomicFolder folder(arguments.output);
-  std::vector<std::string> names;
-  for (const TableFile& file : files) {
-    folder.write(file.name, file.content);
-    names.push_back(file.name);
+  options.type = arguments.type.empty() ? format.supported : CompensationType::parse(arguments.type);
+  options.tool = arguments.tool;
+  options.step = arguments.step_mm * kMetrePerMillimetre;
+  if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
+  options.settings = named_values("--set", arguments.settings);
+  options.record = {arguments.result, named_values("--record", arguments.records)};
+  return options;
+}
+
+MadeTables make_tables(const FitResult& result, const TablesArguments& arguments) {
+  MadeTables made;
+  made.format = find_table_format(arguments.format);
+  made.options = table_options(*made.format, result, arguments);
+  check_table_options(*made.format, result, made.options);
+  const bool own_step = made.format->name == "csv" && arguments.tolerance_um == 0.0;
+  if (arguments.step_mm == 0.0 && !own_step) {
+    made.tolerance =
+        (arguments.tolerance_um > 0.0 ? arguments.tolerance_um : kDefaultTolerance_um) * kMetrePerMicrometre;
+    made.step = choose_step(*made.format, result, made.options, made.tolerance);
+    made.options.step = made.step.step;
   }
-  folder.commit();
+  made.files = write_tables(*made.format, result, made.options);
+  made.check = check_in_volume(result, made.options, made.format->read(made.files));
+  made.effects_left_out = effects_not_in_tables(result);
+  return made;
+}
+
+std::vector<std::string> file_names(const MadeTables& made) {
+  std::vector<std::string> names;
+  for (const TableFile& file : made.files) names.push_back(file.name);
   return names;
 }
 
+void write_files(const MadeTables& made, const std::string& target) {
+  AtomicFolder folder(target);
+  for (const TableFile& file : made.files) folder.write(file.name, file.content);
+  folder.commit();
+}
+
+std::string step_text(const MadeTables& made) {
+  if (made.options.step == 0.0) return {};
+  std::string text = fmt::format(", step {:g} mm", made.options.step / kMetrePerMillimetre);
+  if (made.tolerance > 0.0)
+    text += fmt::format(", at most {:.2f} um off the ideal compensation", made.step.deviation / kMicro);
+  return text;
+}
+
+void print_tables(const MadeTables& made, const TablesArguments& arguments, const Machine& machine) {
+  fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
+             tool_of(machine, made.options).name, step_text(made));
+  fmt::print("{}", volume_check_text(made.check, made.options.type));
+  fmt::print("Verified: {}.\n", made.format->verified);
+  if (made.tolerance > 0.0 && !made.step.reached)
+    fmt::print("! the limits of the controller do not allow {:g} um: {}\n", made.tolerance / kMicro,
+               limits_text(made.format->limits));
+  for (const std::string& effect : made.effects_left_out)
+    fmt::print("! {} was identified and is in no table\n", effect);
+  fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
+             fmt::join(file_names(made), ", "));
+}
+
+nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments& arguments,
+                                   const Machine& machine) {
+  nlohmann::ordered_json json = {{"format", arguments.format},
+                                 {"files", file_names(made)},
+                                 {"type", made.options.type.name()},
+                                 {"tool", tool_of(machine, made.options).name},
+                                 {"step_mm", made.options.step / kMetrePerMillimetre},
+                                 {"error_left", volume_check_json(made.check)},
+                                 {"verified", made.format->verified},
+                                 {"effects_in_no_table", made.effects_left_out}};
+  if (!arguments.dry_run) json["folder"] = arguments.output;
+  if (made.tolerance > 0.0) {
+    json["tolerance_um"] = made.tolerance / kMicro;
+    json["deviation_um"] = made.step.deviation / kMicro;
+    json["tolerance_reached"] = made.step.reached;
+  }
+  return json;
+}
+
+int list_formats(bool json) {
+  if (json) {
+    fmt::print("{}\n", table_formats_json().dump(2));
+  } else {
+    fmt::print("{}", table_formats_text());
+  }
+  return kDone;
+}
+
 int run_tables(const TablesArguments& arguments) {
+  if (arguments.list) return list_formats(arguments.json);
   require_something_to_do(arguments);
   const FitResult result = read_result(arguments.result);
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
-  std::vector<std::string> names;
-  if (!arguments.output.empty()) names = write_tables(result, arguments);
+  std::optional<MadeTables> made;
+  if (makes_tables(arguments)) made = make_tables(result, arguments);
+  if (made && !arguments.dry_run) write_files(*made, arguments.output);
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    if (!names.empty()) json = {{"folder", arguments.output}, {"format", arguments.format}, {"files", names}};
+    if (made) json = tables_json(*made, arguments, result.machine);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}", volumetric_text(result, errors));
-    if (!names.empty()) fmt::print("{}: {}\n", arguments.output, fmt::join(names, ", "));
+    if (made) print_tables(*made, arguments, result.machine);
     for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }
 
+void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
+  app.add_option("-f,--format", arguments.format, format_help())
+      ->check(CLI::Validator(check_format_name, "FORMAT"));
+  app.add_option("--type", arguments.type,
+                 "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG joined by +, or L-VOL; "
+                 "default: all that the format can do");
+  app.add_option("--tool", arguments.tool,
+                 "tool that the compensation is for, default the first; with --at, default every tool");
+  auto* step =
+      app.add_option("--step", arguments.step_mm, "between the positions of a table, mm; default: chosen")
+          ->check(positive());
+  app.add_option(
+         "--tolerance", arguments.tolerance_um,
+         "choose the largest round step at which the tables, read back, follow the ideal compensation "
+         "this closely, um; default 0.2")
+      ->check(positive())
+      ->excludes(step);
+  app.add_option(
+      "--lines", arguments.lines,
+      "where the specific lines of L-POS, L-STR and L-SQU cross, X=500,Y=300,Z=200 in mm, axes not "
+      "named at home; default: the middle of the travel");
+  app.add_option("--set", arguments.settings, "NAME=VALUE, a setting of the format (--list)");
+  app.add_option("--record", arguments.records,
+                 fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
+                             fmt::join(recordable_conditions(), ", ")));
+  app.add_flag("--dry-run", arguments.dry_run, "write nothing: say what the tables would leave");
+  app.add_flag("--list", arguments.list, "list formats, types and limits");
+}
+
 std::function<int()> define_tables(CLI::App& app) {
   auto arguments = std::make_shared<TablesArguments>();
-  app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
+  app.add_option("RESULT", arguments->result, "result folder of volcal fit");
   app.add_option("-o,--output", arguments->output, "folder for the tables");
-  app.add_option("-f,--format", arguments->format, format_help())->check(CLI::IsMember(table_format_names()));
+  add_compensation_options(app, *arguments);
   app.add_option("--positions", arguments->positions,
-                 "rows per function; default: round steps, 21 to 51 rows")
+                 "rows per function of the csv tables; default: round steps, 21 to 51 rows")
       ->check(CLI::Range(2, 100000));
-  app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid")
+  app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid of the csv tables")
       ->check(CLI::Range(1, 101));
-  app.add_option(
-         "--zero", arguments->zero,
-         "with reversal: mean of both directions is zero at home, or the + direction (ISO/TR 16907, Table 1)")
+  app.add_option("--zero", arguments->zero,
+                 "csv tables with reversal: mean of both directions is zero at home, or the + direction "
+                 "(ISO/TR 16907, Table 1)")
       ->check(CLI::IsMember({"mean", "plus"}));
   app.add_option(
       "--at", arguments->at,
       "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home; may "
       "be given several times");
-  app.add_option("--tool", arguments->tool, "tool at that point; default: every tool");
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_tables(*arguments); };
 }
@@ -126,10 +283,13 @@ std::function<int()> define_tables(CLI::App& app) {
 
 const Command& tables_command() {
   static const Command command = {
-      "tables", "write the error tables of an identified machine, or print its error at points",
+      "tables",
+      "write the tables of an identified machine for a controller and say what they leave, or print its "
+      "error at points",
+      "  volcal tables --list\n"
       "  volcal tables result -o tables\n"
       "  volcal tables result --positions 101 --grid 9 -o tables\n"
-      "  volcal tables result --zero plus -o tables\n"
+      "  volcal tables result --format csv --tool long --dry-run\n"
       "  volcal tables result --at X=100,Y=250,Z=-80 --tool long\n",
       define_tables};
   return command;

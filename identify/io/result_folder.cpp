@@ -7,7 +7,7 @@
 #include "volcal/identify/io/result_json.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
-#include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/tables/csv_tables.h"
 
 namespace volcal {
 namespace {
@@ -25,8 +25,9 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
                          const std::map<std::string, std::string>& more) {
   AtomicFolder folder(target);
   folder.write("result.json", result_json(result));
-  const TableFormatOptions options{.functions = {}, .grid_per_axis = kGridPointsPerAxis};
-  for (const TableFile& file : find_table_format("csv")->write(result, options)) {
+  TableFormatOptions options;
+  options.grid_per_axis = kGridPointsPerAxis;
+  for (const TableFile& file : result_tables(result, options)) {
     folder.write(file.name, file.content);
   }
   write_residuals_csv(folder.path("residuals.csv"), result, campaign);

@@ -1,88 +1,122 @@
-#include <fmt/format.h>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
 
-#include <cctype>
-#include <iterator>
-
-#include "volcal/identify/tables/csv_cell.h"
+#include "volcal/identify/tables/csv_tables.h"
 #include "volcal/identify/tables/table_format.h"
-#include "volcal/model/description/units.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
 
-std::string_view position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
+constexpr ApproachDirection kPlus = {1, 1, 1, 1, 1, 1};
 
-double position_factor(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }
+/// Errors of the linear axes as a program reads them: linear between rows, then the kinematic model.
+class FunctionTables {
+ public:
+  FunctionTables(const std::vector<ErrorTableRow>& rows, const TableFile& file) {
+    for (const ErrorTableRow& row : rows) {
+      const auto motion = ErrorSymbol::parse(row.symbol);
+      const auto location = LocationSymbol::parse(row.symbol);
+      if (motion && !is_rotary(motion->axis)) add(*motion, row);
+      if (location && !is_rotary(location->axis)) locations_[*location] = row.value;
+    }
+    for (auto& [symbol, table] : tables_) complete(symbol, table, file);
+  }
 
-std::string component_column(Component component) {
-  const char letter =
-      static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(kAllAxes[index_of(component)]))));
-  return fmt::format("e{}_{}", letter, edge_unit(component));
+  PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const {
+    PoseErrors<double> errors;
+    for (const auto& [symbol, table] : tables_)
+      errors.motion[index_of(symbol.axis)][index_of(symbol.component)] = table.value(position, direction);
+    for (const auto& [symbol, value] : locations_)
+      errors.location[index_of(symbol.axis)][index_of(symbol.component)] = value;
+    return errors;
+  }
+
+ private:
+  void add(ErrorSymbol symbol, const ErrorTableRow& row) {
+    AxisTable& table = tables_[symbol];
+    table.input = symbol.axis;
+    if (row.direction >= 0) {
+      table.position.push_back(row.position);
+      table.forward.push_back(row.value);
+    }
+    if (row.direction <= 0) table.backward.push_back(row.value);
+  }
+
+  static void complete(ErrorSymbol symbol, const AxisTable& table, const TableFile& file) {
+    if (table.forward.size() == table.backward.size()) return;
+    throw InputError({file.name, 0}, symbol.name() + " has not as many rows for direction 1 as for -1",
+                     "give both directions at the same positions, or direction 0 alone");
+  }
+
+  std::map<ErrorSymbol, AxisTable> tables_;
+  std::map<LocationSymbol, double> locations_;
+};
+
+std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptions& given) {
+  if (!given.type.is_volumetric())
+    throw InputError(
+        {}, "csv cannot compensate " + given.type.name() + ": its tables per error are the whole model",
+        "leave --type out, or write neutral-csv");
+  TableFormatOptions options = given;
+  options.functions.step = given.step;
+  std::vector<TableFile> files = result_tables(result, options);
+  files.push_back({"compensation_tables.csv",
+                   function_table_csv(error_table(result, options.functions), TableContent::Compensations)});
+  files.push_back({"compensation_grid.csv", spatial_grid_csv(volumetric_grid(result, options.grid_per_axis),
+                                                             result.machine, TableContent::Compensations)});
+  files.push_back({"metadata.csv", table_metadata_csv(result, options)});
+  return files;
 }
 
-/// symbol,axis,position,position_unit,direction,value,unit,u,U95,extrapolated; value, u and U95 in `unit`.
-/// direction: 0 mean of both, 1, -1. Location rows have neither axis nor position.
-std::string error_tables_csv(const std::vector<ErrorTableRow>& rows) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "symbol,axis,position,position_unit,direction,value,unit,u,U95,extrapolated\n");
+/// From compensation_tables.csv and metadata.csv, for the tool that the latter names; zero at home approached
+/// towards +.
+CompensationTables read_csv(std::span<const TableFile> files) {
+  const TableMetadata metadata = read_table_metadata(file_named(files, "metadata.csv"));
+  const TableFile& file = file_named(files, "compensation_tables.csv");
+  const auto rows = read_function_table(file, TableContent::Compensations);
   for (const ErrorTableRow& row : rows) {
-    fmt::format_to(out, "{},", row.symbol);
-    if (row.axis) {
-      fmt::format_to(out, "{},{:.10g},{},", letter_of(*row.axis), row.position / position_factor(*row.axis),
-                     position_unit(*row.axis));
-    } else {
-      fmt::format_to(out, ",,,");
-    }
-    fmt::format_to(out, "{},{:.9g},{},{:.6g},{:.6g},{}\n", row.direction, row.value / kMicro,
-                   row.rotation ? "urad" : "um", row.u / kMicro, row.U95 / kMicro, row.extrapolated ? 1 : 0);
+    if (row.axis && !metadata.machine.has_axis(*row.axis))
+      throw InputError({file.name, 0}, row.symbol + " belongs to an axis that the machine lacks",
+                       "take metadata.csv of the same run");
   }
-  return fmt::to_string(text);
-}
-
-/// x_mm,y_mm,z_mm (and a_deg ... as the machine has axes),tool,ex_um ... ec_urad,u_ex_um ...
-/// u_ec_urad,extrapolated.
-std::string volumetric_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  for (const AxisName axis : kAllAxes) {
-    if (!machine.has_axis(axis)) continue;
-    const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-    fmt::format_to(out, "{}_{},", letter, position_unit(axis));
-  }
-  fmt::format_to(out, "tool");
-  for (const Component component : kAllComponents) fmt::format_to(out, ",{}", component_column(component));
-  for (const Component component : kAllComponents) fmt::format_to(out, ",u_{}", component_column(component));
-  fmt::format_to(out, ",extrapolated\n");
-  for (const VolumetricError& point : grid) {
-    for (const AxisName axis : kAllAxes) {
-      if (!machine.has_axis(axis)) continue;
-      fmt::format_to(out, "{:.10g},", point.position[index_of(axis)] / position_factor(axis));
-    }
-    fmt::format_to(out, "{}", csv_cell(point.tool));
-    for (const double value : point.value) fmt::format_to(out, ",{:.9g}", value / kMicro);
-    for (const double u : point.u) fmt::format_to(out, ",{:.6g}", u / kMicro);
-    fmt::format_to(out, ",{}\n", point.extrapolated ? 1 : 0);
-  }
-  return fmt::to_string(text);
-}
-
-std::vector<TableFile> write(const FitResult& result, const TableFormatOptions& options) {
-  return {
-      {"error_tables.csv", error_tables_csv(error_table(result, options.functions))},
-      {"volumetric_grid.csv",
-       volumetric_grid_csv(volumetric_grid(result, options.grid_per_axis), result.machine)},
+  const auto tables = std::make_shared<const FunctionTables>(rows, file);
+  const KinematicChain chain(metadata.machine);
+  const Eigen::Vector3d tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
+  Eigen::Vector3d movable = Eigen::Vector3d::Zero();
+  for (const AxisName axis : linear_axes_of(metadata.machine)) movable[direction_of(axis)] = 1.0;
+  const auto error = [=](const AxisPosition& position, const ApproachDirection& direction) {
+    AxisPosition linear{};
+    for (const AxisName axis : kLinearAxes) linear[index_of(axis)] = position[index_of(axis)];
+    const ToolTwist twist = chain.first_order(linear, tool, tables->at(linear, direction));
+    return Eigen::Vector3d(twist.displacement_w.cwiseProduct(movable));
   };
+  const Eigen::Vector3d at_home = error(home_of(metadata.machine), kPlus);
+  CompensationTables result;
+  result.terms.push_back([error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(at_home - error(position, direction));
+  });
+  return result;
 }
 
 }  // namespace
 
 const TableFormat& csv_table_format() {
-  static const TableFormat format = {"csv",
-                                     "error_tables.csv with every function and squareness, "
-                                     "volumetric_grid.csv with the volume; mm, um, urad",
-                                     "volcal's own; symbols and signs of ISO 230-1 and ISO/TR 16907, 8.2",
-                                     write};
+  static const TableFormat format = {
+      .name = "csv",
+      .summary =
+          "errors and compensations of every function and squareness in both directions, and on a "
+          "grid of the volume, with uncertainty and the conditions of the run; mm, um, urad",
+      .source = "volcal's own; symbols, signs and layout of ISO 230-1 and ISO/TR 16907:2015, 9.1 to 9.3",
+      .verified = "read back and evaluated by volcal with its kinematic model",
+      .supported = CompensationType::volumetric(),
+      .refusal = "its tables per error are the whole model",
+      .limits = {.both_directions = true},
+      .settings = {},
+      .write = write_csv,
+      .read = read_csv};
   return format;
 }
 

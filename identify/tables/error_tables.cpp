@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/tables/table_format.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -10,8 +11,11 @@ namespace {
 
 constexpr double kEdgeOfMeasured = 1e-6;  // m or rad
 
-/// Steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be shorter.
-std::vector<double> table_positions(const Axis& axis, int positions) {
+/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be
+/// shorter.
+std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& options) {
+  if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
+  const int positions = options.positions;
   std::vector<double> table;
   if (positions >= 2) {
     for (int i = 0; i < positions; ++i) {
@@ -92,7 +96,7 @@ std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTable
       const bool reversal = reversal_of(result, symbol) != nullptr;
       if (!result.layout.find(symbol) && !reversal) continue;
       for (const int direction : reversal ? std::vector<int>{1, -1} : std::vector<int>{0}) {
-        for (const double q : table_positions(axis, options.positions)) {
+        for (const double q : table_positions(axis, options)) {
           ErrorTableRow row =
               filled(result, table_row(result, symbol, q, direction, options.zero_plus && reversal));
           row.symbol = symbol.name();

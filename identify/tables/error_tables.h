@@ -25,7 +25,8 @@ struct ErrorTableRow {
 };
 
 struct ErrorTableOptions {
-  int positions = 0;       ///< per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows
+  int positions = 0;  ///< per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows
+  double step = 0.0;  ///< of linear axes from home, m, with the ends of the travel; 0 = as `positions` says
   bool zero_plus = false;  ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)
 };
 

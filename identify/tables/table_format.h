@@ -1,38 +1,110 @@
 #pragma once
-/// Table formats: an identified machine as the files that a program or a controller reads. A new format is
-/// one file that defines a `TableFormat` and one line in table_formats.cpp; the command line, its help and
-/// the contract tests follow from the registration.
+/// Table formats: an identified machine as the files that a program or a controller reads, and what that
+/// reader makes of them. A new format is one file that defines a `TableFormat` and one line in
+/// table_formats.cpp; the command line, its help, the check of what is left in the volume, the fuzzer and the
+/// contract tests follow from the registration.
 
+#include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/tables/compensation.h"
+#include "volcal/identify/tables/compensation_tables.h"
 #include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/tables/table_text.h"
 
 namespace volcal {
 
-struct TableFile {
-  std::string name;  ///< no folder in it
-  std::string content;
+/// What a controller can hold.
+struct CompensationLimits {
+  int points_per_table = 0;      ///< positions of one table; 0 = none stated
+  double resolution = 0.0;       ///< step of the values in the file, m (or the unit stated by the format)
+  bool both_directions = false;  ///< approach towards + and towards - apart
+  bool equidistant = false;      ///< positions at one step
+  bool sampled = true;           ///< false: no positions, as with skew factors
 };
+
+/// A value that only this format asks for: --set NAME=VALUE.
+struct TableSetting {
+  std::string_view name;
+  std::string_view help;       ///< values, unit, what follows
+  std::string_view otherwise;  ///< value when it is not given; empty = must be given
+  std::string_view example;    ///< one valid value
+};
+
+/// What clause 9.1 of ISO/TR 16907:2015 asks to be recorded beside the tables and no result knows.
+struct TableRecord {
+  std::string run;                                ///< which identification: folder of the result
+  std::map<std::string, std::string> conditions;  ///< by one of recordable_conditions()
+};
+/// Keys of TableRecord::conditions: machine_state, load, feed ...
+std::span<const std::string_view> recordable_conditions();
 
 struct TableFormatOptions {
   ErrorTableOptions functions;
-  int grid_per_axis = 5;  ///< positions per axis where a format holds volumetric errors
+  int grid_per_axis = 5;  ///< positions per axis where a format holds volumetric errors of every tool
+  CompensationType type = CompensationType::volumetric();
+  std::string tool;                   ///< that the compensation is for; empty = the machine's first
+  std::optional<AxisPosition> lines;  ///< where the specific lines cross; middle_of_travel() otherwise
+  double step = 0.0;                  ///< between positions, m; 0 = the format's own
+  std::map<std::string, std::string> settings;  ///< of the format
+  TableRecord record;
 };
 
 struct TableFormat {
-  std::string_view name;     ///< as the user writes it: "csv"
-  std::string_view summary;  ///< one sentence for the user
-  std::string_view source;   ///< which document fixes the format
-  /// Content of every file, errors as actual minus nominal turned into what the format holds. The same result
-  /// gives the same bytes. Throws InputError for a result that the format cannot hold.
+  std::string_view name;      ///< as the user writes it: "csv"
+  std::string_view summary;   ///< one sentence for the user
+  std::string_view source;    ///< which document fixes the format
+  std::string_view verified;  ///< on what it was verified, and what of it is not confirmed
+  CompensationType supported;
+  std::string_view refusal;  ///< why no other type can be had
+  CompensationLimits limits;
+  std::span<const TableSetting> settings;
+  /// Content of every file, errors turned into what the format holds. The same result gives the same bytes.
+  /// Call write_tables(), which checks the options. Throws InputError for what the format cannot hold.
   std::vector<TableFile> (*write)(const FitResult& result, const TableFormatOptions& options);
+  /// The files as the controller evaluates them: its interpolation, its quantisation, its sign. Throws
+  /// InputError with file, line and remedy.
+  CompensationTables (*read)(std::span<const TableFile> files);
 };
 
 std::span<const TableFormat* const> table_formats();
 const TableFormat* find_table_format(std::string_view name);  ///< nullptr when unknown
 std::vector<std::string> table_format_names();
+
+/// A controller whose tables are not written, and why.
+struct RefusedFormat {
+  std::string_view name;
+  std::string_view reason;
+};
+std::span<const RefusedFormat> refused_table_formats();
+
+/// Throws InputError for a type or a setting that the format does not have.
+void check_table_options(const TableFormat& format, const FitResult& result,
+                         const TableFormatOptions& options);
+std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
+                                    const TableFormatOptions& options);
+
+/// Value of a setting, given or declared.
+std::string table_setting(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                          std::string_view name);
+/// As a number. Throws InputError.
+double table_setting_number(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                            std::string_view name);
+
+/// The tool that the options name. Throws InputError.
+const Tool& tool_of(const Machine& machine, const TableFormatOptions& options);
+/// Where the specific lines cross.
+AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options);
+/// The ideal compensation that a format samples.
+Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options);
+/// Positions of a table: home and every step from it. Otherwise within the travel and with both its ends;
+/// equidistant tables reach beyond it where the travel is no multiple of the step.
+std::vector<double> correction_positions(const Axis& axis, double step, bool equidistant);
+/// Throws InputError where a table would be longer than the controller's.
+void require_points(const TableFormat& format, const Axis& axis, std::size_t points);
 
 }  // namespace volcal

@@ -6,7 +6,12 @@
 namespace volcal {
 
 // One line per table format.
-#define VOLCAL_TABLE_FORMATS(FORMAT) FORMAT(csv_table_format)
+#define VOLCAL_TABLE_FORMATS(FORMAT) \
+  FORMAT(csv_table_format)           \
+  FORMAT(neutral_csv_format)         \
+  FORMAT(linuxcnc_format)            \
+  FORMAT(klipper_format)             \
+  FORMAT(marlin_format)
 
 #define VOLCAL_DECLARE(name) const TableFormat& name();
 #define VOLCAL_ADDRESS(name) &(name)(),
@@ -21,6 +26,21 @@ const TableFormat* find_table_format(std::string_view name) {
   const auto formats = table_formats();
   const auto found = std::ranges::find(formats, name, &TableFormat::name);
   return found == formats.end() ? nullptr : *found;
+}
+
+std::span<const RefusedFormat> refused_table_formats() {
+  static constexpr std::array<RefusedFormat, 3> kRefused = {
+      {{"heidenhain",
+        "columns of .COM and .CMA are public, their widths, BEGIN and END lines and the sign of the values "
+        "are not; "
+        "enter neutral-csv in the table editor after finding the sign with one large value"},
+       {"fanuc",
+        "stored pitch error takes increments, but their sign, their range and where within an interval the "
+        "control "
+        "applies them are not confirmed publicly; neutral-csv has the values, parameters 3620 to 3627 the "
+        "places"},
+       {"sinumerik-vcs", "no public grammar of its files is known"}}};
+  return kRefused;
 }
 
 std::vector<std::string> table_format_names() {

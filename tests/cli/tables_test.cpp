@@ -1,8 +1,9 @@
-/// Volumetric errors at points that the user names.
+/// Volumetric errors at points that the user names, and tables for controllers.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -101,7 +102,7 @@ TEST_F(TablesAtPoints, ListEveryToolAndWriteTheTablesBeside) {
 TEST_F(TablesAtPoints, RefuseWhatIsNoPoint) {
   const std::vector<std::pair<std::string, std::string>> refused = {
       {"", "give -o FOLDER"},
-      {"--tool long", "without --at"},
+      {"--tool long", "give -o FOLDER"},
       {"--at 100,200", "write axes and positions"},
       {"--at X=ten", "is not a number"},
       {"--at X=nan", "is not a number"},
@@ -116,6 +117,66 @@ TEST_F(TablesAtPoints, RefuseWhatIsNoPoint) {
     EXPECT_THAT(run.errors, HasSubstr(message)) << options;
     EXPECT_EQ(run.output, "") << options;
   }
+}
+
+TEST_F(TablesAtPoints, SayWhatACompensationWouldLeaveAndWriteNothing) {
+  const auto run = tables("--format linuxcnc --dry-run");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("linuxcnc L-POS, tool short, step "));
+  EXPECT_THAT(run.output, HasSubstr("ideal L-POS"));
+  EXPECT_THAT(run.output, HasSubstr("not written: x.comp, y.comp, z.comp, compensation.ini"));
+  const auto json = nlohmann::json::parse(tables("--format neutral-csv --step 50 --dry-run --json").output);
+  EXPECT_EQ(json.at("type"), "L-VOL");
+  EXPECT_EQ(json.at("step_mm"), 50.0);
+  const auto& left = json.at("error_left");
+  EXPECT_LT(left.at("tables").at("rms_um").get<double>(), 0.1 * left.at("before").at("rms_um").get<double>());
+  EXPECT_FALSE(std::filesystem::exists(path("tables")));
+}
+
+TEST_F(TablesAtPoints, RecordTheConditions) {
+  const auto run = tables("-o " + path("out") + " --record feed=1000 --record \"load=none, empty\"");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(content(path("out/metadata.csv")), HasSubstr("load,\"none, empty\"\nfeed,1000\n"));
+}
+
+TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"--format linuxcnc --type L-VOL", "acts on its own joint only"},
+      {"--format klipper --type L-POS", "three skew factors"},
+      {"--format fanuc", "not confirmed publicly"},
+      {"--format heidenhain", "the sign of the values"},
+      {"--format wrong", "is no table format"},
+      {"--format linuxcnc --set sign=1", "has no such setting"},
+      {"--format linuxcnc --set units", "write NAME=VALUE"},
+      {"--format linuxcnc --set units=mm --set units=mm", "given twice"},
+      {"--format linuxcnc --step 0.5", "a table holds 256"},
+      {"--format linuxcnc --step 0", "must be positive"},
+      {"--format linuxcnc --step 5 --tolerance 1", "excludes"},
+      {"--format linuxcnc --tool wrong", "the machine has no such tool"},
+      {"--format linuxcnc --lines X=1e9", "outside the travel of X"},
+      {"--type R-POS", "moves rotary axes"},
+      {"--type L-POS", "the whole model"},
+      {"--record weather=fine", "record one of machine_state"},
+  };
+  for (const auto& [options, message] : refused) {
+    const auto run = tables(options + " --dry-run");
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(message)) << options;
+    EXPECT_EQ(run.output, "") << options;
+  }
+}
+
+TEST(TablesList, NamesFormatsTypesAndLimitsWithoutAResult) {
+  const auto run = run_program("tables --list");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  for (const char* text :
+       {"linuxcnc\n", "at most 256 positions a table", "types: L-POS;", "verified:", "L-ANG (8.2.5)"})
+    EXPECT_THAT(run.output, HasSubstr(text));
+  const auto json = nlohmann::json::parse(run_program("tables --list --json").output);
+  EXPECT_GE(json.at("formats").size(), 5U);
+  const auto nothing = run_program("tables");
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.errors, HasSubstr("no result is given"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/support/reader_harness.h"
+#include "tests/support/table_samples.h"
 #include "volcal/identify/solve/result.h"
 
 namespace {
@@ -40,5 +41,9 @@ int main(int count, char** arguments) {
             choice + sample_csv(columns));
     }
   }
+  const auto formats = volcal::table_formats();
+  for (std::size_t i = 0; i < formats.size(); ++i)
+    write(folder, "tables", std::string(formats[i]->name),
+          static_cast<char>(i) + packed_files(sample_tables(*formats[i])));
   return 0;
 }

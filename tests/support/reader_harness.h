@@ -2,7 +2,9 @@
 /// Every reader on any text: success or InputError, nothing else. Shared by the fuzzers and the mutation
 /// test.
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tests/support/schema_samples.h"
 #include "volcal/identify/io/campaign_checks.h"
@@ -12,6 +14,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/io/result_json.h"
+#include "volcal/identify/tables/table_format.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::testing {
@@ -48,6 +51,42 @@ inline bool accepts_campaign(const std::string& text) {
 
 inline bool accepts_result(const std::string& text) {
   return accepts([&] { result_from_json(text, "result.json"); });
+}
+
+/// Files in one text: a line ">NAME" stands before the lines of each.
+inline std::vector<TableFile> unpacked_files(const std::string& text) {
+  std::vector<TableFile> files;
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t stop = std::min(text.find('\n', from), text.size());
+    const std::string line = text.substr(from, stop - from);
+    if (line.starts_with('>')) {
+      files.push_back({line.substr(1), ""});
+    } else if (!files.empty()) {
+      files.back().content += line + (stop < text.size() ? "\n" : "");
+    }
+    from = stop + 1;
+  }
+  return files;
+}
+
+inline std::string packed_files(const std::vector<TableFile>& files) {
+  std::string text;
+  for (const TableFile& file : files) text += ">" + file.name + "\n" + file.content;
+  return text;
+}
+
+/// Tables of every format in turn; what is read must give finite corrections.
+inline bool accepts_tables(const std::string& text, std::size_t format_index) {
+  return accepts([&] {
+    const auto formats = table_formats();
+    const CompensationTables tables = formats[format_index % formats.size()]->read(unpacked_files(text));
+    for (const int direction : {-1, 0, 1}) {
+      ApproachDirection approach{};
+      approach.fill(static_cast<std::int8_t>(direction));
+      if (!tables.correction({0.1, -0.2, 0.3, 0.0, 0.0, 0.0}, approach).allFinite())
+        throw std::logic_error("a correction is not finite");
+    }
+  });
 }
 
 /// Readings of every instrument in turn, with all checks that a campaign undergoes.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/support/reader_harness.h"
+#include "tests/support/table_samples.h"
 #include "volcal/identify/solve/result.h"
 
 namespace volcal {
@@ -157,6 +158,17 @@ TEST(Mutation, ReadingsOfEveryInstrument) {
       const int accepted = try_mutants(testing::sample_csv(columns), 1000, accepts);
       EXPECT_LT(accepted, 900) << all[i]->schema().name;
     }
+  }
+}
+
+TEST(Mutation, TablesOfEveryFormat) {
+  const auto formats = table_formats();
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    const auto accepts = [&](const std::string& text) { return testing::accepts_tables(text, i); };
+    const std::string good = testing::packed_files(testing::sample_tables(*formats[i]));
+    const int accepted = try_mutants(good, 2000, accepts);
+    EXPECT_GT(accepted, 10) << formats[i]->name;
+    EXPECT_LT(accepted, 1900) << formats[i]->name;
   }
 }
 

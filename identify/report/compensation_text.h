@@ -1,0 +1,22 @@
+#pragma once
+/// What compensation tables leave in the volume, and which formats there are, as text and JSON; um and mm.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "volcal/identify/tables/volume_check.h"
+
+namespace volcal {
+
+/// RMS and largest error before, with the ideal compensation and with the tables, then per type.
+std::string volume_check_text(const VolumeCheck& check, const CompensationType& type);
+nlohmann::ordered_json volume_check_json(const VolumeCheck& check);
+
+/// Formats with what they can compensate, their limits, settings and what they were verified on; then the
+/// types.
+std::string table_formats_text();
+nlohmann::ordered_json table_formats_json();
+/// "at most 256 positions a table, both directions, ...".
+std::string limits_text(const CompensationLimits& limits);
+
+}  // namespace volcal

@@ -1,0 +1,47 @@
+#pragma once
+/// The volumetric error of a machine as a function: what compensations are computed from and judged by.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+/// Direction of approach of every axis, by AxisName: -1, +1, 0 = mean of both.
+using ApproachDirection = std::array<std::int8_t, kAxisCount>;
+
+/// Error vector (ex, ey, ez) of the functional point at a commanded position, actual minus nominal, workpiece
+/// coordinates, m.
+using ErrorField = std::function<Eigen::Vector3d(const AxisPosition&, const ApproachDirection&)>;
+
+/// Errors that a result holds: functions, squareness, and reversals (+b/2 towards +, -b/2 towards -).
+class IdentifiedErrors {
+ public:
+  explicit IdentifiedErrors(const FitResult& result);
+
+  PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const;
+
+ private:
+  struct Reversal {
+    ErrorSymbol symbol;
+    double amplitude = 0.0;  ///< value towards + minus value towards -, m or rad
+  };
+  ParameterLayout layout_;
+  Eigen::VectorXd parameters_;
+  std::vector<Reversal> reversals_;
+};
+
+/// First order (chain.h), linear axes only: rotary axes contribute neither errors nor motion.
+ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset);
+
+/// Names of identified effects that tables cannot hold: everything beyond error motions, squareness and
+/// reversal.
+std::vector<std::string> effects_not_in_tables(const FitResult& result);
+
+}  // namespace volcal

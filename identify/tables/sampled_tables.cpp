@@ -1,0 +1,108 @@
+#include "volcal/identify/tables/sampled_tables.h"
+
+#include <algorithm>
+#include <set>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kMostGridPoints = 500'000;
+
+bool moves(CompensationType type, AxisName input, AxisName output) {
+  if (input == output) return type.has(CompensationPart::Positioning);
+  return type.has(CompensationPart::Straightness) || type.has(CompensationPart::Squareness);
+}
+
+AxisTable sampled_axis(const Compensation& ideal, AxisName input, AxisName output,
+                       const std::vector<double>& positions, bool both_directions) {
+  AxisTable table{.input = input, .position = positions, .forward = {}, .backward = {}};
+  const auto value = [&](double q, int direction) {
+    return ideal.along_axis(input, q, direction)[direction_of(output)];
+  };
+  for (const double q : positions) {
+    table.forward.push_back(value(q, both_directions ? 1 : 0));
+    table.backward.push_back(value(q, both_directions ? -1 : 0));
+  }
+  return table;
+}
+
+[[noreturn]] void fail_grid(const SourcePlace& place) {
+  throw InputError(place, "the rows are no complete grid",
+                   "write every X, Y, Z combination once, ascending, Z fastest; write the tables again");
+}
+
+}  // namespace
+
+std::vector<SampledTable> sample_axis_tables(const TableFormat& format, const FitResult& result,
+                                             const TableFormatOptions& options) {
+  const Compensation ideal = ideal_compensation(result, options);
+  std::vector<SampledTable> tables;
+  for (const AxisName input : linear_axes_of(result.machine)) {
+    const Axis& axis = result.machine.axis(input);
+    const auto positions = correction_positions(axis, options.step, format.limits.equidistant);
+    require_points(format, axis, positions.size());
+    for (const AxisName output : linear_axes_of(result.machine)) {
+      if (!moves(options.type, input, output)) continue;
+      tables.push_back(
+          {output, sampled_axis(ideal, input, output, positions, format.limits.both_directions)});
+    }
+  }
+  return tables;
+}
+
+CorrectionGrid sample_grid(const TableFormat& format, const FitResult& result,
+                           const TableFormatOptions& options) {
+  const Compensation ideal = ideal_compensation(result, options);
+  CorrectionGrid grid;
+  grid.nodes = {{{0.0}, {0.0}, {0.0}}};
+  for (const AxisName axis : linear_axes_of(result.machine)) {
+    auto& nodes = grid.nodes[index_of(axis)];
+    nodes = correction_positions(result.machine.axis(axis), options.step, format.limits.equidistant);
+    require_points(format, result.machine.axis(axis), nodes.size());
+  }
+  if (grid.size() > kMostGridPoints)
+    throw InputError({}, "the grid would have " + std::to_string(grid.size()) + " points",
+                     "give a larger --step; " + std::to_string(kMostGridPoints) + " are written at most");
+  for (const double x : grid.nodes[0]) {
+    for (const double y : grid.nodes[1]) {
+      for (const double z : grid.nodes[2]) {
+        const AxisPosition position = {x, y, z, 0.0, 0.0, 0.0};
+        const Eigen::Vector3d mean = ideal.correction(position, {});
+        grid.mean.push_back(mean);
+        if (!format.limits.both_directions) continue;
+        for (std::size_t i = 0; i < 3; ++i) {
+          ApproachDirection towards_plus{};
+          towards_plus[i] = 1;
+          grid.half_reversal[i].push_back(ideal.correction(position, towards_plus) - mean);
+        }
+      }
+    }
+  }
+  return grid;
+}
+
+std::array<std::vector<double>, 3> grid_nodes(const std::vector<std::array<double, 3>>& points,
+                                              const std::vector<SourcePlace>& places) {
+  std::array<std::vector<double>, 3> nodes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::set<double> values;
+    for (const auto& point : points) values.insert(point[i]);
+    nodes[i].assign(values.begin(), values.end());
+  }
+  std::size_t row = 0;
+  for (const double x : nodes[0]) {
+    for (const double y : nodes[1]) {
+      for (const double z : nodes[2]) {
+        if (row >= points.size()) fail_grid(places.back());
+        if (points[row] != std::array<double, 3>{x, y, z}) fail_grid(places[row]);
+        ++row;
+      }
+    }
+  }
+  if (row != points.size()) fail_grid(places[row]);
+  return nodes;
+}
+
+}  // namespace volcal

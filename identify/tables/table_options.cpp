@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/tables/table_format.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kSamePosition = 1e-9;  // m
+constexpr int kMostPositions = 100000;
+
+constexpr std::array<std::string_view, 6> kConditions = {
+    "machine_state", "load", "feed", "ambient_temperature", "component_temperatures", "active_compensations"};
+
+template <class Names>
+std::string listed(const Names& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+const TableSetting* find_setting(std::span<const TableSetting> settings, std::string_view name) {
+  const auto found = std::ranges::find(settings, name, &TableSetting::name);
+  return found == settings.end() ? nullptr : &*found;
+}
+
+void check_settings(const TableFormat& format, const TableFormatOptions& options) {
+  for (const auto& [name, value] : options.settings) {
+    if (find_setting(format.settings, name) != nullptr) continue;
+    std::vector<std::string_view> known;
+    for (const TableSetting& setting : format.settings) known.push_back(setting.name);
+    throw InputError({}, "--set " + name + ": format " + std::string(format.name) + " has no such setting",
+                     known.empty() ? "it has none; leave --set out" : "its settings are " + listed(known));
+  }
+  for (const auto& [name, value] : options.record.conditions) {
+    if (std::ranges::find(kConditions, name) == kConditions.end())
+      throw InputError({}, "--record " + name + ": no such condition",
+                       "record one of " + listed(kConditions));
+  }
+}
+
+}  // namespace
+
+std::span<const std::string_view> recordable_conditions() { return kConditions; }
+
+void check_table_options(const TableFormat& format, const FitResult& result,
+                         const TableFormatOptions& options) {
+  if (!format.supported.contains(options.type)) {
+    throw InputError({},
+                     std::string(format.name) + " cannot compensate " + options.type.name() + ": " +
+                         std::string(format.refusal),
+                     "it can do " + format.supported.name() + "; give --type, or another --format");
+  }
+  if (linear_axes_of(result.machine).empty())
+    throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
+  check_settings(format, options);
+  tool_of(result.machine, options);
+}
+
+std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
+                                    const TableFormatOptions& options) {
+  check_table_options(format, result, options);
+  return format.write(result, options);
+}
+
+std::string table_setting(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                          std::string_view name) {
+  const auto given = options.settings.find(std::string(name));
+  if (given != options.settings.end()) return given->second;
+  const TableSetting* declared = find_setting(settings, name);
+  return declared == nullptr ? "" : std::string(declared->otherwise);
+}
+
+double table_setting_number(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                            std::string_view name) {
+  const TableFile option{"--set " + std::string(name), table_setting(settings, options, name)};
+  TableLines line(option);
+  line.advance();
+  return line.number(option.content, "the setting");
+}
+
+const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
+  static const Tool kNoTool;
+  if (options.tool.empty()) return machine.tools.empty() ? kNoTool : machine.tools.front();
+  if (const auto index = machine.tool_index(options.tool)) return machine.tools[*index];
+  std::vector<std::string> names;
+  for (const Tool& tool : machine.tools) names.push_back(tool.name);
+  throw InputError({}, "--tool " + options.tool + ": the machine has no such tool",
+                   "its tools are " + listed(names));
+}
+
+AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options) {
+  return options.lines.value_or(middle_of_travel(machine));
+}
+
+Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options) {
+  return {result.machine, lines_of(result.machine, options), options.type,
+          identified_error_field(result, tool_of(result.machine, options).offset)};
+}
+
+std::vector<double> correction_positions(const Axis& axis, double step, bool equidistant) {
+  if (!(step > 0.0) || axis.travel() / step > kMostPositions)
+    throw InputError({},
+                     "a step of " + std::to_string(step * 1e3) + " mm over the travel of " +
+                         letter_of(axis.name) + " is out of range",
+                     "give a --step that divides the travel into at most " + std::to_string(kMostPositions));
+  const double below = (axis.home - axis.travel_min) / step;
+  const double above = (axis.travel_max - axis.home) / step;
+  const auto steps = [&](double count) {
+    return static_cast<int>(equidistant ? std::ceil(count - kSamePosition / step)
+                                        : std::floor(count + kSamePosition / step));
+  };
+  std::vector<double> positions;
+  for (int i = -steps(below); i <= steps(above); ++i) positions.push_back(axis.home + i * step);
+  if (equidistant) return positions;
+  if (positions.empty() || positions.front() > axis.travel_min + kSamePosition)
+    positions.insert(positions.begin(), axis.travel_min);
+  if (positions.back() < axis.travel_max - kSamePosition) positions.push_back(axis.travel_max);
+  return positions;
+}
+
+void require_points(const TableFormat& format, const Axis& axis, std::size_t points) {
+  const auto limit = static_cast<std::size_t>(format.limits.points_per_table);
+  if (limit == 0 || points <= limit) return;
+  throw InputError({},
+                   std::string(format.name) + ": axis " + letter_of(axis.name) + " would need " +
+                       std::to_string(points) + " positions, a table holds " + std::to_string(limit),
+                   "give a larger --step");
+}
+
+}  // namespace volcal

@@ -1,0 +1,171 @@
+#include "volcal/identify/tables/volume_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kStepCells = 11;        // per axis, when a step is chosen
+constexpr double kFinestStep = 1e-4;  // m
+constexpr std::size_t kMostBytes = 30'000'000;
+
+/// The error that is left where a compensation acts.
+ErrorField corrected(const ErrorField& errors, const CompensationTables& tables) {
+  return [errors, &tables](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(errors(position, direction) + tables.correction(position, direction));
+  };
+}
+
+ErrorField corrected(const ErrorField& errors, const Compensation& ideal) {
+  return [errors, &ideal](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(errors(position, direction) + ideal.correction(position, direction));
+  };
+}
+
+/// The part of a field that a type would correct.
+ErrorField part_of(const Compensation& type) {
+  return [&type](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(-type.correction(position, direction));
+  };
+}
+
+std::vector<AxisPosition> cell_middles(const Machine& machine, int cells) {
+  std::vector<AxisPosition> positions = {AxisPosition{}};
+  for (const AxisName name : linear_axes_of(machine)) {
+    const Axis& axis = machine.axis(name);
+    std::vector<AxisPosition> extended;
+    for (const AxisPosition& position : positions) {
+      for (int i = 0; i < cells; ++i) {
+        AxisPosition next = position;
+        next[index_of(name)] = axis.travel_min + axis.travel() * (i + 0.5) / cells;
+        extended.push_back(next);
+      }
+    }
+    positions = std::move(extended);
+  }
+  return positions;
+}
+
+/// Round numbers of mm below `longest`, coarse to fine.
+std::vector<double> round_steps(double longest) {
+  std::vector<double> steps;
+  for (int decade = static_cast<int>(std::floor(std::log10(longest)));
+       steps.empty() || steps.back() > kFinestStep; --decade) {
+    for (const double factor : {5.0, 2.0, 1.0}) {
+      const double step = factor * std::pow(10.0, decade);
+      if (step <= longest && step >= kFinestStep * (1.0 - 1e-9)) steps.push_back(step);
+    }
+    if (std::pow(10.0, decade) < kFinestStep) break;
+  }
+  return steps;
+}
+
+/// Largest difference of a component; home approached towards + is the zero of both.
+double largest_deviation(const Machine& machine, const Compensation& ideal, const CompensationTables& tables,
+                         bool both_directions) {
+  const auto difference = [&](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(tables.correction(position, direction) - ideal.correction(position, direction));
+  };
+  const std::vector<ApproachDirection> directions =
+      both_directions ? std::vector<ApproachDirection>{{1, 1, 1, 0, 0, 0}, {-1, -1, -1, 0, 0, 0}}
+                      : std::vector<ApproachDirection>{{}};
+  const Eigen::Vector3d zero = difference(home_of(machine), directions.front());
+  double largest = 0.0;
+  for (const AxisPosition& position : cell_middles(machine, kStepCells)) {
+    for (const ApproachDirection& direction : directions)
+      largest = std::max(largest, (difference(position, direction) - zero).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+std::size_t bytes_of(const std::vector<TableFile>& files) {
+  std::size_t bytes = 0;
+  for (const TableFile& file : files) bytes += file.content.size();
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
+  std::vector<VolumePoint> points;
+  for (const AxisPosition& position : cell_middles(machine, cells_per_axis)) {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      VolumePoint point{position, {}};
+      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
+                     const ErrorField& errors) {
+  std::vector<Eigen::Vector3d> places, vectors;
+  for (const VolumePoint& point : points) {
+    places.emplace_back(point.position[0], point.position[1], point.position[2]);
+    vectors.push_back(errors(point.position, point.direction));
+  }
+  for (const AxisName axis : kLinearAxes) {
+    if (machine.has_axis(axis)) continue;
+    for (Eigen::Vector3d& vector : vectors) vector[direction_of(axis)] = 0.0;
+  }
+  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, vectors));
+  return {figures.rms, figures.max};
+}
+
+VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
+                            const CompensationTables& tables) {
+  const Machine& machine = result.machine;
+  const ErrorField errors = identified_error_field(result, tool_of(machine, options).offset);
+  const AxisPosition lines = lines_of(machine, options);
+  const Compensation ideal(machine, lines, options.type, errors);
+  const ErrorField exported = corrected(errors, tables);
+  const std::vector<VolumePoint> points = volume_points(machine, kVolumeCells);
+
+  VolumeCheck check;
+  check.before = error_left(machine, points, errors);
+  check.ideal = error_left(machine, points, corrected(errors, ideal));
+  check.exported = error_left(machine, points, exported);
+  for (const CompensationPart part : kCompensationParts) {
+    const Compensation of_before(machine, lines, part, errors), of_exported(machine, lines, part, exported);
+    check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
+                           error_left(machine, points, part_of(of_exported))});
+  }
+  return check;
+}
+
+StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
+                       double tolerance) {
+  if (!format.limits.sampled) return {0.0, 0.0, true};
+  const Compensation ideal = ideal_compensation(result, options);
+  double longest = 0.0;
+  for (const AxisName axis : linear_axes_of(result.machine))
+    longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());
+  StepChoice best{0.0, std::numeric_limits<double>::infinity(), false};
+  std::optional<InputError> refused;
+  for (const double step : round_steps(longest)) {
+    options.step = step;
+    try {
+      const std::vector<TableFile> files = write_tables(format, result, options);
+      if (bytes_of(files) > kMostBytes) break;
+      const double deviation =
+          largest_deviation(result.machine, ideal, format.read(files), format.limits.both_directions);
+      if (deviation < best.deviation) best = {step, deviation, false};
+      best.reached = best.deviation <= tolerance + format.limits.resolution;
+    } catch (const InputError& error) {
+      refused = error;
+      break;
+    }
+    if (best.reached) break;
+  }
+  if (best.step == 0.0 && refused) throw *refused;
+  return best;
+}
+
+}  // namespace volcal

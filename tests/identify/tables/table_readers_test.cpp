@@ -1,0 +1,194 @@
+// Malformed tables of every format: the message names the file, the line and the remedy. And what is written
+// is read back as it was.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/table_samples.h"
+#include "volcal/identify/tables/csv_tables.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::sample_tables;
+using testing::small_result;
+
+struct Malformed {
+  const char* format;
+  const char* file;
+  const char* from;  ///< replaced once, from its last place
+  const char* to;
+  int line;             ///< of the message; 0 = the whole file
+  const char* problem;  ///< part of the message
+};
+
+class MalformedTables : public ::testing::TestWithParam<Malformed> {};
+
+TEST_P(MalformedTables, AreRefusedWithFileLineAndRemedy) {
+  const Malformed& broken = GetParam();
+  const bool by_axis = std::string_view(broken.file) == "axis_corrections.csv";
+  std::vector<TableFile> files =
+      sample_tables(*find_table_format(broken.format),
+                    by_axis ? std::optional<CompensationType>(CompensationPart::Positioning) : std::nullopt);
+  std::string* content = nullptr;
+  for (TableFile& file : files) {
+    if (file.name == broken.file) content = &file.content;
+  }
+  ASSERT_NE(content, nullptr);
+  const auto place = content->rfind(broken.from);
+  ASSERT_NE(place, std::string::npos) << *content;
+  content->replace(place, std::string_view(broken.from).size(), broken.to);
+  try {
+    find_table_format(broken.format)->read(files);
+    FAIL() << "was read:\n" << *content;
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.place().file, broken.file) << error.what();
+    EXPECT_EQ(error.place().line, broken.line) << error.what();
+    EXPECT_THAT(error.what(), HasSubstr(broken.problem));
+    EXPECT_FALSE(error.remedy().empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Csv, MalformedTables,
+    ::testing::Values(
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500", "EXQ,X,500", 6, "symbol is \"EXQ\""},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm", "EXX,Y,500,mm", 6, "axis is \"Y\""},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm", "EXX,X,500,in", 6, "position_unit"},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm,-1,", "EXX,X,500,mm,2,", 6, "direction"},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500", "EXX,X,5oo", 6, "not a number of a table"},
+        Malformed{"csv", "compensation_tables.csv", "compensation,unit", "value,unit", 1, "the header is"},
+        Malformed{"csv", "compensation_tables.csv", "EC0Y,,", "EC0Y,Y,", 18, "neither axis nor position"},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm,-1,", "EXX,X,2500,mm,-1,", 7,
+                  "does not lie beyond"},
+        Malformed{"csv", "metadata.csv", "format,volcal-tables-1", "format,volcal-tables-9", 2,
+                  "volcal-tables-9"},
+        Malformed{"csv", "metadata.csv", "\ntool,short", "\ntool,long", 7, "tool is \"long\""},
+        Malformed{"csv", "metadata.csv", "w X' b Y Z t", "w X' b Q Z t", 13, "structure"},
+        Malformed{"csv", "metadata.csv", "datum.primary,X", "datum.primary,C", 14, "datum.primary"},
+        Malformed{"csv", "metadata.csv", "travel_max_mm,1000", "travel_max_mm,-1", 29, "travel_max_mm"},
+        Malformed{"csv", "metadata.csv", "axis.Y.home_mm", "axis.Y.hom_mm", 0, "axis.Y.home_mm is missing"}));
+
+INSTANTIATE_TEST_SUITE_P(Neutral, MalformedTables,
+                         ::testing::Values(Malformed{"neutral-csv", "axis_corrections.csv", "Z,Z,500",
+                                                     "A,Z,500", 9, "input_axis is \"A\""},
+                                           Malformed{"neutral-csv", "axis_corrections.csv", "Z,Z,500",
+                                                     "Z,Z,1000", 10, "does not lie beyond"},
+                                           Malformed{"neutral-csv", "axis_corrections.csv", "Z,Z,500,",
+                                                     "Z,Z,500", 9, "the row has 4 cells"},
+                                           Malformed{"neutral-csv", "axis_corrections.csv", "towards_plus_um",
+                                                     "towards_plus_mm", 1, "the header is"},
+                                           Malformed{"neutral-csv", "correction_grid.csv", "1000,1000,500,",
+                                                     "1000,1000,501,", 4, "no complete grid"},
+                                           Malformed{"neutral-csv", "correction_grid.csv", "1000,1000,500,",
+                                                     "1000,1000,nan,", 27, "not a number of a table"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    LinuxCnc, MalformedTables,
+    ::testing::Values(
+        Malformed{"linuxcnc", "x.comp", "19.685039 ", "# middle\n19.685039 ", 2, "stops reading here"},
+        Malformed{"linuxcnc", "x.comp", "\n19.685039 ", "\n\n19.685039 ", 2, "stops reading here"},
+        Malformed{"linuxcnc", "x.comp", "19.685039", "59.685039", 3, "does not lie beyond"},
+        Malformed{"linuxcnc", "x.comp", "19.685039", "19,685039", 2, "not a number of a table"},
+        Malformed{"linuxcnc", "compensation.ini", "LINEAR_UNITS = inch", "LINEAR_UNITS = cm", 2,
+                  "neither mm nor inch"},
+        Malformed{"linuxcnc", "compensation.ini", "COMP_FILE_TYPE = 1", "COMP_FILE_TYPE = 2", 14,
+                  "neither 0 nor 1"},
+        Malformed{"linuxcnc", "compensation.ini", "[JOINT_2]", "[JOINT_3]", 12, "JOINT_3"},
+        Malformed{"linuxcnc", "compensation.ini", "COMP_FILE = z.comp", "COMP_FILE z.comp", 13,
+                  "KEY = VALUE"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Skew, MalformedTables,
+    ::testing::Values(
+        Malformed{"klipper", "skew_correction.cfg", "xz_skew", "zx_skew", 5, "zx_skew is not one"},
+        Malformed{"klipper", "skew_correction.cfg", "xz_skew", "xy_skew", 5, "xy_skew is given twice"},
+        Malformed{"klipper", "skew_correction.cfg", "yz_skew = ", "yz_skew = zero ", 6,
+                  "not a number of a table"},
+        Malformed{"marlin", "skew.gcode", "G21\n", "", 1, "before G21"},
+        Malformed{"marlin", "skew.gcode", "G21", "G20", 1, "neither G21, M852 nor M500"},
+        Malformed{"marlin", "skew.gcode", "J", "X", 2, "no such word"},
+        Malformed{"marlin", "skew.gcode", "K0.", "K7.", 2, "beyond +-1"}));
+
+TEST(TableReaders, MissingFilesAreNamed) {
+  for (const TableFormat* format : table_formats()) {
+    try {
+      format->read({});
+      FAIL() << format->name;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("the file is missing")) << format->name;
+    }
+  }
+}
+
+void expect_same(const std::vector<ErrorTableRow>& read, const std::vector<ErrorTableRow>& written) {
+  ASSERT_EQ(read.size(), written.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].symbol, written[i].symbol);
+    EXPECT_EQ(read[i].axis, written[i].axis);
+    EXPECT_NEAR(read[i].position, written[i].position, 1e-12);
+    EXPECT_EQ(read[i].direction, written[i].direction);
+    EXPECT_NEAR(read[i].value, written[i].value, 1e-14);
+    EXPECT_NEAR(read[i].u, written[i].u, 1e-12);
+    EXPECT_NEAR(read[i].U95, written[i].U95, 1e-12);
+    EXPECT_EQ(read[i].rotation, written[i].rotation);
+    EXPECT_EQ(read[i].extrapolated, written[i].extrapolated);
+  }
+}
+
+TEST(NativeTables, FunctionsAreReadBackAsWritten) {
+  const std::vector<ErrorTableRow> written = error_table(small_result());
+  ASSERT_GT(written.size(), 100U);
+  EXPECT_GT(written[1].u, 0.0);
+  for (const TableContent content : {TableContent::Errors, TableContent::Compensations})
+    expect_same(read_function_table({"t.csv", function_table_csv(written, content)}, content), written);
+}
+
+TEST(NativeTables, GridsAreReadBackAsWritten) {
+  const std::vector<VolumetricError> written = volumetric_grid(small_result(), 3);
+  ASSERT_EQ(written.size(), 54U);
+  for (const TableContent content : {TableContent::Errors, TableContent::Compensations}) {
+    const TableFile file{"g.csv", spatial_grid_csv(written, small_result().machine, content)};
+    const auto read = read_spatial_grid(file, small_result().machine, content);
+    ASSERT_EQ(read.size(), written.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      EXPECT_EQ(read[i].tool, written[i].tool);
+      for (std::size_t k = 0; k < kAxisCount; ++k)
+        EXPECT_NEAR(read[i].position[k], written[i].position[k], 1e-12);
+      EXPECT_LT((read[i].value - written[i].value).cwiseAbs().maxCoeff(), 1e-13);
+      EXPECT_LT((read[i].u - written[i].u).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_EQ(read[i].extrapolated, written[i].extrapolated);
+    }
+  }
+}
+
+TEST(NativeTables, MetadataStatesMachineToolAndConditions) {
+  TableFormatOptions options;
+  options.tool = "side";
+  options.record = {"result", {{"load", "none, table empty"}, {"active_compensations", "L-POS"}}};
+  const TableMetadata read =
+      read_table_metadata({"metadata.csv", table_metadata_csv(small_result(), options)});
+  const Machine& machine = small_result().machine;
+  EXPECT_EQ(read.machine.name, machine.name);
+  EXPECT_EQ(read.machine.structure.code, machine.structure.code);
+  EXPECT_EQ(read.tool, "side");
+  ASSERT_EQ(read.machine.tools.size(), 2U);
+  EXPECT_LT((read.machine.tools[1].offset - machine.tools[1].offset).norm(), 1e-12);
+  EXPECT_LT((read.machine.axes[0].reference_point - machine.axes[0].reference_point).norm(), 1e-12);
+  EXPECT_EQ(read.entries.at("load"), "none, table empty");
+  EXPECT_EQ(read.entries.at("active_compensations"), "L-POS");
+  EXPECT_EQ(read.entries.at("feed"), "not recorded");
+  EXPECT_EQ(read.entries.at("identification.result"), "result");
+  EXPECT_EQ(read.entries.at("specific_lines.x_mm"), "500");
+}
+
+TEST(NativeTables, ConditionsThatAreNotAskedForAreRefused) {
+  TableFormatOptions options;
+  options.record.conditions["weather"] = "fine";
+  EXPECT_THROW(write_tables(*find_table_format("csv"), small_result(), options), InputError);
+}
+
+}  // namespace
+}  // namespace volcal

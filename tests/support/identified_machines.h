@@ -1,0 +1,78 @@
+#pragma once
+/// Results without a fit: errors given by hand, or those of a simulated machine.
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/functions/registry.h"
+#include "volcal/sim/truth_machine.h"
+
+namespace volcal::testing {
+
+struct GivenErrors {
+  std::map<std::string, std::function<double(double)>> functions = {};  ///< by symbol, m or rad
+  std::map<std::string, double> locations = {};
+  std::map<std::string, double> reversals = {};
+};
+
+/// Functions as polylines of `intervals` pieces.
+inline FitResult result_with(const Machine& machine, const GivenErrors& given, int intervals) {
+  FitResult result;
+  result.machine = machine;
+  std::vector<double> parameters;
+  const auto offset = [&] { return static_cast<int>(parameters.size()); };
+  for (const auto& [name, function] : given.functions) {
+    const ErrorSymbol symbol = *ErrorSymbol::parse(name);
+    const Axis& axis = machine.axis(symbol.axis);
+    FunctionSpec spec;
+    spec.degree = 1;
+    for (int i = 0; i <= intervals; ++i)
+      spec.breakpoints.push_back(axis.travel_min + axis.travel() * i / intervals);
+    FunctionGroup group;
+    group.axis = symbol.axis;
+    group.basis = find_basis("bspline")->make(spec, axis);
+    group.symbols = {symbol};
+    group.offset = offset();
+    result.layout.groups.push_back(group);
+    for (const double q : spec.breakpoints) parameters.push_back(function(q));
+  }
+  result.layout.function_size = offset();
+  const auto add_block = [&](ParameterKind kind, const std::string& name, double value) {
+    ParameterBlock block;
+    block.kind = kind;
+    block.name = name;
+    block.offset = offset();
+    block.guess = Eigen::VectorXd::Zero(1);
+    if (kind == ParameterKind::Location) block.location = LocationSymbol::parse(name);
+    result.layout.blocks.push_back(block);
+    parameters.push_back(value);
+  };
+  for (const auto& [name, value] : given.locations) add_block(ParameterKind::Location, name, value);
+  for (const auto& [name, value] : given.reversals)
+    add_block(ParameterKind::Effect, "reversal " + name, value);
+  result.layout.size = offset();
+  result.parameters = Eigen::Map<Eigen::VectorXd>(parameters.data(), offset());
+  result.covariance = Eigen::MatrixXd::Zero(offset(), offset());
+  return result;
+}
+
+/// The errors of a simulated machine, as a perfect identification would find them.
+inline FitResult result_of(const sim::TruthMachine& truth, int intervals = 50) {
+  GivenErrors given;
+  for (const AxisName axis : kLinearAxes) {
+    if (!truth.machine().has_axis(axis)) continue;
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis};
+      given.functions[symbol.name()] = [&truth, symbol](double q) { return truth.function_value(symbol, q); };
+      if (truth.reversal(symbol) != 0.0) given.reversals[symbol.name()] = truth.reversal(symbol);
+    }
+  }
+  for (const LocationSymbol symbol : truth.machine().datum.squareness())
+    given.locations[symbol.name()] = truth.location(symbol);
+  return result_with(truth.machine(), given, intervals);
+}
+
+}  // namespace volcal::testing

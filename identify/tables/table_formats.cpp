@@ -11,7 +11,11 @@ namespace volcal {
   FORMAT(neutral_csv_format)         \
   FORMAT(linuxcnc_format)            \
   FORMAT(klipper_format)             \
-  FORMAT(marlin_format)
+  FORMAT(marlin_format)              \
+  FORMAT(isg_csv_format)             \
+  FORMAT(etalon_exchange_format)     \
+  FORMAT(sinumerik_format)           \
+  FORMAT(sinumerik_cec_format)
 
 #define VOLCAL_DECLARE(name) const TableFormat& name();
 #define VOLCAL_ADDRESS(name) &(name)(),

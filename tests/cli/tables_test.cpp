@@ -133,6 +133,15 @@ TEST_F(TablesAtPoints, SayWhatACompensationWouldLeaveAndWriteNothing) {
   EXPECT_FALSE(std::filesystem::exists(path("tables")));
 }
 
+TEST_F(TablesAtPoints, WriteTheFilesOfAFormat) {
+  const auto run =
+      tables("--format sinumerik --tolerance 1 --tool side_x --lines X=0,Y=0,Z=-200 -o " + path("out"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(content(path("out/AX_EEC.INI")), ::testing::StartsWith("%_N_AX_EEC_INI\nCHANDATA(1)\n"));
+  EXPECT_THAT(run.output, HasSubstr("sinumerik L-POS, tool side_x"));
+  EXPECT_THAT(run.output, HasSubstr("Verified: read back by volcal; not tried on a controller."));
+}
+
 TEST_F(TablesAtPoints, RecordTheConditions) {
   const auto run = tables("-o " + path("out") + " --record feed=1000 --record \"load=none, empty\"");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
@@ -143,6 +152,8 @@ TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
   const std::vector<std::pair<std::string, std::string>> refused = {
       {"--format linuxcnc --type L-VOL", "acts on its own joint only"},
       {"--format klipper --type L-POS", "three skew factors"},
+      {"--format sinumerik-cec", "sign of $AN_CEC values is not confirmed"},
+      {"--format sinumerik-cec --set cec_sign=up", "give --set cec_sign=error"},
       {"--format fanuc", "not confirmed publicly"},
       {"--format heidenhain", "the sign of the values"},
       {"--format wrong", "is no table format"},
@@ -173,7 +184,7 @@ TEST(TablesList, NamesFormatsTypesAndLimitsWithoutAResult) {
        {"linuxcnc\n", "at most 256 positions a table", "types: L-POS;", "verified:", "L-ANG (8.2.5)"})
     EXPECT_THAT(run.output, HasSubstr(text));
   const auto json = nlohmann::json::parse(run_program("tables --list --json").output);
-  EXPECT_GE(json.at("formats").size(), 5U);
+  EXPECT_GE(json.at("formats").size(), 9U);
   const auto nothing = run_program("tables");
   EXPECT_EQ(nothing.exit_code, 2);
   EXPECT_THAT(nothing.errors, HasSubstr("no result is given"));

@@ -95,6 +95,7 @@ TableFormatOptions options_for(const TableFormat& format, CompensationType type)
   for (const TableSetting& setting : format.settings) {
     if (setting.otherwise.empty()) options.settings[std::string(setting.name)] = std::string(setting.example);
   }
+  if (format.name == "sinumerik-cec") options.settings["max_tables"] = "62";
   return options;
 }
 

@@ -112,6 +112,44 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"marlin", "skew.gcode", "J", "X", 2, "no such word"},
         Malformed{"marlin", "skew.gcode", "K0.", "K7.", 2, "beyond +-1"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    Isg, MalformedTables,
+    ::testing::Values(
+        Malformed{"isg-csv", "volcomp.csv", "X Y Z EXX", "X Y Z EAX", 1, "EAX is not read here"},
+        Malformed{"isg-csv", "volcomp.csv", "X Y Z EXX", "X Y Z EXX 1", 1, "1 is not read here"},
+        Malformed{"isg-csv", "volcomp.csv", "1000.000000 1000.000000 500.000000", "1000.000000 1000.000000",
+                  27, "5 numbers"},
+        Malformed{"isg-csv", "volcomp.lis", "GRID", "SCATTER", 0, "interpolation is \"SCATTER\""},
+        Malformed{"isg-csv", "volcomp.lis", "workpiece_axes 0", "workpiece_axes 1", 0,
+                  "workpiece_axes is \"1\""},
+        Malformed{"isg-csv", "volcomp.lis", "interpolation", "negate 1\ninterpolation", 5,
+                  "negate is not read"},
+        Malformed{"etalon-exchange", "volcomp.txt", "[EXX]", "[EAX]", 1, "must begin with a displacement"},
+        Malformed{"etalon-exchange", "volcomp.txt", "[EYX]", "[EXX]", 7, "EXX is given twice"},
+        Malformed{"etalon-exchange", "volcomp.txt", "[EXX]\nGridpoints", "[EXX]\nPoints", 2,
+                  "Gridpoints = {"},
+        Malformed{"etalon-exchange", "volcomp.txt", "}\n", "", 53, "does not end"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Sinumerik, MalformedTables,
+    ::testing::Values(
+        Malformed{"sinumerik", "AX_EEC.INI", "%_N_AX_EEC_INI", "%_N_AX_CEC_INI", 1, "does not begin with"},
+        Malformed{"sinumerik", "AX_EEC.INI", "M17\n", "", 26, "does not end in M17"},
+        Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]=", "[0,1,Z1] ", 21, "no assignment"},
+        Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]", "[0,0,Z1]", 21, "a second time"},
+        Malformed{"sinumerik", "AX_EEC.INI", "[0,1,Z1]", "[0,1,W1]", 21, "machine axis is \"W1\""},
+        Malformed{"sinumerik", "AX_EEC.INI", "_MAX[0,Z1]=1000", "_MAX[0,Z1]=2000", 26,
+                  "do not reach from MIN"},
+        Malformed{"sinumerik", "AX_EEC.INI", "_IS_MODULO[0,Z1]=0", "_IS_MODULO[0,Z1]=1", 26,
+                  "is not read here"},
+        Malformed{"sinumerik-cec", "NC_CEC.INI", ";VOLCAL VALUES ARE ERRORS\n", "", 124,
+                  "sign of the values"},
+        Malformed{"sinumerik-cec", "NC_CEC.INI", "_DIRECTION[0]=1", "_DIRECTION[0]=3", 12,
+                  "DIRECTION is neither"},
+        Malformed{"sinumerik-cec", "NC_CEC.INI", "_MULT_BY_TABLE[0]=0", "_MULT_BY_TABLE[0]=2", 13,
+                  "is not 0"},
+        Malformed{"sinumerik-cec", "NC_CEC.INI", "_OUTPUT_AXIS[0]=(X1)", "_OUTPUT_AXIS[0]=(C1)", 8, "C1"}));
+
 TEST(TableReaders, MissingFilesAreNamed) {
   for (const TableFormat* format : table_formats()) {
     try {

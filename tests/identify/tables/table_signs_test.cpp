@@ -1,0 +1,144 @@
+// One point by hand per format: X goes 10 um too far at 1 m, Y leans by 30 urad, and what each file must say.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/identified_machines.h"
+#include "tests/support/machines.h"
+#include "volcal/identify/tables/table_format.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// EXX = 10 um/m x; towards - it is 4 um less.
+FitResult long_axis() {
+  Machine machine = testing_support::machine_of("w X' b Y Z t");
+  machine.tools = {{"short", Eigen::Vector3d::Zero(), 0.0}};
+  return testing::result_with(
+      machine, {.functions = {{"EXX", [](double q) { return 10e-6 * q; }}}, .reversals = {{"EXX", 4e-6}}},
+      10);
+}
+
+/// EC0Y = 30 urad: at Y = 1 m the point lies 30 um towards -x.
+FitResult leaning_axis() {
+  return testing::result_with(testing_support::machine_of("w X' b Y Z t"), {.locations = {{"EC0Y", 30e-6}}},
+                              10);
+}
+
+std::vector<TableFile> files_of(const std::string& format, const FitResult& result, CompensationType type,
+                                std::map<std::string, std::string> settings = {}) {
+  TableFormatOptions options;
+  options.type = type;
+  options.step = 0.5;
+  options.settings = std::move(settings);
+  return write_tables(*find_table_format(format), result, options);
+}
+
+std::string content_of(const std::vector<TableFile>& files, const std::string& name) {
+  return file_named(files, name).content;
+}
+
+/// Added to the command of X, um.
+double x_um(const std::string& format, const std::vector<TableFile>& files, const AxisPosition& at,
+            int direction) {
+  ApproachDirection approach{};
+  approach.fill(static_cast<std::int8_t>(direction));
+  return find_table_format(format)->read(files).correction(at, approach).x() / 1e-6;
+}
+
+constexpr AxisPosition kFarX = {1.0, 0.5, 0.5};
+constexpr AxisPosition kFarY = {0.5, 1.0, 0.5};
+
+TEST(SignByHand, LinuxCncTrimsAreMinusTheErrorInMm) {
+  const auto files = files_of("linuxcnc", long_axis(), CompensationPart::Positioning);
+  EXPECT_EQ(content_of(files, "x.comp"),
+            "0.000000 0.00000000 0.00400000\n500.000000 -0.00500000 -0.00100000\n"
+            "1000.000000 -0.01000000 -0.00600000\n");
+  EXPECT_THAT(content_of(files, "compensation.ini"),
+              HasSubstr("[JOINT_0]\nCOMP_FILE = x.comp\nCOMP_FILE_TYPE = 1\n"));
+  EXPECT_NEAR(x_um("linuxcnc", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("linuxcnc", files, kFarX, -1), -6.0, 1e-6);
+}
+
+TEST(SignByHand, LinuxCncInInches) {
+  const auto files = files_of("linuxcnc", long_axis(), CompensationPart::Positioning, {{"units", "inch"}});
+  EXPECT_THAT(content_of(files, "x.comp"), HasSubstr("39.370079 -0.00039370 -0.00023622\n"));
+  EXPECT_NEAR(x_um("linuxcnc", files, kFarX, 1), -10.0, 1e-3);
+}
+
+TEST(SignByHand, LinuxCncType0HoldsActualPositions) {
+  const std::vector<TableFile> files = {
+      {"compensation.ini", "[TRAJ]\nLINEAR_UNITS = mm\n[JOINT_0]\nCOMP_FILE = x.comp\nCOMP_FILE_TYPE = 0\n"},
+      {"x.comp", "0 0 0\n1000 1000.010 1000.006\n"}};
+  EXPECT_NEAR(x_um("linuxcnc", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("linuxcnc", files, kFarX, -1), -6.0, 1e-6);
+}
+
+TEST(SignByHand, NeutralTablesHoldCorrections) {
+  const auto files = files_of("neutral-csv", long_axis(), CompensationPart::Positioning);
+  EXPECT_THAT(content_of(files, "axis_corrections.csv"), HasSubstr("X,X,1000,-10,-6\n"));
+  EXPECT_NEAR(x_um("neutral-csv", files, kFarX, -1), -6.0, 1e-6);
+  const auto grid = files_of("neutral-csv", long_axis(), CompensationType::volumetric());
+  EXPECT_THAT(content_of(grid, "correction_grid.csv"), HasSubstr("1000,0,0,-8,0,0,-4,0,0,0,0,0,0,0,0\n"))
+      << "mean of both directions, then the reversal of X: towards + minus towards -";
+  EXPECT_NEAR(x_um("neutral-csv", grid, kFarX, 1), -10.0, 1e-6);
+}
+
+TEST(SignByHand, NativeTablesHoldErrorsAndCompensations) {
+  const auto files = files_of("csv", long_axis(), CompensationType::volumetric());
+  EXPECT_THAT(content_of(files, "error_tables.csv"), HasSubstr("EXX,X,1000,mm,1,12,um,0,0,0\n"));
+  EXPECT_THAT(content_of(files, "error_tables.csv"), HasSubstr("EXX,X,1000,mm,-1,8,um,0,0,0\n"));
+  EXPECT_THAT(content_of(files, "compensation_tables.csv"), HasSubstr("EXX,X,1000,mm,1,-12,um,0,0,0\n"));
+  EXPECT_NEAR(x_um("csv", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("csv", files, kFarX, -1), -6.0, 1e-6);
+}
+
+TEST(SignByHand, IsgHoldsErrorsInMm) {
+  const auto files = files_of("isg-csv", long_axis(), CompensationPart::Positioning);
+  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("X EXX\n0.000000 -0.002000000\n"))
+      << "mean of both directions: the reversal is 4 um";
+  EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("1000.000000 0.008000000\n"));
+  EXPECT_NEAR(x_um("isg-csv", files, kFarX, 1), -8.0, 1e-6);
+}
+
+TEST(SignByHand, EtalonExchangeHoldsErrorsInMm) {
+  const auto files = files_of("etalon-exchange", long_axis(), CompensationPart::Positioning);
+  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("[EXX]\nGridpoints = {\n0.000000 -0.002000000\n"));
+  EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("1000.000000 0.008000000\n}"));
+}
+
+TEST(SignByHand, SinumerikEncoderTablesHoldErrorsInMm) {
+  const auto files = files_of("sinumerik", long_axis(), CompensationPart::Positioning);
+  EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP[0,2,X1]=0.008000\n"));
+  EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP_STEP[0,X1]=500.000000\n"));
+  EXPECT_NEAR(x_um("sinumerik", files, kFarX, 1), -8.0, 1e-6);
+}
+
+TEST(SignByHand, SinumerikCecIsAskedFor) {
+  EXPECT_THROW(files_of("sinumerik-cec", leaning_axis(), CompensationPart::Squareness), InputError);
+  const auto errors =
+      files_of("sinumerik-cec", leaning_axis(), CompensationPart::Squareness, {{"cec_sign", "error"}});
+  const auto corrections =
+      files_of("sinumerik-cec", leaning_axis(), CompensationPart::Squareness, {{"cec_sign", "compensation"}});
+  EXPECT_THAT(content_of(errors, "NC_CEC.INI"),
+              HasSubstr("$AN_CEC[2,2]=-0.030000\n$AN_CEC_INPUT_AXIS[2]=(Y1)\n"
+                        "$AN_CEC_OUTPUT_AXIS[2]=(X1)\n"));
+  EXPECT_THAT(content_of(corrections, "NC_CEC.INI"), HasSubstr("$AN_CEC[2,2]=0.030000\n"));
+  EXPECT_NEAR(x_um("sinumerik-cec", errors, kFarY, 1), 30.0, 1e-3);
+  EXPECT_NEAR(x_um("sinumerik-cec", corrections, kFarY, 1), 30.0, 1e-3);
+}
+
+TEST(SignByHand, SkewFactorsAreSlopesOfTheError) {
+  const auto klipper = files_of("klipper", leaning_axis(), CompensationPart::Squareness);
+  EXPECT_THAT(content_of(klipper, "skew_correction.cfg"), HasSubstr("xy_skew = -3e-05\n"));
+  EXPECT_NEAR(x_um("klipper", klipper, kFarY, 1), 30.0, 1e-3);
+  const auto marlin = files_of("marlin", leaning_axis(), CompensationPart::Squareness);
+  EXPECT_EQ(content_of(marlin, "skew.gcode"), "G21\nM852 I-0.000030000 J0.000000000 K0.000000000\nM500\n");
+  EXPECT_NEAR(x_um("marlin", marlin, kFarY, 1), 30.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace volcal

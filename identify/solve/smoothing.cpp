@@ -27,9 +27,10 @@ constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
-// Of coefficients, that what a spectrum is expected to be is worth: little beside a machine's eighteen
-// functions or an axis' six.
-constexpr double kWorthOfExpectation = 2.0;
+// Of coefficients: what is expected of the spectrum of all linear axes counts little beside their eighteen
+// functions; what follows for one axis, beside its six, counts more.
+constexpr double kWorthOfShape = 1.0;
+constexpr double kWorthOfCommonSpectrum = 3.0;
 
 using Prior = std::shared_ptr<const PriorShape>;
 
@@ -227,9 +228,9 @@ struct CoefficientSquares {
     functions += 1.0;
   }
 
-  /// Highest point of the posterior, in the mean of the variances' inverse, where they are expected to be so.
-  Eigen::VectorXd variances(const Eigen::VectorXd& expected) const {
-    return (kWorthOfExpectation * expected + sum) / (kWorthOfExpectation + functions);
+  /// 1 / posterior mean of the variances' inverses, when `expected` is worth so many functions.
+  Eigen::VectorXd variances(const Eigen::VectorXd& expected, double worth) const {
+    return (worth * expected + sum) / (worth + functions);
   }
 };
 
@@ -354,8 +355,9 @@ class EvidenceSearch {
           of_shapes.add(stretches_[t].term->family->shapes()[at.shape[t]]->spectrum);
         }
       }
-      const Eigen::VectorXd expected = common.variances(of_shapes.sum / of_shapes.functions);
-      for (const AxisName axis : group) set_spectrum(axis, of_axis.at(axis).variances(expected), at);
+      const Eigen::VectorXd expected = common.variances(of_shapes.sum / of_shapes.functions, kWorthOfShape);
+      for (const AxisName axis : group)
+        set_spectrum(axis, of_axis.at(axis).variances(expected, kWorthOfCommonSpectrum), at);
     }
   }
 

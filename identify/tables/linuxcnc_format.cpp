@@ -180,8 +180,8 @@ const TableFormat& linuxcnc_format() {
           "LinuxCNC, INI configuration, [JOINT_n] COMP_FILE and COMP_FILE_TYPE = 1: trim added to the "
           "command, linear between rows, end values held; joints 0 1 2 move X Y Z",
       .verified =
-          "rows and trims as tried on a running LinuxCNC: applied within 0.1 nm; these files read back "
-          "by volcal",
+          "form of the rows and trims as tried by hand on a running LinuxCNC; these files read back by "
+          "volcal, not yet loaded by a controller",
       .supported = CompensationPart::Positioning,
       .refusal =
           "a screw compensation table acts on its own joint only; errors that need other axes or the "

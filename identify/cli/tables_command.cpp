@@ -132,8 +132,8 @@ MadeTables make_tables(const FitResult& result, const TablesArguments& arguments
   made.format = find_table_format(arguments.format);
   made.options = table_options(*made.format, result, arguments);
   check_table_options(*made.format, result, made.options);
-  const bool own_step = made.format->name == "csv" && arguments.tolerance_um == 0.0;
-  if (arguments.step_mm == 0.0 && !own_step) {
+  const bool own_positions = made.format->positions_of_own && arguments.tolerance_um == 0.0;
+  if (arguments.step_mm == 0.0 && !own_positions) {
     made.tolerance =
         (arguments.tolerance_um > 0.0 ? arguments.tolerance_um : kDefaultTolerance_um) * kMetrePerMicrometre;
     made.step = choose_step(*made.format, result, made.options, made.tolerance);

@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
+#include "volcal/identify/solve/plausibility.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/resolution.h"
@@ -23,8 +23,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kImplausibleResidual = 0.02;  // nominal machine, share of the setup's extent
-constexpr double kFurthestStationMiss = 1.0;   // m
+constexpr double kFurthestStationMiss = 1.0;  // m
 constexpr int kEvidenceRounds = 2;
 // m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
 constexpr double kUnseenAmplitude = 1e-4;
@@ -179,25 +178,10 @@ class Identification {
     parameters_ = datum.raw(z);
   }
 
-  /// Readings that the nominal machine misses by centimetres are in another unit or another setup's file.
   void check_plausible() const {
     const auto records =
         residual_records(index_, stated_sigma_, weights(stated_sigma_), parameters_, {}, 1e300, threads_);
-    const auto summaries = setup_summaries(campaign_, records, stated_sigma_);
-    for (std::size_t i = 0; i < summaries.size(); ++i) {
-      if (summaries[i].reading_unit != "um") continue;
-      double extent = 0.0;
-      for (const Axis& axis : campaign_.machine.axes) {
-        if (!is_rotary(axis.name)) extent = std::max(extent, axis.travel());
-      }
-      if (summaries[i].rms_residual < kImplausibleResidual * extent) continue;
-      std::ostringstream problem;
-      problem << "setup \"" << summaries[i].name << "\": its readings miss the nominal machine by "
-              << summaries[i].rms_residual * 1e3 << " mm RMS";
-      throw InputError(
-          {campaign_.setups[i].data.empty() ? campaign_.file : campaign_.setups[i].data, 0}, problem.str(),
-          "check the unit of the reading column (scale = { ... = 1000.0 }), the tool and the station");
-    }
+    require_plausible(campaign_, setup_summaries(campaign_, records, stated_sigma_));
   }
 
   void find_rank() {

@@ -125,6 +125,11 @@ const std::vector<Eigen::VectorXd>& spectra() {
   return all;
 }
 
+Eigen::MatrixXd with_nugget(Eigen::MatrixXd covariance) {
+  covariance.diagonal().array() += kNugget * covariance.diagonal().mean();
+  return covariance;
+}
+
 }  // namespace
 
 std::string_view to_string(Roughness roughness) {
@@ -177,9 +182,8 @@ FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen
   }
 }
 
-PriorShape FunctionPriors::with_covariance(Eigen::MatrixXd of_contrasts) const {
-  of_contrasts.diagonal().array() += kNugget * of_contrasts.diagonal().mean();
-  const std::optional<Eigen::MatrixXd> root = cholesky_lower(of_contrasts);
+PriorShape FunctionPriors::with_covariance(const Eigen::MatrixXd& of_contrasts) const {
+  const std::optional<Eigen::MatrixXd> root = cholesky_lower(with_nugget(of_contrasts));
   if (!root) throw std::runtime_error("the prior covariance of an error function is not positive definite");
   Eigen::MatrixXd half = of_reduced_;
   solve_lower(*root, half);
@@ -203,8 +207,7 @@ Eigen::VectorXd FunctionPriors::expected_squares(const PriorShape& prior, double
                                                  const Eigen::VectorXd& mean,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& covariance) const {
   const Eigen::MatrixXd across = prior.spectrum.asDiagonal() * of_legendre_.transpose();
-  Eigen::MatrixXd of_contrasts = of_legendre_ * across;
-  of_contrasts.diagonal().array() += kNugget * of_contrasts.diagonal().mean();
+  const Eigen::MatrixXd of_contrasts = with_nugget(of_legendre_ * across);
   const Eigen::MatrixXd gain = solve_positive_definite(of_contrasts, across.transpose()).transpose();
   const Eigen::MatrixXd coefficients = gain * of_reduced_;
   const Eigen::VectorXd known = (coefficients * mean).cwiseAbs2() +

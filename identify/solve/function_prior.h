@@ -12,8 +12,9 @@
 /// scaled to a mean variance of 1 over the travel, projected on the basis by least squares and expressed in
 /// the coordinates of the datum (Z of datum.h).
 ///
-/// Of a chosen one only the spectrum is kept in the end, the variance of each Legendre coefficient, which the
-/// functions that share it may then correct degree by degree (smoothing.h).
+/// The spectrum of the chosen one, the variance of each Legendre coefficient, is then corrected degree by
+/// degree by the functions that share it, and the corrected one is taken where its evidence is higher
+/// (smoothing.h).
 
 #include <Eigen/Core>
 #include <memory>
@@ -65,7 +66,7 @@ class FunctionPriors {
 
  private:
   /// Precision, determinant and rank alone.
-  PriorShape with_covariance(Eigen::MatrixXd of_contrasts) const;
+  PriorShape with_covariance(const Eigen::MatrixXd& of_contrasts) const;
 
   Eigen::MatrixXd of_reduced_;   ///< contrasts (combinations that vanish for straight lines) x reduced
   Eigen::MatrixXd of_legendre_;  ///< contrasts x degrees

@@ -96,8 +96,8 @@ struct RankReport {
 struct FunctionSummary {
   ErrorSymbol symbol;
   int intervals = 0;
-  bool smoothed = false;            ///< smoothing prior in force (knots = "auto")
-  std::string prior;                ///< its kind (function_prior.h); empty = not smoothed
+  bool smoothed = false;  ///< smoothing prior in force (knots = "auto")
+  std::string prior;      ///< kind that its spectrum is about (function_prior.h); empty = not smoothed
   double correlation_length = 0.0;  ///< of the prior, m or rad; 0 = not smoothed
   double effective_parameters = 0.0;
   double measured_min = 0.0;  ///< range of positions with readings, m or rad

@@ -23,6 +23,7 @@ constexpr int kSettlingSteps = 30;
 constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
 constexpr double kSameLogLambda = 0.5;
+constexpr double kSameLogLength = 0.2;
 constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
@@ -257,7 +258,7 @@ class EvidenceSearch {
       log_evidence = settle(at);
     }
     if (corrected.shape != at.shape) corrected = at;
-    const double with_correction = settle(corrected, &EvidenceSearch::correct_spectra);
+    const double with_correction = settle(corrected, Spectra::Corrected);
     if (with_correction <= log_evidence) return log_evidence;
     at = corrected;
     return with_correction;
@@ -288,11 +289,11 @@ class EvidenceSearch {
     return squares > 0.0 ? std::sqrt(squares / redundancy) : scale;
   }
 
-  using Update = void (EvidenceSearch::*)(const Posterior& now, const Hyperparameters& from,
-                                          Hyperparameters& at) const;
+  enum class Spectra { Held, Corrected };
 
-  /// All amplitudes and variance components, and what `also` updates, to their common fixed point.
-  double settle(Hyperparameters& at, Update also = nullptr) const {
+  /// All amplitudes and variance components, and the spectra where they are corrected, to their common fixed
+  /// point.
+  double settle(Hyperparameters& at, Spectra spectra = Spectra::Held) const {
     Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
     for (int step = 0; step < kSettlingSteps; ++step) {
       const double before = now.log_evidence;
@@ -301,7 +302,7 @@ class EvidenceSearch {
         at.lambda[t] = updated_lambda(stretches_[t], *from.prior[t], from.lambda[t], now);
       for (std::size_t g = 0; options_.variance_components && g < equations_.size(); ++g)
         at.scale[g] = updated_scale(g, from.scale[g], now);
-      if (also) (this->*also)(now, from, at);
+      if (spectra == Spectra::Corrected) correct_spectra(now, from, at);
       now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
       if (std::abs(now.log_evidence - before) < kSettled) break;
     }
@@ -427,7 +428,9 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
 
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others) {
   return std::ranges::equal(terms, others, [](const SmoothingTerm& a, const SmoothingTerm& b) {
-    return a.shape == b.shape && std::abs(std::log(a.lambda / b.lambda)) < kSameLogLambda;
+    const double lengths = a.prior->correlation_length() / b.prior->correlation_length();
+    return a.shape == b.shape && std::abs(std::log(a.lambda / b.lambda)) < kSameLogLambda &&
+           std::abs(std::log(lengths)) < kSameLogLength;
   });
 }
 

@@ -45,8 +45,8 @@ struct SmoothingTerm {
 
 /// Terms for the functions that are smoothed, with a wide start.
 std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const DatumSpace& datum);
-/// Same shapes, amplitudes within 28 %: less than evidence knows of one, and nothing that the noise beside
-/// them would notice.
+/// Same shapes, amplitudes within 28 %, correlation lengths within 22 %: less than evidence knows of one, and
+/// nothing that the noise beside them would notice.
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others);
 void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior);
 

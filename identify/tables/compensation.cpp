@@ -8,8 +8,6 @@ namespace {
 
 constexpr int kSlopeSamples = 400;
 
-constexpr ApproachDirection kTowardsPlus = {1, 1, 1, 1, 1, 1};
-
 }  // namespace
 
 std::vector<AxisName> linear_axes_of(const Machine& machine) {
@@ -18,6 +16,12 @@ std::vector<AxisName> linear_axes_of(const Machine& machine) {
     if (machine.has_axis(axis)) axes.push_back(axis);
   }
   return axes;
+}
+
+Eigen::Vector3d movable_directions(const Machine& machine) {
+  Eigen::Vector3d movable = Eigen::Vector3d::Zero();
+  for (const AxisName axis : linear_axes_of(machine)) movable[direction_of(axis)] = 1.0;
+  return movable;
 }
 
 AxisPosition middle_of_travel(const Machine& machine) {
@@ -35,10 +39,9 @@ AxisPosition home_of(const Machine& machine) {
 
 Compensation::Compensation(const Machine& machine, const AxisPosition& lines, CompensationType type,
                            ErrorField errors)
-    : type_(type), errors_(std::move(errors)), lines_(lines) {
+    : type_(type), errors_(std::move(errors)), lines_(lines), movable_(movable_directions(machine)) {
   for (const AxisName name : linear_axes_of(machine)) {
     const Axis& axis = machine.axis(name);
-    movable_[direction_of(name)] = 1.0;
     Line line{.axis = name, .home = axis.home};
     line.at_home = on_line(line, axis.home, 1);
     line.slope = mean_slope(line, axis);

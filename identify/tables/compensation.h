@@ -27,6 +27,8 @@ AxisPosition middle_of_travel(const Machine& machine);
 AxisPosition home_of(const Machine& machine);
 /// The linear axes of the machine, in the order X Y Z.
 std::vector<AxisName> linear_axes_of(const Machine& machine);
+/// 1 where the machine has the linear axis, 0 where it has not.
+Eigen::Vector3d movable_directions(const Machine& machine);
 
 class Compensation {
  public:
@@ -61,7 +63,7 @@ class Compensation {
   ErrorField errors_;
   AxisPosition lines_;
   std::vector<Line> axes_;
-  Eigen::Vector3d movable_ = Eigen::Vector3d::Zero();  ///< 1 where the machine has the axis
+  Eigen::Vector3d movable_;
   Eigen::Vector3d at_home_ = Eigen::Vector3d::Zero();
 };
 

@@ -44,6 +44,17 @@ struct CorrectionGrid {
   Eigen::Vector3d value(const AxisPosition& at, const ApproachDirection& direction) const;
 };
 
+/// Calls visit(index, position) for every node, Z fastest, rotary axes at 0.
+template <class Visit>
+void for_each_node(const std::array<std::vector<double>, 3>& nodes, Visit&& visit) {
+  std::size_t index = 0;
+  for (const double x : nodes[0]) {
+    for (const double y : nodes[1]) {
+      for (const double z : nodes[2]) visit(index++, AxisPosition{x, y, z, 0.0, 0.0, 0.0});
+    }
+  }
+}
+
 CorrectionTerm axis_term(AxisName output, AxisTable table);
 /// Product of two tables, for controllers that multiply them.
 CorrectionTerm product_term(AxisName output, AxisTable table, AxisTable factor);

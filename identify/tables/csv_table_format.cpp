@@ -10,8 +10,6 @@
 namespace volcal {
 namespace {
 
-constexpr ApproachDirection kPlus = {1, 1, 1, 1, 1, 1};
-
 /// Errors of the linear axes as a program reads them: linear between rows, then the kinematic model.
 class FunctionTables {
  public:
@@ -56,10 +54,6 @@ class FunctionTables {
 };
 
 std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptions& given) {
-  if (!given.type.is_volumetric())
-    throw InputError(
-        {}, "csv cannot compensate " + given.type.name() + ": its tables per error are the whole model",
-        "leave --type out, or write neutral-csv");
   TableFormatOptions options = given;
   options.functions.step = given.step;
   std::vector<TableFile> files = result_tables(result, options);
@@ -85,15 +79,13 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   const auto tables = std::make_shared<const FunctionTables>(rows, file);
   const KinematicChain chain(metadata.machine);
   const Eigen::Vector3d tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
-  Eigen::Vector3d movable = Eigen::Vector3d::Zero();
-  for (const AxisName axis : linear_axes_of(metadata.machine)) movable[direction_of(axis)] = 1.0;
+  const Eigen::Vector3d movable = movable_directions(metadata.machine);
   const auto error = [=](const AxisPosition& position, const ApproachDirection& direction) {
-    AxisPosition linear{};
-    for (const AxisName axis : kLinearAxes) linear[index_of(axis)] = position[index_of(axis)];
+    const AxisPosition linear = without_rotary_axes(position);
     const ToolTwist twist = chain.first_order(linear, tool, tables->at(linear, direction));
     return Eigen::Vector3d(twist.displacement_w.cwiseProduct(movable));
   };
-  const Eigen::Vector3d at_home = error(home_of(metadata.machine), kPlus);
+  const Eigen::Vector3d at_home = error(home_of(metadata.machine), kTowardsPlus);
   CompensationTables result;
   result.terms.push_back([error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
     return Eigen::Vector3d(at_home - error(position, direction));
@@ -112,6 +104,8 @@ const TableFormat& csv_table_format() {
       .source = "volcal's own; symbols, signs and layout of ISO 230-1 and ISO/TR 16907:2015, 9.1 to 9.3",
       .verified = "read back and evaluated by volcal with its kinematic model",
       .supported = CompensationType::volumetric(),
+      .indivisible = true,
+      .positions_of_own = true,
       .refusal = "its tables per error are the whole model",
       .limits = {.both_directions = true},
       .settings = {},

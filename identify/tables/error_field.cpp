@@ -2,14 +2,14 @@
 
 #include <memory>
 
+#include "volcal/model/effects/reversal_label.h"
+#include "volcal/model/observation/measurement_model.h"
+
 namespace volcal {
 namespace {
 
-const std::string kReversalPrefix = "reversal ";
-
-std::optional<ErrorSymbol> reversal_symbol(const ParameterBlock& block) {
-  if (block.kind != ParameterKind::Effect || !block.name.starts_with(kReversalPrefix)) return std::nullopt;
-  return ErrorSymbol::parse(block.name.substr(kReversalPrefix.size()));
+std::optional<ErrorSymbol> reversal_of(const ParameterBlock& block) {
+  return block.kind == ParameterKind::Effect ? reversal_symbol(block.name) : std::nullopt;
 }
 
 }  // namespace
@@ -17,30 +17,13 @@ std::optional<ErrorSymbol> reversal_symbol(const ParameterBlock& block) {
 IdentifiedErrors::IdentifiedErrors(const FitResult& result)
     : layout_(result.layout), parameters_(result.parameters) {
   for (const ParameterBlock& block : layout_.blocks) {
-    if (const auto symbol = reversal_symbol(block))
-      reversals_.push_back({*symbol, parameters_[block.offset]});
+    if (const auto symbol = reversal_of(block)) reversals_.push_back({*symbol, parameters_[block.offset]});
   }
 }
 
 PoseErrors<double> IdentifiedErrors::at(const AxisPosition& position,
                                         const ApproachDirection& direction) const {
-  PoseErrors<double> errors;
-  double values[kMaxBasisSupport];
-  for (const FunctionGroup& group : layout_.groups) {
-    const int start = group.basis->evaluate(position[index_of(group.axis)], values);
-    for (int slot = 0; slot < group.count(); ++slot) {
-      double sum = 0.0;
-      for (int j = 0; j < group.basis->support(); ++j)
-        sum += values[j] * parameters_[group.index(start + j, slot)];
-      const Component component = group.symbols[static_cast<std::size_t>(slot)].component;
-      errors.motion[index_of(group.axis)][index_of(component)] = sum;
-    }
-  }
-  for (const ParameterBlock& block : layout_.blocks) {
-    if (!block.location) continue;
-    errors.location[index_of(block.location->axis)][index_of(block.location->component)] =
-        parameters_[block.offset];
-  }
+  PoseErrors<double> errors = pose_errors(layout_, position, parameters_);
   for (const Reversal& reversal : reversals_) {
     errors.motion[index_of(reversal.symbol.axis)][index_of(reversal.symbol.component)] +=
         0.5 * direction[index_of(reversal.symbol.axis)] * reversal.amplitude;
@@ -48,12 +31,17 @@ PoseErrors<double> IdentifiedErrors::at(const AxisPosition& position,
   return errors;
 }
 
+AxisPosition without_rotary_axes(const AxisPosition& position) {
+  AxisPosition linear{};
+  for (const AxisName axis : kLinearAxes) linear[index_of(axis)] = position[index_of(axis)];
+  return linear;
+}
+
 ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset) {
   const auto errors = std::make_shared<const IdentifiedErrors>(result);
   const KinematicChain chain(result.machine);
   return [errors, chain, tool_offset](const AxisPosition& position, const ApproachDirection& direction) {
-    AxisPosition linear{};
-    for (const AxisName axis : kLinearAxes) linear[index_of(axis)] = position[index_of(axis)];
+    const AxisPosition linear = without_rotary_axes(position);
     PoseErrors<double> values = errors->at(linear, direction);
     for (const AxisName axis : {AxisName::A, AxisName::B, AxisName::C}) {
       values.motion[index_of(axis)] = {};
@@ -67,7 +55,7 @@ std::vector<std::string> effects_not_in_tables(const FitResult& result) {
   std::vector<std::string> names;
   for (const ParameterBlock& block : result.layout.blocks) {
     const bool effect = block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape;
-    if (effect && !reversal_symbol(block)) names.push_back(block.name);
+    if (effect && !reversal_of(block)) names.push_back(block.name);
   }
   return names;
 }

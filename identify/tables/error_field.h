@@ -15,6 +15,7 @@ namespace volcal {
 
 /// Direction of approach of every axis, by AxisName: -1, +1, 0 = mean of both.
 using ApproachDirection = std::array<std::int8_t, kAxisCount>;
+inline constexpr ApproachDirection kTowardsPlus = {1, 1, 1, 1, 1, 1};
 
 /// Error vector (ex, ey, ez) of the functional point at a commanded position, actual minus nominal, workpiece
 /// coordinates, m.
@@ -36,6 +37,9 @@ class IdentifiedErrors {
   Eigen::VectorXd parameters_;
   std::vector<Reversal> reversals_;
 };
+
+/// The same position with every rotary axis at 0.
+AxisPosition without_rotary_axes(const AxisPosition& position);
 
 /// First order (chain.h), linear axes only: rotary axes contribute neither errors nor motion.
 ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset);

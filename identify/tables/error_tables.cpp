@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/tables/correction_positions.h"
+#include "volcal/model/effects/reversal_label.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -43,7 +44,7 @@ std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& o
 
 /// Reversal amplitude block of a symbol, if the model has one.
 const ParameterBlock* reversal_of(const FitResult& result, ErrorSymbol symbol) {
-  return result.layout.find_block("reversal " + symbol.name());
+  return result.layout.find_block(reversal_label(symbol));
 }
 
 const FunctionSummary* summary_of(const FitResult& result, ErrorSymbol symbol) {

@@ -57,18 +57,12 @@ std::string isg_grid(const CorrectionGrid& grid) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
   fmt::format_to(out, "X Y Z EXX EYY EZZ\n");
-  std::size_t index = 0;
-  for (const double x : grid.nodes[0]) {
-    for (const double y : grid.nodes[1]) {
-      for (const double z : grid.nodes[2]) {
-        fmt::format_to(out, "{:.6f} {:.6f} {:.6f}", x / kMetrePerMillimetre, y / kMetrePerMillimetre,
-                       z / kMetrePerMillimetre);
-        for (const double component : grid.mean[index]) fmt::format_to(out, "{}", error_mm(component));
-        fmt::format_to(out, "\n");
-        ++index;
-      }
-    }
-  }
+  for_each_node(grid.nodes, [&](std::size_t index, const AxisPosition& node) {
+    fmt::format_to(out, "{:.6f} {:.6f} {:.6f}", node[0] / kMetrePerMillimetre, node[1] / kMetrePerMillimetre,
+                   node[2] / kMetrePerMillimetre);
+    for (const double component : grid.mean[index]) fmt::format_to(out, "{}", error_mm(component));
+    fmt::format_to(out, "\n");
+  });
   return fmt::to_string(text);
 }
 

@@ -51,7 +51,7 @@ const TableFormat& klipper_format() {
       .source = "Klipper, skew_correction.py (calc_skew, [skew_correction NAME]) and docs/Skew_Correction.md",
       .verified = "read back by volcal with the equation of Klipper's source; not tried on a printer",
       .supported = CompensationPart::Squareness,
-      .refusal = "the firmware knows three skew factors and nothing else",
+      .refusal = kSkewRefusal,
       .limits = {.sampled = false},
       .settings = {},
       .write = write_klipper,

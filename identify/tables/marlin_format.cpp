@@ -77,7 +77,7 @@ const TableFormat& marlin_format() {
       .source = "Marlin, M852.cpp and planner.h (skew()), SKEW_CORRECTION_GCODE and SKEW_CORRECTION_FOR_Z",
       .verified = "read back by volcal with the equation of Marlin's source; not tried on a printer",
       .supported = CompensationPart::Squareness,
-      .refusal = "the firmware knows three skew factors and nothing else",
+      .refusal = kSkewRefusal,
       .limits = {.sampled = false},
       .settings = {},
       .write = write_marlin,

@@ -43,23 +43,17 @@ std::string grid_file(const CorrectionGrid& grid) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);
   fmt::format_to(out, "{}\n", kGridHeader);
-  std::size_t index = 0;
   const auto write_vector = [&](const Eigen::Vector3d& value) {
     for (const double component : value)
       fmt::format_to(out, ",{:.9g}", without_negative_zero(component) / kMetrePerMicrometre);
   };
-  for (const double x : grid.nodes[0]) {
-    for (const double y : grid.nodes[1]) {
-      for (const double z : grid.nodes[2]) {
-        fmt::format_to(out, "{:.10g},{:.10g},{:.10g}", x / kMetrePerMillimetre, y / kMetrePerMillimetre,
-                       z / kMetrePerMillimetre);
-        write_vector(grid.mean[index]);
-        for (const auto& half : grid.half_reversal) write_vector(2.0 * half[index]);
-        fmt::format_to(out, "\n");
-        ++index;
-      }
-    }
-  }
+  for_each_node(grid.nodes, [&](std::size_t index, const AxisPosition& node) {
+    fmt::format_to(out, "{:.10g},{:.10g},{:.10g}", node[0] / kMetrePerMillimetre,
+                   node[1] / kMetrePerMillimetre, node[2] / kMetrePerMillimetre);
+    write_vector(grid.mean[index]);
+    for (const auto& half : grid.half_reversal) write_vector(2.0 * half[index]);
+    fmt::format_to(out, "\n");
+  });
   return fmt::to_string(text);
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
+#include "volcal/identify/tables/correction_positions.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -65,21 +67,16 @@ CorrectionGrid sample_grid(const TableFormat& format, const FitResult& result,
   if (grid.size() > kMostGridPoints)
     throw InputError({}, "the grid would have " + std::to_string(grid.size()) + " points",
                      "give a larger --step; " + std::to_string(kMostGridPoints) + " are written at most");
-  for (const double x : grid.nodes[0]) {
-    for (const double y : grid.nodes[1]) {
-      for (const double z : grid.nodes[2]) {
-        const AxisPosition position = {x, y, z, 0.0, 0.0, 0.0};
-        const Eigen::Vector3d mean = ideal.correction(position, {});
-        grid.mean.push_back(mean);
-        if (!format.limits.both_directions) continue;
-        for (std::size_t i = 0; i < 3; ++i) {
-          ApproachDirection towards_plus{};
-          towards_plus[i] = 1;
-          grid.half_reversal[i].push_back(ideal.correction(position, towards_plus) - mean);
-        }
-      }
+  for_each_node(grid.nodes, [&](std::size_t, const AxisPosition& position) {
+    const Eigen::Vector3d mean = ideal.correction(position, {});
+    grid.mean.push_back(mean);
+    if (!format.limits.both_directions) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      ApproachDirection towards_plus{};
+      towards_plus[i] = 1;
+      grid.half_reversal[i].push_back(ideal.correction(position, towards_plus) - mean);
     }
-  }
+  });
   return grid;
 }
 
@@ -91,17 +88,12 @@ std::array<std::vector<double>, 3> grid_nodes(const std::vector<std::array<doubl
     for (const auto& point : points) values.insert(point[i]);
     nodes[i].assign(values.begin(), values.end());
   }
-  std::size_t row = 0;
-  for (const double x : nodes[0]) {
-    for (const double y : nodes[1]) {
-      for (const double z : nodes[2]) {
-        if (row >= points.size()) fail_grid(places.back());
-        if (points[row] != std::array<double, 3>{x, y, z}) fail_grid(places[row]);
-        ++row;
-      }
-    }
-  }
-  if (row != points.size()) fail_grid(places[row]);
+  for_each_node(nodes, [&](std::size_t row, const AxisPosition& node) {
+    if (row >= points.size()) fail_grid(places.back());
+    if (!std::ranges::equal(points[row], std::span(node).first<3>())) fail_grid(places[row]);
+  });
+  const std::size_t size = nodes[0].size() * nodes[1].size() * nodes[2].size();
+  if (size != points.size()) fail_grid(places[size]);
   return nodes;
 }
 

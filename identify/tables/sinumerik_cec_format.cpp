@@ -99,39 +99,30 @@ std::vector<TableFile> write_cec(const FitResult& result, const TableFormatOptio
 }
 
 struct CecTable {
-  std::map<int, double> values;  ///< m, as written
+  SinumerikValues values;  ///< as written
   std::map<std::string, SinumerikAssignment> settings;
-  SourcePlace place;
 };
 
 const SinumerikAssignment& cec_setting(const CecTable& table, const std::string& name) {
   const auto found = table.settings.find(name);
   if (found == table.settings.end())
-    throw InputError(table.place, std::string(kCec) + name + " is missing", "every table needs it");
+    throw InputError(table.values.place, std::string(kCec) + name + " is missing", "every table needs it");
   return found->second;
 }
 
 AxisName cec_axis(const CecTable& table, const std::string& name) {
   const SinumerikAssignment& assignment = cec_setting(table, name);
-  for (const AxisName axis : kLinearAxes) {
-    if (assignment.value == sinumerik_axis_name(letter_of(axis))) return axis;
-  }
-  throw InputError(assignment.place, "the machine axis is \"" + assignment.value.substr(0, 40) + "\"",
-                   "write (X1), (Y1) or (Z1)");
+  return sinumerik_axis(assignment.value, assignment.place);
 }
 
 double cec_length(const CecTable& table, const std::string& name) {
   return sinumerik_number(cec_setting(table, name)) * kMetrePerMillimetre;
 }
 
-CorrectionTerm cec_term(const CecTable& table, double sign) {
-  const double step = cec_length(table, "_STEP"), low = cec_length(table, "_MIN");
-  const auto points = static_cast<double>(table.values.size());
-  if (!(step > 0.0) || points < 2 ||
-      std::abs((cec_length(table, "_MAX") - low) / step + 1.0 - points) > 1e-3 ||
-      table.values.rbegin()->first + 1 != static_cast<int>(table.values.size()))
-    throw InputError(table.place, fmt::format("{} values do not reach from MIN to MAX", points),
-                     "there are (MAX - MIN) / STEP + 1 values, numbered from 0, STEP above 0");
+CorrectionTerm cec_term(CecTable table, double sign) {
+  table.values.step = cec_length(table, "_STEP");
+  table.values.low = cec_length(table, "_MIN");
+  table.values.high = cec_length(table, "_MAX");
   for (const char* name : {"_MULT_BY_TABLE", "_IS_MODULO"}) {
     if (sinumerik_number(cec_setting(table, name)) != 0.0)
       throw InputError(cec_setting(table, name).place, std::string(kCec) + name + " is not 0",
@@ -141,10 +132,11 @@ CorrectionTerm cec_term(const CecTable& table, double sign) {
   if (direction != 0.0 && std::abs(direction) != 1.0)
     throw InputError(cec_setting(table, "_DIRECTION").place, "DIRECTION is neither 0, 1 nor -1",
                      "0 = both directions, 1 = towards +, -1 = towards -");
-  AxisTable axis_table{
-      .input = cec_axis(table, "_INPUT_AXIS"), .position = {}, .forward = {}, .backward = {}};
-  for (const auto& [index, value] : table.values) {
-    axis_table.position.push_back(low + index * step);
+  AxisTable axis_table{.input = cec_axis(table, "_INPUT_AXIS"),
+                       .position = sinumerik_positions(table.values),
+                       .forward = {},
+                       .backward = {}};
+  for (const auto& [index, value] : table.values.value) {
     axis_table.forward.push_back(direction < 0.0 ? 0.0 : sign * value);
     axis_table.backward.push_back(direction > 0.0 ? 0.0 : sign * value);
   }
@@ -173,15 +165,13 @@ CompensationTables read_cec(std::span<const TableFile> files) {
     if (!assignment.variable.starts_with(kCec))
       throw InputError(assignment.place, "the variable is no $AN_CEC", "delete the line");
     CecTable& table = tables[sinumerik_index(assignment, 0)];
-    table.place = assignment.place;
+    table.values.place = assignment.place;
     if (assignment.variable == kCec) {
-      table.values[sinumerik_index(assignment, 1)] = sinumerik_number(assignment) * kMetrePerMillimetre;
+      table.values.value[sinumerik_index(assignment, 1)] = sinumerik_number(assignment) * kMetrePerMillimetre;
     } else {
       table.settings[assignment.variable.substr(kCec.size())] = assignment;
     }
   }
-  if (tables.empty())
-    throw InputError({file.name, 0}, "the program assigns nothing", "write the tables again");
   CompensationTables result;
   for (const auto& [number, table] : tables) result.terms.push_back(cec_term(table, sign));
   return result;

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "volcal/identify/tables/sampled_tables.h"
@@ -40,33 +38,20 @@ std::vector<TableFile> write_enc_comp(const FitResult& result, const TableFormat
   return {{std::string(kEncFile), text + "M17\n"}};
 }
 
-struct EncoderTable {
-  std::map<int, double> values;  ///< m
-  std::optional<double> step, low, high;
-  SourcePlace place;
-};
-
-AxisName machine_axis(const SinumerikAssignment& assignment, std::size_t index) {
-  const std::string name = index < assignment.indices.size() ? assignment.indices[index] : "";
-  for (const AxisName axis : kLinearAxes) {
-    if (name == sinumerik_axis_name(letter_of(axis))) return axis;
-  }
-  throw InputError(assignment.place, "the machine axis is \"" + name.substr(0, 40) + "\"",
-                   "write X1, Y1 or Z1");
-}
-
-void read_enc_assignment(const SinumerikAssignment& assignment, std::map<AxisName, EncoderTable>& tables) {
+void read_enc_assignment(const SinumerikAssignment& assignment, std::map<AxisName, SinumerikValues>& tables) {
   const std::string_view name =
       std::string_view(assignment.variable).substr(std::min(kEnc.size(), assignment.variable.size()));
   if (!assignment.variable.starts_with(kEnc))
     throw InputError(assignment.place, "the variable is no $AA_ENC_COMP", "delete the line");
   if (sinumerik_index(assignment, 0) != 0)
     throw InputError(assignment.place, "the encoder is not 0", "tables are for the first encoder");
-  EncoderTable& table = tables[machine_axis(assignment, assignment.indices.size() - 1)];
+  if (assignment.indices.size() < 2)
+    throw InputError(assignment.place, "the machine axis is missing", "write X1, Y1 or Z1 as the last index");
+  SinumerikValues& table = tables[sinumerik_axis(assignment.indices.back(), assignment.place)];
   table.place = assignment.place;
   const double value = sinumerik_number(assignment) * kMetrePerMillimetre;
   if (name.empty()) {
-    table.values[sinumerik_index(assignment, 1)] = value;
+    table.value[sinumerik_index(assignment, 1)] = value;
   } else if (name == "_STEP") {
     table.step = value;
   } else if (name == "_MIN") {
@@ -79,33 +64,18 @@ void read_enc_assignment(const SinumerikAssignment& assignment, std::map<AxisNam
   }
 }
 
-AxisTable encoder_table(AxisName axis, const EncoderTable& read) {
-  if (!read.step || !read.low || !read.high || !(*read.step > 0.0) || read.values.size() < 2)
-    throw InputError(read.place,
-                     fmt::format("axis {}: STEP, MIN, MAX or values are missing", letter_of(axis)),
-                     "write all of them, STEP above 0");
-  const auto points = static_cast<double>(read.values.size());
-  if (std::abs((*read.high - *read.low) / *read.step + 1.0 - points) > 1e-3 ||
-      read.values.rbegin()->first + 1 != static_cast<int>(read.values.size()))
-    throw InputError(read.place,
-                     fmt::format("axis {}: {} values do not reach from MIN to MAX", letter_of(axis), points),
-                     "there are (MAX - MIN) / STEP + 1 values, numbered from 0");
-  AxisTable table{.input = axis, .position = {}, .forward = {}, .backward = {}};
-  for (const auto& [index, value] : read.values) {
-    table.position.push_back(*read.low + index * *read.step);
-    table.forward.push_back(-value);
-  }
+AxisTable encoder_table(AxisName axis, const SinumerikValues& values) {
+  AxisTable table{.input = axis, .position = sinumerik_positions(values), .forward = {}, .backward = {}};
+  for (const auto& [index, value] : values.value) table.forward.push_back(-value);
   table.backward = table.forward;
   return table;
 }
 
 CompensationTables read_enc_comp(std::span<const TableFile> files) {
-  std::map<AxisName, EncoderTable> tables;
+  std::map<AxisName, SinumerikValues> tables;
   const TableFile& file = file_named(files, kEncFile);
   for (const SinumerikAssignment& assignment : sinumerik_assignments(file, kEncHeader))
     read_enc_assignment(assignment, tables);
-  if (tables.empty())
-    throw InputError({file.name, 0}, "the program assigns nothing", "write the tables again");
   CompensationTables result;
   for (const auto& [axis, table] : tables)
     result.terms.push_back(axis_term(axis, encoder_table(axis, table)));

@@ -1,7 +1,10 @@
 #include "volcal/identify/tables/sinumerik_program.h"
 
 #include <cctype>
+#include <cmath>
 #include <set>
+
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -55,7 +58,10 @@ std::vector<SinumerikAssignment> sinumerik_assignments(const TableFile& file, st
     std::string_view line = lines.current();
     line = without_block_number(trimmed_text(line.substr(0, line.find(';'))));
     if (line.empty() || line == "CHANDATA(1)") continue;
-    if (line == "M17") return assignments;
+    if (line == "M17") {
+      if (assignments.empty()) lines.fail("the program assigns nothing", "write the tables again");
+      return assignments;
+    }
     assignments.push_back(assignment_in(lines, line));
     if (!seen.emplace(assignments.back().variable, assignments.back().indices).second)
       lines.fail("the variable is assigned a second time", "delete one of the lines");
@@ -81,5 +87,28 @@ int sinumerik_index(const SinumerikAssignment& assignment, std::size_t index) {
 }
 
 std::string sinumerik_axis_name(char letter) { return std::string(1, letter) + "1"; }
+
+AxisName sinumerik_axis(std::string_view name, const SourcePlace& place) {
+  for (const AxisName axis : kLinearAxes) {
+    if (name == sinumerik_axis_name(letter_of(axis))) return axis;
+  }
+  throw InputError(place, "the machine axis is \"" + std::string(name.substr(0, 40)) + "\"",
+                   "write X1, Y1 or Z1");
+}
+
+std::vector<double> sinumerik_positions(const SinumerikValues& values) {
+  if (!values.low || !values.high || !values.step)
+    throw InputError(values.place, "STEP, MIN or MAX is missing", "every table needs them");
+  const auto count = static_cast<double>(values.value.size());
+  if (!(*values.step > 0.0) || count < 2 ||
+      std::abs((*values.high - *values.low) / *values.step + 1.0 - count) > 1e-3 ||
+      values.value.rbegin()->first + 1 != static_cast<int>(values.value.size()))
+    throw InputError(values.place,
+                     std::to_string(values.value.size()) + " values do not reach from MIN to MAX",
+                     "there are (MAX - MIN) / STEP + 1 values, numbered from 0, STEP above 0");
+  std::vector<double> positions;
+  for (const auto& [index, value] : values.value) positions.push_back(*values.low + index * *values.step);
+  return positions;
+}
 
 }  // namespace volcal

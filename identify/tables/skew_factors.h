@@ -7,6 +7,8 @@
 
 namespace volcal {
 
+inline constexpr std::string_view kSkewRefusal = "the firmware knows three skew factors and nothing else";
+
 struct SkewFactors {
   double xy = 0.0;
   double xz = 0.0;

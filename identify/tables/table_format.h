@@ -60,7 +60,9 @@ struct TableFormat {
   std::string_view source;    ///< which document fixes the format
   std::string_view verified;  ///< on what it was verified, and what of it is not confirmed
   CompensationType supported;
-  std::string_view refusal;  ///< why no other type can be had
+  bool indivisible = false;       ///< `supported` as a whole only, no part of it
+  bool positions_of_own = false;  ///< has positions of its own where neither a step nor a tolerance is given
+  std::string_view refusal;       ///< why no other type can be had
   CompensationLimits limits;
   std::span<const TableSetting> settings;
   /// Content of every file, errors turned into what the format holds. The same result gives the same bytes.
@@ -101,9 +103,6 @@ const Tool& tool_of(const Machine& machine, const TableFormatOptions& options);
 AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options);
 /// The ideal compensation that a format samples.
 Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options);
-/// Positions of a table: home and every step from it. Otherwise within the travel and with both its ends;
-/// equidistant tables reach beyond it where the travel is no multiple of the step.
-std::vector<double> correction_positions(const Axis& axis, double step, bool equidistant);
 /// Throws InputError where a table would be longer than the controller's.
 void require_points(const TableFormat& format, const Axis& axis, std::size_t points);
 

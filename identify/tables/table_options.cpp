@@ -7,9 +7,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kSamePosition = 1e-9;  // m
-constexpr int kMostPositions = 100000;
-
 constexpr std::array<std::string_view, 6> kConditions = {
     "machine_state", "load", "feed", "ambient_temperature", "component_temperatures", "active_compensations"};
 
@@ -46,7 +43,8 @@ std::span<const std::string_view> recordable_conditions() { return kConditions; 
 
 void check_table_options(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options) {
-  if (!format.supported.contains(options.type)) {
+  const bool part = format.indivisible && options.type != format.supported;
+  if (part || !format.supported.contains(options.type)) {
     throw InputError({},
                      std::string(format.name) + " cannot compensate " + options.type.name() + ": " +
                          std::string(format.refusal),
@@ -97,27 +95,6 @@ AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options)
 Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options) {
   return {result.machine, lines_of(result.machine, options), options.type,
           identified_error_field(result, tool_of(result.machine, options).offset)};
-}
-
-std::vector<double> correction_positions(const Axis& axis, double step, bool equidistant) {
-  if (!(step > 0.0) || axis.travel() / step > kMostPositions)
-    throw InputError({},
-                     "a step of " + std::to_string(step * 1e3) + " mm over the travel of " +
-                         letter_of(axis.name) + " is out of range",
-                     "give a --step that divides the travel into at most " + std::to_string(kMostPositions));
-  const double below = (axis.home - axis.travel_min) / step;
-  const double above = (axis.travel_max - axis.home) / step;
-  const auto steps = [&](double count) {
-    return static_cast<int>(equidistant ? std::ceil(count - kSamePosition / step)
-                                        : std::floor(count + kSamePosition / step));
-  };
-  std::vector<double> positions;
-  for (int i = -steps(below); i <= steps(above); ++i) positions.push_back(axis.home + i * step);
-  if (equidistant) return positions;
-  if (positions.empty() || positions.front() > axis.travel_min + kSamePosition)
-    positions.insert(positions.begin(), axis.travel_min);
-  if (positions.back() < axis.travel_max - kSamePosition) positions.push_back(axis.travel_max);
-  return positions;
 }
 
 void require_points(const TableFormat& format, const Axis& axis, std::size_t points) {

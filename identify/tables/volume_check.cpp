@@ -11,8 +11,8 @@
 namespace volcal {
 namespace {
 
-constexpr int kStepCells = 11;        // per axis, when a step is chosen
-constexpr double kFinestStep = 1e-4;  // m
+constexpr int kStepCells = 11;                                   // per axis, when a step is chosen
+constexpr double kCoarsestDecade = 10.0, kFinestStep = 0.99e-4;  // m
 constexpr std::size_t kMostBytes = 30'000'000;
 
 /// The error that is left where a compensation acts.
@@ -52,16 +52,13 @@ std::vector<AxisPosition> cell_middles(const Machine& machine, int cells) {
   return positions;
 }
 
-/// Round numbers of mm below `longest`, coarse to fine.
+/// 5, 2 and 1 x 10^n up to `longest`, coarse to fine, m.
 std::vector<double> round_steps(double longest) {
   std::vector<double> steps;
-  for (int decade = static_cast<int>(std::floor(std::log10(longest)));
-       steps.empty() || steps.back() > kFinestStep; --decade) {
+  for (double decade = kCoarsestDecade; decade >= kFinestStep; decade /= 10.0) {
     for (const double factor : {5.0, 2.0, 1.0}) {
-      const double step = factor * std::pow(10.0, decade);
-      if (step <= longest && step >= kFinestStep * (1.0 - 1e-9)) steps.push_back(step);
+      if (factor * decade <= longest) steps.push_back(factor * decade);
     }
-    if (std::pow(10.0, decade) < kFinestStep) break;
   }
   return steps;
 }
@@ -106,14 +103,11 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
 
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const ErrorField& errors) {
+  const Eigen::Vector3d movable = movable_directions(machine);
   std::vector<Eigen::Vector3d> places, vectors;
   for (const VolumePoint& point : points) {
     places.emplace_back(point.position[0], point.position[1], point.position[2]);
-    vectors.push_back(errors(point.position, point.direction));
-  }
-  for (const AxisName axis : kLinearAxes) {
-    if (machine.has_axis(axis)) continue;
-    for (Eigen::Vector3d& vector : vectors) vector[direction_of(axis)] = 0.0;
+    vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
   }
   const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, vectors));
   return {figures.rms, figures.max};

@@ -1,6 +1,7 @@
 // Reversal that changes along the travel: a screw worn in the middle, a cable chain.
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/reversal_label.h"
 
 namespace volcal {
 namespace {
@@ -17,7 +18,7 @@ EffectSchema position_reversal_schema() {
 
 std::unique_ptr<FormulaEffect> make_position_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
-  const std::string label = "reversal " + symbol.name() + " along the travel";
+  const std::string label = reversal_label(symbol) + " along the travel";
   const std::string axis(1, lower_letter_of(symbol.axis));
   return std::make_unique<FormulaEffect>(
       EffectName{"position-reversal", symbol.name(), "dir_" + axis + " " + axis, "linear"},

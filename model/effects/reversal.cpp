@@ -2,6 +2,7 @@
 
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/reversal_label.h"
 
 namespace volcal {
 namespace {
@@ -18,7 +19,7 @@ EffectSchema reversal_schema() {
 
 std::unique_ptr<FormulaEffect> make_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
-  const std::string label = "reversal " + symbol.name();
+  const std::string label = reversal_label(symbol);
   auto effect = std::make_unique<FormulaEffect>(
       EffectName{"reversal", symbol.name(), std::string("dir_") + lower_letter_of(symbol.axis), "step"},
       std::vector{motion_amplitude(table, label, symbol, "")},

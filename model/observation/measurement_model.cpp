@@ -65,24 +65,7 @@ Eigen::VectorXd MeasurementModel::initial_parameters() const {
 
 PoseErrors<double> MeasurementModel::errors_at(const AxisPosition& position,
                                                const Eigen::VectorXd& parameters) const {
-  PoseErrors<double> errors;
-  double values[kMaxBasisSupport];
-  for (const FunctionGroup& group : layout().groups) {
-    const int start = group.basis->evaluate(position[index_of(group.axis)], values);
-    for (int slot = 0; slot < group.count(); ++slot) {
-      double sum = 0.0;
-      for (int j = 0; j < group.basis->support(); ++j)
-        sum += values[j] * parameters[group.index(start + j, slot)];
-      const ErrorSymbol symbol = group.symbols[static_cast<std::size_t>(slot)];
-      errors.motion[index_of(symbol.axis)][index_of(symbol.component)] = sum;
-    }
-  }
-  for (const ParameterBlock& block : layout().blocks) {
-    if (!block.location) continue;
-    errors.location[index_of(block.location->axis)][index_of(block.location->component)] =
-        parameters[block.offset];
-  }
-  return errors;
+  return pose_errors(layout(), position, parameters);
 }
 
 PoseErrors<double> MeasurementModel::errors_at_reading(std::size_t setup, std::size_t row,

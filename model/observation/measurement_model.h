@@ -101,6 +101,10 @@ class MeasurementModel {
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;
 };
 
+/// Errors of the functions and locations of `layout` at a commanded position, SI; effects are not in them.
+PoseErrors<double> pose_errors(const ParameterLayout& layout, const AxisPosition& position,
+                               const Eigen::VectorXd& parameters);
+
 /// First-order error of the functional point at a commanded position and tool, by parameters: linear map with
 /// one row per component (ex, ey, ez in m, ea, eb, ec in rad) and one column per parameter of `layout`.
 Eigen::Matrix<double, 6, Eigen::Dynamic> pose_error_rows(const KinematicChain& chain,

@@ -14,6 +14,28 @@ const JointLever& lever_of(const JointLever* levers, std::size_t count, AxisName
 
 }  // namespace
 
+PoseErrors<double> pose_errors(const ParameterLayout& layout, const AxisPosition& position,
+                               const Eigen::VectorXd& parameters) {
+  PoseErrors<double> errors;
+  double values[kMaxBasisSupport];
+  for (const FunctionGroup& group : layout.groups) {
+    const int start = group.basis->evaluate(position[index_of(group.axis)], values);
+    for (int slot = 0; slot < group.count(); ++slot) {
+      double sum = 0.0;
+      for (int j = 0; j < group.basis->support(); ++j)
+        sum += values[j] * parameters[group.index(start + j, slot)];
+      const ErrorSymbol symbol = group.symbols[static_cast<std::size_t>(slot)];
+      errors.motion[index_of(symbol.axis)][index_of(symbol.component)] = sum;
+    }
+  }
+  for (const ParameterBlock& block : layout.blocks) {
+    if (!block.location) continue;
+    errors.location[index_of(block.location->axis)][index_of(block.location->component)] =
+        parameters[block.offset];
+  }
+  return errors;
+}
+
 Eigen::Matrix<double, 6, Eigen::Dynamic> pose_error_rows(const KinematicChain& chain,
                                                          const ParameterLayout& layout,
                                                          const AxisPosition& position,

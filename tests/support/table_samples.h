@@ -1,6 +1,7 @@
 #pragma once
 /// Small tables of every format, to be damaged.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,19 @@ inline const FitResult& small_result() {
   return result;
 }
 
+/// Every setting at its example.
+inline std::map<std::string, std::string> example_settings(const TableFormat& format) {
+  std::map<std::string, std::string> settings;
+  for (const TableSetting& setting : format.settings)
+    settings[std::string(setting.name)] = std::string(setting.example);
+  return settings;
+}
+
+/// Whether a type can be had alone.
+inline bool holds(const TableFormat& format, CompensationType type) {
+  return format.indivisible ? type == format.supported : format.supported.contains(type);
+}
+
 /// At steps of 0.5 m; `type` of the format when none is given.
 inline std::vector<TableFile> sample_tables(const TableFormat& format,
                                             std::optional<CompensationType> type = {}) {
@@ -38,8 +52,7 @@ inline std::vector<TableFile> sample_tables(const TableFormat& format,
   options.type = type.value_or(format.supported);
   options.step = 0.5;
   options.grid_per_axis = 2;
-  for (const TableSetting& setting : format.settings)
-    options.settings[std::string(setting.name)] = std::string(setting.example);
+  options.settings = example_settings(format);
   return write_tables(format, small_result(), options);
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tests/support/identified_machines.h"
+#include "tests/support/table_samples.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/tables/volume_check.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -40,34 +41,37 @@ sim::TruthMachine machine_with_errors(std::size_t structure, bool reversal) {
   return sim::random_truth(sim::reference_machines()[structure], 40 + structure, options);
 }
 
-/// sqrt(mean |e|^2) of the exact machine over the volume, after alignment.
-double remaining_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
-                     const Correction& correction) {
-  std::vector<Eigen::Vector3d> points, errors;
+/// sqrt(mean |v|^2) over the volume, after alignment, of a vector that is given by state and nominal point.
+double aligned_rms(
+    const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
+    const std::function<Eigen::Vector3d(const sim::MachineState&, const Eigen::Vector3d&)>& of) {
+  std::vector<Eigen::Vector3d> points, vectors;
   for (const VolumePoint& point : volume_points(truth.machine(), 5)) {
     sim::MachineState state;
     state.position = point.position;
     state.direction = point.direction;
-    const Eigen::Vector3d nominal = truth.nominal_point(state, tool);
-    const Eigen::Vector3d added = correction(point.position, point.direction);
-    for (std::size_t i = 0; i < 3; ++i) state.position[i] += added[static_cast<Eigen::Index>(i)];
-    points.push_back(nominal);
-    errors.emplace_back(truth.point(state, tool) - nominal);
+    points.push_back(truth.nominal_point(state, tool));
+    vectors.push_back(of(state, points.back()));
   }
-  return sim::rms_after_alignment(points, errors);
+  return sim::rms_after_alignment(points, vectors);
 }
 
-/// The same of the corrections alone: what they move the functional point by.
+/// Of the exact machine under corrected commands.
+double remaining_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
+                     const Correction& correction) {
+  return aligned_rms(truth, tool, [&](sim::MachineState state, const Eigen::Vector3d& nominal) {
+    const Eigen::Vector3d added = correction(state.position, state.direction);
+    for (std::size_t i = 0; i < 3; ++i) state.position[i] += added[static_cast<Eigen::Index>(i)];
+    return Eigen::Vector3d(truth.point(state, tool) - nominal);
+  });
+}
+
+/// Of the corrections alone: what they move the functional point by.
 double correction_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
                       const Correction& correction) {
-  std::vector<Eigen::Vector3d> points, moves;
-  for (const VolumePoint& point : volume_points(truth.machine(), 5)) {
-    sim::MachineState state;
-    state.position = point.position;
-    points.push_back(truth.nominal_point(state, tool));
-    moves.push_back(correction(point.position, point.direction));
-  }
-  return sim::rms_after_alignment(points, moves);
+  return aligned_rms(truth, tool, [&](const sim::MachineState& state, const Eigen::Vector3d&) {
+    return correction(state.position, state.direction);
+  });
 }
 
 /// The ideal compensation of the exact machine itself.
@@ -92,19 +96,15 @@ TableFormatOptions options_for(const TableFormat& format, CompensationType type)
   TableFormatOptions options;
   options.type = type;
   options.tool = "side_x";
-  for (const TableSetting& setting : format.settings) {
-    if (setting.otherwise.empty()) options.settings[std::string(setting.name)] = std::string(setting.example);
-  }
-  if (format.name == "sinumerik-cec") options.settings["max_tables"] = "62";
+  options.settings = testing::example_settings(format);
   return options;
 }
 
 /// Types that a format can do, each alone, and all together.
 std::vector<CompensationType> types_of(const TableFormat& format) {
-  if (format.name == "csv") return {CompensationType::volumetric()};
   std::vector<CompensationType> types;
   for (const CompensationTypeInfo& info : compensation_types()) {
-    if (format.supported.contains(info.type)) types.push_back(info.type);
+    if (testing::holds(format, info.type)) types.push_back(info.type);
   }
   if (std::ranges::find(types, format.supported) == types.end()) types.push_back(format.supported);
   return types;
@@ -123,7 +123,7 @@ class TablesInTheLoop : public ::testing::TestWithParam<std::tuple<const TableFo
     const FitResult result = testing::result_of(truth);
     TableFormatOptions options = options_for(format(), type);
     options.grid_per_axis = 2;
-    options.step = format().name == "csv" ? 10e-3 : choose_step(format(), result, options, kTolerance).step;
+    options.step = choose_step(format(), result, options, kTolerance).step;
     return format().read(write_tables(format(), result, options));
   }
 

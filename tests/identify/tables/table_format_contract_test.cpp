@@ -7,6 +7,7 @@
 #include <regex>
 #include <set>
 
+#include "tests/support/table_samples.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/tables/volume_check.h"
 #include "volcal/model/description/errors.h"
@@ -38,8 +39,7 @@ class TableFormatContract : public ::testing::TestWithParam<const TableFormat*> 
     options.grid_per_axis = 2;
     options.type = GetParam()->supported;
     options.step = 50e-3;
-    for (const TableSetting& setting : GetParam()->settings)
-      options.settings[std::string(setting.name)] = std::string(setting.example);
+    options.settings = testing::example_settings(*GetParam());
     return options;
   }
   static std::vector<TableFile> write(const FitResult& result) {
@@ -120,14 +120,6 @@ TEST_P(TableFormatContract, IsZeroAtHomeApproachedTowardsPlus) {
   EXPECT_LT(at_home.norm(), 1e-9 + GetParam()->limits.resolution);
 }
 
-TEST_P(TableFormatContract, WrittenTwiceItReadsTheSame) {
-  const auto files = write(identified_machine());
-  const CompensationTables first = GetParam()->read(files), again = GetParam()->read(files);
-  for (const VolumePoint& point : volume_points(identified_machine().machine, 2))
-    EXPECT_EQ(first.correction(point.position, point.direction),
-              again.correction(point.position, point.direction));
-}
-
 TEST_P(TableFormatContract, RefusesOtherTypesSettingsAndToolsWithAReason) {
   const auto refusal = [&](const TableFormatOptions& wrong) {
     try {
@@ -141,7 +133,7 @@ TEST_P(TableFormatContract, RefusesOtherTypesSettingsAndToolsWithAReason) {
   for (const CompensationTypeInfo& info : compensation_types()) {
     TableFormatOptions wrong = options();
     wrong.type = info.type;
-    if (GetParam()->supported.contains(info.type)) continue;
+    if (testing::holds(*GetParam(), info.type)) continue;
     EXPECT_NE(refusal(wrong).find(GetParam()->refusal), std::string::npos) << info.name;
   }
   TableFormatOptions wrong = options();

@@ -11,6 +11,7 @@
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/compensation_text.h"
+#include "volcal/identify/report/correction_text.h"
 #include "volcal/identify/report/volumetric_text.h"
 #include "volcal/identify/tables/table_format.h"
 #include "volcal/identify/tables/volume_check.h"
@@ -49,6 +50,7 @@ struct MadeTables {
   StepChoice step;
   double tolerance = 0.0;  ///< m; 0 = the step was given or is the format's own
   std::vector<TableFile> files;
+  CompensationTables read_back;
   VolumeCheck check;
   std::vector<std::string> effects_left_out;
 };
@@ -78,11 +80,17 @@ std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) 
   return {tool_of(machine, options)};
 }
 
+std::vector<AxisPosition> points_of(const FitResult& result, const TablesArguments& arguments) {
+  std::vector<AxisPosition> points;
+  for (const std::string& point : arguments.at)
+    points.push_back(axis_position("--at", point, result.machine));
+  return points;
+}
+
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
   std::vector<VolumetricError> errors;
   const std::vector<Tool> tools = chosen_tools(result.machine, arguments.tool);
-  for (const std::string& point : arguments.at) {
-    const AxisPosition position = axis_position("--at", point, result.machine);
+  for (const AxisPosition& position : points_of(result, arguments)) {
     for (const Tool& tool : tools) errors.push_back(volumetric_error(result, position, tool));
   }
   return errors;
@@ -140,7 +148,8 @@ MadeTables make_tables(const FitResult& result, const TablesArguments& arguments
     made.options.step = made.step.step;
   }
   made.files = write_tables(*made.format, result, made.options);
-  made.check = check_in_volume(result, made.options, made.format->read(made.files));
+  made.read_back = made.format->read(made.files);
+  made.check = check_in_volume(result, made.options, made.read_back);
   made.effects_left_out = effects_not_in_tables(result);
   return made;
 }
@@ -219,10 +228,15 @@ int run_tables(const TablesArguments& arguments) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
+    if (made && !errors.empty())
+      json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}", volumetric_text(result, errors));
-    if (made) print_tables(*made, arguments, result.machine);
+    if (made) {
+      fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
+      print_tables(*made, arguments, result.machine);
+    }
     for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -273,8 +287,8 @@ std::function<int()> define_tables(CLI::App& app) {
       ->check(CLI::IsMember({"mean", "plus"}));
   app.add_option(
       "--at", arguments->at,
-      "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home; may "
-      "be given several times");
+      "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home, and with "
+      "-o or --dry-run what the tables add to the command there; may be given several times");
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_tables(*arguments); };
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -140,6 +141,29 @@ TEST_F(TablesAtPoints, WriteTheFilesOfAFormat) {
   EXPECT_THAT(content(path("out/AX_EEC.INI")), ::testing::StartsWith("%_N_AX_EEC_INI\nCHANDATA(1)\n"));
   EXPECT_THAT(run.output, HasSubstr("sinumerik L-POS, tool side_x"));
   EXPECT_THAT(run.output, HasSubstr("Verified: read back by volcal; not tried on a controller."));
+}
+
+/// Where a table has a row, its trim in mm is the correction at that point.
+TEST_F(TablesAtPoints, SayWhatTheTablesAdd) {
+  const std::string options = "--format linuxcnc --step 50 --at X=100,Y=50,Z=-150";
+  const auto json = nlohmann::json::parse(tables(options + " --json -o " + path("out")).output);
+  ASSERT_EQ(json.at("corrections").size(), 1U);
+  const auto& added = json.at("corrections")[0];
+  EXPECT_EQ(added.at("position").at("Z"), -150.0);
+  EXPECT_EQ(added.at("correction_um").size(), 8U);
+  const std::vector<std::pair<std::string, std::string>> rows = {
+      {"out/x.comp", "100.000000 "}, {"out/y.comp", "50.000000 "}, {"out/z.comp", "-150.000000 "}};
+  for (std::size_t axis = 0; axis < rows.size(); ++axis) {
+    const std::string text = "\n" + content(path(rows[axis].first));
+    const auto row = text.find("\n" + rows[axis].second);
+    ASSERT_NE(row, std::string::npos) << text;
+    const double trim_mm = std::stod(text.substr(row + 1 + rows[axis].second.size()));
+    EXPECT_GT(std::abs(trim_mm), 1e-5);
+    EXPECT_NEAR(added.at("correction_um").at("+-+")[axis].get<double>(), 1e3 * trim_mm, 1e-6);
+  }
+  const auto run = tables(options + " --dry-run");
+  EXPECT_THAT(run.output, HasSubstr("Added to the command by the tables read back"));
+  EXPECT_THAT(run.output, ::testing::ContainsRegex("100.000 +50.0000 +-150.000 +towards - "));
 }
 
 TEST_F(TablesAtPoints, RecordTheConditions) {

@@ -10,6 +10,7 @@ namespace volcal {
   FORMAT(csv_table_format)           \
   FORMAT(neutral_csv_format)         \
   FORMAT(linuxcnc_format)            \
+  FORMAT(linuxcnc_grid_format)       \
   FORMAT(klipper_format)             \
   FORMAT(marlin_format)              \
   FORMAT(isg_csv_format)             \

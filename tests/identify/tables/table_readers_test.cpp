@@ -101,6 +101,18 @@ INSTANTIATE_TEST_SUITE_P(
                   "KEY = VALUE"}));
 
 INSTANTIATE_TEST_SUITE_P(
+    LinuxCncGrid, MalformedTables,
+    ::testing::Values(
+        Malformed{"linuxcnc-grid", "volcal.grid", "volcal-grid-1", "volcal-grid-9", 3, "header is missing"},
+        Malformed{"linuxcnc-grid", "volcal.grid", "inch", "cm", 3, "neither mm nor inch"},
+        Malformed{"linuxcnc-grid", "volcal.grid", " 3 3 3\n", " 3 3 0\n", 3, "out of range"},
+        Malformed{"linuxcnc-grid", "volcal.grid", " 3 3 3\n", " 3 3 4\n", 30, "promises 4 positions of Z"},
+        Malformed{"linuxcnc-grid", "volcal.grid", "39.370079 39.370079 19.685039 ", "39.370079 39.370079 ",
+                  29, "the row has 14 numbers"},
+        Malformed{"linuxcnc-grid", "volcal.grid", "39.370079 39.370079 19.685039 ",
+                  "39.370079 39.370079 19.685038 ", 5, "no complete grid"}));
+
+INSTANTIATE_TEST_SUITE_P(
     Skew, MalformedTables,
     ::testing::Values(
         Malformed{"klipper", "skew_correction.cfg", "xz_skew", "zx_skew", 5, "zx_skew is not one"},

@@ -77,6 +77,20 @@ TEST(SignByHand, LinuxCncType0HoldsActualPositions) {
   EXPECT_NEAR(x_um("linuxcnc", files, kFarX, -1), -6.0, 1e-6);
 }
 
+TEST(SignByHand, LinuxCncGridHoldsCorrectionsAndHalfTheReversal) {
+  const auto files = files_of("linuxcnc-grid", long_axis(), CompensationType::volumetric());
+  const std::string nothing = " 0.000000000 0.000000000 0.000000000";
+  EXPECT_THAT(content_of(files, "volcal.grid"),
+              HasSubstr("volcal-grid-1 mm 3 3 3\n0.000000 0.000000 0.000000 0.002000000 0.000000000"));
+  EXPECT_THAT(content_of(files, "volcal.grid"),
+              HasSubstr("\n1000.000000 0.000000 0.000000 -0.008000000 0.000000000 0.000000000 "
+                        "-0.002000000 0.000000000 0.000000000" +
+                        nothing + nothing + "\n"))
+      << "mean of both directions, then half of the 4 um that it goes farther towards +";
+  EXPECT_NEAR(x_um("linuxcnc-grid", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("linuxcnc-grid", files, kFarX, -1), -6.0, 1e-6);
+}
+
 TEST(SignByHand, NeutralTablesHoldCorrections) {
   const auto files = files_of("neutral-csv", long_axis(), CompensationPart::Positioning);
   EXPECT_THAT(content_of(files, "axis_corrections.csv"), HasSubstr("X,X,1000,-10,-6\n"));

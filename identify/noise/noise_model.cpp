@@ -282,6 +282,28 @@ Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
   return whitened;
 }
 
+void Whitener::filter_adjoint(const Track& track, Eigen::VectorXd& column) {
+  std::vector<double> adjoint(static_cast<std::size_t>(track.states), 0.0);
+  for (std::size_t i = track.steps.size(); i-- > 0;) {
+    const Step& step = track.steps[i];
+    const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
+    double& value = column[static_cast<Eigen::Index>(step.observation)];
+    value *= track.scale[i];
+    for (std::size_t state = 0; state < adjoint.size(); ++state) value += gain[state] * adjoint[state];
+    if (step.slot > 0) {
+      double& own = adjoint[static_cast<std::size_t>(step.slot)];
+      own = step.opens ? 0.0 : own - value;
+    }
+    adjoint[0] = track.decay[i] * (adjoint[0] - value);
+  }
+}
+
+Eigen::VectorXd Whitener::weigh(const Eigen::VectorXd& column) const {
+  Eigen::VectorXd weighted = whiten(column);
+  for (const Track& track : tracks_) filter_adjoint(track, weighted);
+  return weighted;
+}
+
 template <class Fill>
 void Whitener::add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum) {
   std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);

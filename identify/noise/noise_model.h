@@ -65,6 +65,8 @@ class Whitener {
   /// O(N) per column, the same for any number of threads. Both may be the same matrix.
   void whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const;
   Eigen::VectorXd whiten(const Eigen::VectorXd& column) const;
+  /// Sigma^-1 column: L^-T of what whiten() gives, by the filter's adjoint, run backwards; O(N).
+  Eigen::VectorXd weigh(const Eigen::VectorXd& column) const;
   /// Rows [first, first + columns.rows()) alone, which hold whole sequences: their observations that are not
   /// missing, sequence by sequence, in the order of the filters. On the caller's thread.
   Eigen::MatrixXd whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
@@ -119,6 +121,8 @@ class Whitener {
   /// In place on a tile of steps [begin, end): `width` values per step.
   static void filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width, double* tile,
                      double* state);
+  /// Adjoint of filter() on one whitened column: L^-T, in place.
+  static void filter_adjoint(const Track& track, Eigen::VectorXd& column);
   /// Columns where a track finds its observations and leaves them.
   struct Place {
     const double* in;

@@ -11,6 +11,7 @@ namespace volcal::cli {
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \
   COMMAND(validate_command)      \
+  COMMAND(montecarlo_command)    \
   COMMAND(diagnose_command)      \
   COMMAND(extend_command)        \
   COMMAND(tables_command)        \

@@ -69,8 +69,8 @@ Eigen::VectorXd table_row(const FitResult& result, ErrorSymbol symbol, double q,
   return row;
 }
 
-ErrorTableRow filled(const FitResult& result, const Eigen::VectorXd& row) {
-  ErrorTableRow table_row;
+ErrorTableRow filled(const FitResult& result, const ErrorTableRow& place, const Eigen::VectorXd& row) {
+  ErrorTableRow table_row = place;
   table_row.value = row.dot(result.parameters);
   table_row.u = std::sqrt(std::max(0.0, row.dot(result.covariance * row)));
   table_row.U95 = result.coverage_factor * table_row.u;
@@ -87,10 +87,9 @@ bool outside(const FunctionSummary* summary, double q) {
          (q < summary->measured_min - kEdgeOfMeasured || q > summary->measured_max + kEdgeOfMeasured);
 }
 
-}  // namespace
-
-std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
-  std::vector<ErrorTableRow> table;
+/// Calls visit(row without values, its derivatives to the parameters) for every row of the table.
+template <class Visit>
+void for_each_table_row(const FitResult& result, const ErrorTableOptions& options, const Visit& visit) {
   for (const Axis& axis : result.machine.axes) {
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};
@@ -98,27 +97,45 @@ std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTable
       if (!result.layout.find(symbol) && !reversal) continue;
       for (const int direction : reversal ? std::vector<int>{1, -1} : std::vector<int>{0}) {
         for (const double q : table_positions(axis, options)) {
-          ErrorTableRow row =
-              filled(result, table_row(result, symbol, q, direction, options.zero_plus && reversal));
-          row.symbol = symbol.name();
-          row.axis = axis.name;
-          row.position = q;
-          row.direction = direction;
-          row.rotation = is_rotation(component);
-          row.extrapolated = outside(summary_of(result, symbol), q);
-          table.push_back(row);
+          ErrorTableRow place;
+          place.symbol = symbol.name();
+          place.axis = axis.name;
+          place.position = q;
+          place.direction = direction;
+          place.rotation = is_rotation(component);
+          place.extrapolated = outside(summary_of(result, symbol), q);
+          visit(place, table_row(result, symbol, q, direction, options.zero_plus && reversal));
         }
       }
     }
   }
   for (const ParameterBlock& block : result.layout.blocks) {
     if (!block.location) continue;
-    ErrorTableRow row = filled(result, Eigen::VectorXd::Unit(result.layout.size, block.offset));
-    row.symbol = block.name;
-    row.rotation = is_rotation(block.location->component);
-    table.push_back(row);
+    ErrorTableRow place;
+    place.symbol = block.name;
+    place.rotation = is_rotation(block.location->component);
+    visit(place, Eigen::VectorXd::Unit(result.layout.size, block.offset));
   }
+}
+
+}  // namespace
+
+std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
+  std::vector<ErrorTableRow> table;
+  for_each_table_row(result, options, [&](const ErrorTableRow& place, const Eigen::VectorXd& row) {
+    table.push_back(filled(result, place, row));
+  });
   return table;
+}
+
+Eigen::MatrixXd error_table_derivatives(const FitResult& result, const ErrorTableOptions& options) {
+  std::vector<Eigen::VectorXd> rows;
+  for_each_table_row(result, options,
+                     [&](const ErrorTableRow&, const Eigen::VectorXd& row) { rows.push_back(row); });
+  Eigen::MatrixXd derivatives(static_cast<Eigen::Index>(rows.size()), result.layout.size);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    derivatives.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  return derivatives;
 }
 
 Eigen::Matrix<double, 6, Eigen::Dynamic> volumetric_error_rows(const FitResult& result,

@@ -31,6 +31,8 @@ struct ErrorTableOptions {
 };
 
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options = {});
+/// Derivatives of the same rows to the parameters: rows x layout.size.
+Eigen::MatrixXd error_table_derivatives(const FitResult& result, const ErrorTableOptions& options = {});
 
 /// Volumetric error of one tool at one commanded position with standard uncertainties; m and rad.
 struct VolumetricError {

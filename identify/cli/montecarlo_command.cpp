@@ -1,0 +1,273 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/named_effect.h"
+#include "volcal/identify/cli/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/checkpoint_file.h"
+#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/montecarlo_writer.h"
+#include "volcal/identify/montecarlo/montecarlo.h"
+#include "volcal/identify/report/montecarlo_text.h"
+#include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal::cli {
+namespace {
+
+struct MonteCarloArguments {
+  std::string campaign;
+  std::string model;
+  std::string output;
+  std::string path = "auto";
+  std::string functions = "drawn";
+  std::string outliers = "list";
+  std::string noise = "auto";
+  std::vector<std::string> disturbances;
+  MonteCarloOptions options;
+  double checkpoint_s = 10.0;
+  bool resume = false;
+  bool json = false;
+};
+
+DrawPath draw_path(const std::string& name) {
+  for (const DrawPath path : {DrawPath::Linear, DrawPath::Chord, DrawPath::Refit}) {
+    if (to_string(path) == name) return path;
+  }
+  return DrawPath::Automatic;
+}
+
+FitResult fitted(const MonteCarloArguments& arguments, const Campaign& campaign, ProgressBar& bar) {
+  const ModelSpec model =
+      arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  FitOptions options;
+  options.threads = arguments.options.threads;
+  options.outliers = arguments.outliers == "remove" ? OutlierPolicy::Remove : OutlierPolicy::List;
+  options.noise = arguments.noise == "white" ? NoisePolicy::White : NoisePolicy::Automatic;
+  options.progress = [&bar](const std::string& stage, double done) { bar.update("fit: " + stage, done); };
+  return fit(campaign, model, options);
+}
+
+/// KIND:TARGET=U, a normal distribution with standard uncertainty U, or KIND:TARGET=+-A, a rectangular one of
+/// half width A; in the edge unit of the effect's amplitude.
+Disturbance disturbance(const std::string& text, const Campaign& campaign) {
+  const std::size_t equals = text.rfind('=');
+  const std::string value_text = equals == std::string::npos ? "" : text.substr(equals + 1);
+  const bool is_rectangular = value_text.starts_with("+-");
+  const std::string number = is_rectangular ? value_text.substr(2) : value_text;
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(number, value) || !std::isfinite(value) || value <= 0.0) {
+    throw InputError(
+        {}, "--disturb " + text + ": how large the effect may be is missing or not positive",
+        "write KIND:TARGET=U for a standard uncertainty, KIND:TARGET=+-A for limits, in the unit "
+        "that volcal diagnose --list prints");
+  }
+  const EffectSpec spec = named_effect("--disturb", text.substr(0, equals), campaign);
+  const auto effect = find_effect(spec.kind)->make(spec, {});
+  const EffectAmplitude& amplitude = effect->amplitudes().front();
+  const double divisor = is_rectangular ? std::numbers::sqrt3 : 1.0;
+  return {.effect = spec,
+          .sigma = value * amplitude.si_per_unit() / divisor,
+          .words = fmt::format("{}, {} {} {}", text.substr(0, equals),
+                               is_rectangular ? "within +-" : "u =", number, amplitude.unit()),
+          .shape = is_rectangular ? DistributionShape::Rectangular : DistributionShape::Normal};
+}
+
+std::string checkpoint_path(const MonteCarloArguments& arguments) {
+  std::string path = arguments.output;
+  while (path.size() > 1 && path.ends_with('/')) path.pop_back();
+  return path + ".checkpoint";
+}
+
+/// Reports draws, their rate and the time that is left.
+class DrawProgress {
+ public:
+  DrawProgress(ProgressBar& bar, const MonteCarloStudy& study) : bar_(bar), before_(study.draws()) {}
+
+  void update(const MonteCarloStudy& study) {
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    const double rate = static_cast<double>(study.draws() - before_) / std::max(seconds, 1e-9);
+    const std::uint64_t expected = study.expected_draws();
+    std::string stage = fmt::format("{} draws, {}/s", count_number(static_cast<long long>(study.draws())),
+                                    count_number(static_cast<long long>(rate)));
+    if (expected > 0 && rate > 0.0) {
+      stage += fmt::format(" of {}, {:.0f} s left", count_number(static_cast<long long>(expected)),
+                           static_cast<double>(expected - std::min(expected, study.draws())) / rate);
+    }
+    bar_.update(stage, expected > 0
+                           ? std::min(1.0, static_cast<double>(study.draws()) / static_cast<double>(expected))
+                           : 0.0);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressBar& bar_;
+  std::uint64_t before_;
+  Clock::time_point start_ = Clock::now();
+};
+
+void require_no_checkpoint(const std::string& checkpoint) {
+  if (!has_checkpoint(checkpoint)) return;
+  throw InputError({checkpoint, 0}, "an interrupted study of this output folder is kept here",
+                   "give --resume to go on with it, or delete the file to begin anew");
+}
+
+/// Throws InputError for a checkpoint that cannot be this study's.
+void restore(const std::string& checkpoint, MonteCarloStudy& study) {
+  const std::string state = read_checkpoint(checkpoint, study.fingerprint());
+  try {
+    study.restore(state);
+  } catch (const std::invalid_argument& problem) {
+    throw InputError({checkpoint, 0}, std::string("the checkpoint cannot be read: ") + problem.what(),
+                     "delete it, and leave --resume out to begin anew");
+  }
+}
+
+void require_draws_left(const MonteCarloArguments& arguments, const std::string& checkpoint,
+                        const MonteCarloStudy& study) {
+  if (arguments.options.draws == 0 || study.draws() <= arguments.options.draws) return;
+  throw InputError({checkpoint, 0},
+                   fmt::format("the interrupted study has {} draws, more than the {} asked for",
+                               study.draws(), arguments.options.draws),
+                   "give -n as before or larger");
+}
+
+void draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloStudy& study) {
+  using Clock = std::chrono::steady_clock;
+  const std::string checkpoint = checkpoint_path(arguments);
+  DrawProgress progress(bar, study);
+  Clock::time_point kept = Clock::now();
+  while (!study.done()) {
+    study.run_block();
+    progress.update(study);
+    if (std::chrono::duration<double>(Clock::now() - kept).count() < arguments.checkpoint_s) continue;
+    write_checkpoint(checkpoint, study.fingerprint(), study.save());
+    kept = Clock::now();
+  }
+}
+
+void write_study(const MonteCarloArguments& arguments, const std::string& json,
+                 const MonteCarloResult& result) {
+  AtomicFolder folder(arguments.output);
+  folder.write("montecarlo.json", json);
+  folder.write("montecarlo.csv", montecarlo_csv(result));
+  folder.write("montecarlo.txt", montecarlo_text(result));
+  folder.commit();
+}
+
+int run_montecarlo(const MonteCarloArguments& arguments) {
+  require_output_folder(arguments.output);
+  const std::string checkpoint = checkpoint_path(arguments);
+  if (!arguments.resume) require_no_checkpoint(checkpoint);
+  const Campaign campaign = read_campaign(arguments.campaign);
+  ProgressBar bar("montecarlo");
+  const FitResult fit_result = fitted(arguments, campaign, bar);
+  MonteCarloOptions options = arguments.options;
+  options.path = draw_path(arguments.path);
+  options.sources.functions =
+      arguments.functions == "fixed" ? FunctionRoughness::Fixed : FunctionRoughness::Drawn;
+  for (const std::string& text : arguments.disturbances)
+    options.sources.disturbances.push_back(disturbance(text, campaign));
+  bar.update("refits", 0.0);
+  MonteCarloStudy study(campaign, fit_result, options);
+  if (arguments.resume) restore(checkpoint, study);
+  require_draws_left(arguments, checkpoint, study);
+  draw_all(arguments, bar, study);
+  bar.finish();
+  const MonteCarloResult result = study.result();
+  const std::string json = montecarlo_json(result);
+  write_study(arguments, json, result);
+  remove_checkpoint(checkpoint);
+  if (arguments.json) {
+    fmt::print("{}", json);
+  } else {
+    fmt::print("{}\nwritten: {}\n", montecarlo_text(result), arguments.output);
+  }
+  const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
+                        (!result.adaptive || result.settled);
+  return complete ? kDone : kIncomplete;
+}
+
+void define_draws(CLI::App& app, MonteCarloOptions& options) {
+  app.add_option("-n,--draws", options.draws,
+                 "draws; 0 = until --digits of every uncertainty are right (GUM Supplement 1, 7.9)")
+      ->capture_default_str();
+  app.add_option("--digits", options.digits, "significant digits of every uncertainty that shall be right")
+      ->check(CLI::Range(1, 2))
+      ->capture_default_str();
+  app.add_option("--most-draws", options.most_draws, "of a study without --draws; exit 1 when it ends here")
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the random numbers; the same seed gives the same bits")
+      ->capture_default_str();
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--refits", options.refits, "sample of draws on which the paths are held to full refits")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app.add_option("--grid", options.grid_per_axis, "points of the volume per linear axis; 0 = no volume")
+      ->check(CLI::Range(0, 11))
+      ->capture_default_str();
+}
+
+std::function<int()> define_montecarlo(CLI::App& app) {
+  auto arguments = std::make_shared<MonteCarloArguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option("-m,--model", arguments->model,
+                 "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
+  app.add_option(
+         "-o,--output", arguments->output,
+         "folder for montecarlo.json, .csv and .txt; an interrupted study is kept in OUTPUT.checkpoint")
+      ->required();
+  define_draws(app, arguments->options);
+  app.add_option("--path", arguments->path,
+                 "linear: one matrix product; chord: steps with an exact gradient; refit: the adjustment run "
+                 "again; auto: the fastest that agrees with the sample of refits")
+      ->check(CLI::IsMember({"auto", "linear", "chord", "refit"}));
+  app.add_option("--functions", arguments->functions,
+                 "drawn: what smoothing says of the functions is drawn too, u as in the tables; fixed: "
+                 "campaigns repeated on the identified machine, scatter and the bias of smoothing apart")
+      ->check(CLI::IsMember({"drawn", "fixed"}));
+  app.add_option(
+         "--disturb", arguments->disturbances,
+         "KIND:TARGET=U or KIND:TARGET=+-A: an effect of the catalogue that acts on the readings and "
+         "that the fit knows nothing of, of standard uncertainty U or within limits A; may be repeated")
+      ->allow_extra_args(false);
+  app.add_option("--outliers", arguments->outliers, "of the fit: list or remove flagged readings")
+      ->check(CLI::IsMember({"list", "remove"}));
+  app.add_option("--noise", arguments->noise, "of the fit: auto or white")
+      ->check(CLI::IsMember({"auto", "white"}));
+  app.add_option("--checkpoint-every", arguments->checkpoint_s, "seconds between checkpoints")
+      ->check(not_negative())
+      ->capture_default_str();
+  app.add_flag("--resume", arguments->resume, "go on from the checkpoint of an interrupted run");
+  app.add_flag("--json", arguments->json, "print montecarlo.json on standard output and nothing else");
+  return [arguments] { return run_montecarlo(*arguments); };
+}
+
+}  // namespace
+
+const Command& montecarlo_command() {
+  static const Command command = {
+      "montecarlo", "distributions of every error by drawing the campaign again",
+      "  volcal montecarlo campaign.toml -o uncertainty\n"
+      "  volcal montecarlo campaign.toml --model model.toml --path chord -n 100000 --seed 7 -o uncertainty\n"
+      "  volcal montecarlo campaign.toml -n 100000 --functions fixed -o scatter\n"
+      "  volcal montecarlo campaign.toml --disturb \"station-drift:station P1=0.5\" -o drifting\n"
+      "  volcal montecarlo campaign.toml -o uncertainty --resume\n",
+      define_montecarlo};
+  return command;
+}
+
+}  // namespace volcal::cli

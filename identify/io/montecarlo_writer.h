@@ -1,0 +1,20 @@
+#pragma once
+/// Files of a Monte Carlo study: montecarlo.json (everything, edge units) and montecarlo.csv (one row a
+/// quantity).
+
+#include <string>
+
+#include "volcal/identify/montecarlo/montecarlo.h"
+
+namespace volcal {
+
+inline constexpr const char* kMonteCarloFormat = "volcal-montecarlo-1";
+
+std::string montecarlo_json(const MonteCarloResult& result);
+
+/// kind,name,axis,position,position_unit,direction,tool,x_mm,y_mm,z_mm,unit,estimate,u_linear,u,ratio,bias,
+/// bias_error,symmetric_low,symmetric_high,shortest_low,shortest_high,linear_low,linear_high,tolerance,
+/// difference,validated; estimate and what follows in `unit`. validated: 1, 0, empty = undecided.
+std::string montecarlo_csv(const MonteCarloResult& result);
+
+}  // namespace volcal

@@ -1,0 +1,371 @@
+#include "volcal/identify/montecarlo/montecarlo.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+#include "volcal/identify/montecarlo/draw_projection.h"
+#include "volcal/identify/montecarlo/idle_pool.h"
+#include "volcal/identify/montecarlo/path_solvers.h"
+#include "volcal/identify/montecarlo/state_bytes.h"
+#include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/stats/normal.h"
+#include "volcal/identify/stats/threads.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kShareOfTolerance = 0.2;  // that a path may differ from refits: as 8.2 asks of Monte Carlo
+constexpr double kEndScatter = 2.67;       // sqrt(p (1 - p)) / density of a normal end at p = 0.025
+
+std::uint64_t draws_of_block(DrawPath path) {
+  return path == DrawPath::Linear ? 10000 : path == DrawPath::Chord ? 1000 : 100;
+}
+
+/// Batches of a block: what one thread makes at a time.
+constexpr std::uint64_t kBatches = 40;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Fowler, Noll and Vo's hash, 64 bit, variant 1a.
+class Fnv1a {
+ public:
+  void add(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte, value >>= 8U) hash_ = (hash_ ^ (value & 0xFFU)) * 0x100000001B3U;
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  void add(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column) {
+      for (Eigen::Index row = 0; row < values.rows(); ++row) add(values(row, column));
+    }
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xCBF29CE484222325U;
+};
+
+}  // namespace
+
+std::string_view to_string(DrawPath path) {
+  switch (path) {
+    case DrawPath::Automatic:
+      return "auto";
+    case DrawPath::Linear:
+      return "linear";
+    case DrawPath::Chord:
+      return "chord";
+    case DrawPath::Refit:
+      return "refit";
+  }
+  return "";
+}
+
+std::string_view to_string(LinearVerdict verdict) {
+  switch (verdict) {
+    case LinearVerdict::Validated:
+      return "validated";
+    case LinearVerdict::Undecided:
+      return "undecided";
+    case LinearVerdict::NotValidated:
+      return "not validated";
+  }
+  return "";
+}
+
+class MonteCarloStudy::Work {
+ public:
+  Work(const Campaign& campaign, const FitResult& result, MonteCarloOptions options)
+      : options_(std::move(options)),
+        threads_(thread_count(options_.threads)),
+        repeated_(campaign, result, options_.sources),
+        set_(quantities_of(result, options_.grid_per_axis)),
+        projection_(repeated_, set_),
+        solvers_(repeated_),
+        sums_(set_.items.size()),
+        tolerance_(projection_.quantities()) {
+    for (Eigen::Index i = 0; i < tolerance_.size(); ++i) {
+      const double per_unit = set_.items[static_cast<std::size_t>(i)].si_per_unit;
+      tolerance_[i] = numerical_tolerance(projection_.unit()[i] / per_unit, options_.digits) * per_unit;
+    }
+    check_paths();
+    path_ = options_.path == DrawPath::Automatic ? supported_path() : options_.path;
+  }
+
+  void run_block() {
+    const std::uint64_t block = draws_of_block(path_),
+                        of_batch = std::max<std::uint64_t>(1, block / kBatches);
+    std::uint64_t count = block;
+    if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
+    const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);
+    std::vector<Moments> moments(batches);
+    SolverTally tally;
+    std::mutex counting;
+    const std::uint64_t first = sums_.draws();
+    run_parallel(batches, threads_, [&](std::size_t batch) {
+      const std::uint64_t from = batch * of_batch;
+      SolverTally own;
+      const Eigen::ArrayXXd t =
+          draw_batch(first + from, static_cast<Eigen::Index>(std::min(of_batch, count - from)), own);
+      moments[batch] = Moments::of(t);
+      auto counts = histograms_.take([this] { return std::make_unique<Histograms>(set_.items.size()); });
+      counts->add(t);
+      histograms_.give_back(std::move(counts));
+      const std::lock_guard lock(counting);
+      tally.add(own);
+    });
+    for (std::size_t batch = 1; batch < batches; ++batch) moments[0].add(moments[batch]);
+    Histograms& counts = *histograms_.idle().front();
+    for (std::size_t i = 1; i < histograms_.idle().size(); ++i) {
+      counts.add(*histograms_.idle()[i]);
+      histograms_.idle()[i]->clear();
+    }
+    sums_.add(moments[0], counts);
+    counts.clear();
+    tally_.add(tally);
+  }
+
+  bool settled() const {
+    for (std::size_t i = 0; i < set_.items.size(); ++i) {
+      if (!(scatter(i) < tolerance_of_draws(i))) return false;
+    }
+    return true;
+  }
+
+  bool done() const {
+    if (options_.draws > 0) return sums_.draws() >= options_.draws;
+    if (sums_.draws() >= options_.most_draws) return true;
+    return sums_.draws() % StudySums::kSequence == 0 && sums_.sequences() >= 2 && settled();
+  }
+
+  std::uint64_t expected_draws() const {
+    if (options_.draws > 0) return options_.draws;
+    if (sums_.sequences() < 2) return 0;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < set_.items.size(); ++i)
+      worst = std::max(worst, scatter(i) / tolerance_of_draws(i));
+    const double draws = static_cast<double>(sums_.draws()) * std::max(1.0, worst * worst);
+    return static_cast<std::uint64_t>(std::min(draws, static_cast<double>(options_.most_draws)));
+  }
+
+  MonteCarloResult result() const {
+    MonteCarloResult result;
+    result.path = path_;
+    result.functions = options_.sources.functions;
+    for (const Disturbance& each : options_.sources.disturbances) result.disturbances.push_back(each.words);
+    result.draws = sums_.draws();
+    result.seed = options_.seed;
+    result.digits = options_.digits;
+    result.adaptive = options_.draws == 0;
+    result.settled = sums_.sequences() >= 2 && settled();
+    result.check = check_;
+    result.steps = tally_.steps;
+    result.refitted = tally_.refitted;
+    result.not_converged = tally_.not_converged;
+    result.to_come = tally_.to_come;
+    for (std::size_t i = 0; i < set_.items.size(); ++i) result.quantities.push_back(quantity_result(i));
+    return result;
+  }
+
+  std::uint64_t fingerprint() const {
+    Fnv1a hash;
+    hash.add(repeated_.identified());
+    hash.add(repeated_.predicted());
+    hash.add(repeated_.gain());
+    hash.add(repeated_.linear_root());
+    hash.add(repeated_.response());
+    hash.add(projection_.unit().matrix());
+    hash.add(options_.seed);
+    hash.add(static_cast<std::uint64_t>(path_));
+    hash.add(static_cast<std::uint64_t>(options_.sources.functions));
+    return hash.value();
+  }
+
+  std::string save() {
+    StateWriter writer;
+    visit(writer);
+    return writer.take();
+  }
+
+  void restore(const std::string& state) {
+    StateReader reader(state);
+    visit(reader);
+    if (!reader.at_end()) throw std::invalid_argument("the state is longer than the study's");
+  }
+
+  DrawPath path() const { return path_; }
+  std::uint64_t draws() const { return sums_.draws(); }
+
+ private:
+  template <class Visit>
+  void visit(Visit& visit) {
+    sums_.visit_state(visit);
+    visit(tally_.steps);
+    visit(tally_.refitted);
+    visit(tally_.not_converged);
+    visit(tally_.to_come);
+  }
+
+  Eigen::ArrayXXd draw_batch(std::uint64_t first, Eigen::Index count, SolverTally& tally) {
+    if (path_ == DrawPath::Linear) return projection_.of_linear_draws(options_.seed, first, count);
+    const std::vector<CampaignDraw> draws = draws_from(first, count);
+    Eigen::MatrixXd deviations =
+        path_ == DrawPath::Chord ? solvers_.by_chord(draws, tally) : solvers_.by_refit(draws, tally);
+    return projection_.of(with_roughness(std::move(deviations), draws));
+  }
+
+  std::vector<CampaignDraw> draws_from(std::uint64_t first, Eigen::Index count) const {
+    std::vector<CampaignDraw> draws;
+    for (Eigen::Index k = 0; k < count; ++k)
+      draws.push_back(repeated_.draw(options_.seed, first + static_cast<std::uint64_t>(k)));
+    return draws;
+  }
+
+  static Eigen::MatrixXd with_roughness(Eigen::MatrixXd deviations, const std::vector<CampaignDraw>& draws) {
+    for (std::size_t k = 0; k < draws.size(); ++k)
+      deviations.col(static_cast<Eigen::Index>(k)) += draws[k].roughness;
+    return deviations;
+  }
+
+  /// The first draws of the study by all three paths.
+  void check_paths() {
+    const int count = options_.refits;
+    if (count <= 0) return;
+    const std::vector<CampaignDraw> draws = draws_from(0, count);
+    SolverTally chord_tally, refit_tally;
+    auto start = std::chrono::steady_clock::now();
+    const Eigen::MatrixXd linear = repeated_.linear_estimates(draws);
+    check_.linear.seconds = seconds_since(start) / count;
+    start = std::chrono::steady_clock::now();
+    const Eigen::MatrixXd chord = solvers_.by_chord(draws, chord_tally);
+    check_.chord.seconds = seconds_since(start) / count;
+    start = std::chrono::steady_clock::now();
+    Eigen::MatrixXd refits(repeated_.parameters(), count);
+    std::vector<SolverTally> tallies(static_cast<std::size_t>(count));
+    run_parallel(static_cast<std::size_t>(count), threads_, [&](std::size_t k) {
+      refits.col(static_cast<Eigen::Index>(k)) = solvers_.by_refit({draws[k]}, tallies[k]);
+    });
+    for (const SolverTally& tally : tallies) refit_tally.add(tally);
+    check_.refit_seconds = seconds_since(start) / count * std::min(threads_, count);
+    check_.not_converged = static_cast<int>(refit_tally.not_converged);
+    const Eigen::ArrayXXd t = projection_.of(refits);
+    compare(projection_.of(linear) - t, check_.linear);
+    compare(projection_.of(chord) - t, check_.chord);
+  }
+
+  void compare(const Eigen::ArrayXXd& difference, PathCheck& check) const {
+    check.draws = static_cast<int>(difference.rows());
+    for (Eigen::Index i = 0; i < difference.cols(); ++i) {
+      const Quantity& quantity = set_.items[static_cast<std::size_t>(i)];
+      const double largest = difference.col(i).abs().maxCoeff() * projection_.unit()[i];
+      if (quantity.unit == "um" || quantity.unit == "mm")
+        check.largest_length = std::max(check.largest_length, largest);
+      if (quantity.unit == "urad") check.largest_angle = std::max(check.largest_angle, largest);
+      const double share = largest / tolerance_[i];
+      if (!(share <= check.largest_share)) {
+        check.largest_share = share;
+        check.where = quantity.words();
+      }
+    }
+  }
+
+  DrawPath supported_path() const {
+    if (options_.refits <= 0) return DrawPath::Chord;
+    if (check_.linear.largest_share <= kShareOfTolerance) return DrawPath::Linear;
+    return check_.chord.largest_share <= kShareOfTolerance ? DrawPath::Chord : DrawPath::Refit;
+  }
+
+  /// Standard error of a figure in units of t; by normal theory for fewer than two sequences.
+  double standard_error(std::size_t i, Figure figure) const {
+    if (sums_.sequences() >= 2) return sums_.standard_error(i, figure);
+    const double deviation = sums_.deviation(i), root = std::sqrt(static_cast<double>(sums_.draws()));
+    if (figure == Figure::Mean) return deviation / root;
+    return deviation * (figure == Figure::Deviation ? std::sqrt(0.5) : kEndScatter) / root;
+  }
+
+  /// 2 s of the least settled figure, SI.
+  double scatter(std::size_t i) const {
+    double worst = 0.0;
+    for (const Figure figure : {Figure::Mean, Figure::Deviation, Figure::Low, Figure::High})
+      worst = std::max(worst, sums_.standard_error(i, figure));
+    return 2.0 * worst * projection_.unit()[static_cast<Eigen::Index>(i)];
+  }
+
+  double tolerance_of_draws(std::size_t i) const {
+    const double per_unit = set_.items[i].si_per_unit;
+    const double u = sums_.deviation(i) * projection_.unit()[static_cast<Eigen::Index>(i)];
+    return u > 0.0 ? numerical_tolerance(u / per_unit, options_.digits) * per_unit
+                   : tolerance_[static_cast<Eigen::Index>(i)];
+  }
+
+  CoverageInterval from_t(const CoverageInterval& t, std::size_t i) const {
+    const double unit = projection_.unit()[static_cast<Eigen::Index>(i)];
+    return {set_.items[i].estimate + unit * t.low, set_.items[i].estimate + unit * t.high};
+  }
+
+  /// Draws that no path solved could hide any difference.
+  LinearVerdict verdict(const QuantityResult& value) const {
+    if (tally_.not_converged == 0 && value.difference <= value.tolerance) return LinearVerdict::Validated;
+    return value.difference <= value.tolerance + kScatter * value.end_error ? LinearVerdict::Undecided
+                                                                            : LinearVerdict::NotValidated;
+  }
+
+  QuantityResult quantity_result(std::size_t i) const {
+    const auto index = static_cast<Eigen::Index>(i);
+    const double unit = projection_.unit()[index];
+    QuantityResult result;
+    result.quantity = set_.items[i];
+    result.u_linear = projection_.u_linear()[index];
+    result.bias_linear = projection_.bias_linear()[index];
+    result.u = sums_.deviation(i) * unit;
+    result.bias = sums_.mean(i) * unit;
+    result.bias_error = result.u / std::sqrt(static_cast<double>(sums_.draws()));
+    const double reach = normal_quantile(0.5 + 0.5 * kCoverage) * result.u_linear;
+    const double centre = result.quantity.estimate + result.bias_linear;
+    result.linear = {centre - reach, centre + reach};
+    result.symmetric = from_t(symmetric_interval(sums_.histogram(i), kCoverage), i);
+    result.shortest = from_t(shortest_interval(sums_.histogram(i), kCoverage), i);
+    result.tolerance = tolerance_of_draws(i);
+    result.difference = std::max(std::abs(result.linear.low - result.symmetric.low),
+                                 std::abs(result.linear.high - result.symmetric.high));
+    result.end_error = unit * std::max(standard_error(i, Figure::Low), standard_error(i, Figure::High));
+    result.scatter = scatter(i);
+    result.verdict = verdict(result);
+    return result;
+  }
+
+  MonteCarloOptions options_;
+  int threads_;
+  RepeatedCampaign repeated_;
+  QuantitySet set_;
+  DrawProjection projection_;
+  PathSolvers solvers_;
+  StudySums sums_;
+  Eigen::ArrayXd tolerance_;  ///< by linear propagation, SI
+  RefitCheck check_;
+  DrawPath path_ = DrawPath::Linear;
+  SolverTally tally_;
+  IdlePool<Histograms> histograms_;
+};
+
+MonteCarloStudy::MonteCarloStudy(const Campaign& campaign, const FitResult& result, MonteCarloOptions options)
+    : work_(std::make_unique<Work>(campaign, result, std::move(options))) {}
+MonteCarloStudy::~MonteCarloStudy() = default;
+
+DrawPath MonteCarloStudy::path() const { return work_->path(); }
+std::uint64_t MonteCarloStudy::draws() const { return work_->draws(); }
+std::uint64_t MonteCarloStudy::expected_draws() const { return work_->expected_draws(); }
+bool MonteCarloStudy::done() const { return work_->done(); }
+void MonteCarloStudy::run_block() { work_->run_block(); }
+MonteCarloResult MonteCarloStudy::result() const { return work_->result(); }
+std::uint64_t MonteCarloStudy::fingerprint() const { return work_->fingerprint(); }
+std::string MonteCarloStudy::save() const { return work_->save(); }
+void MonteCarloStudy::restore(const std::string& state) { work_->restore(state); }
+
+}  // namespace volcal

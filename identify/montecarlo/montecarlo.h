@@ -1,0 +1,128 @@
+#pragma once
+/// Uncertainty study of a fitted campaign by Monte Carlo, after GUM Supplement 1 (JCGM 101:2008): what a draw
+/// is stands in repeated_campaign.h.
+///
+/// Three paths to the same estimate: `Linear`, equation (2) drawn among the parameters, one matrix product;
+/// `Chord`, readings drawn and (1) solved by steps with an exact gradient (chord_solver.h); `Refit`, readings
+/// drawn and the adjustment run again (campaign_refit.h). Every run holds the first two to the third, draw by
+/// draw, on a sample.
+///
+/// Draws are numbered. Their random numbers depend on seed and number alone, and blocks of draws enter the
+/// sums in their order, so that the same seed gives the same bits for any number of threads, and for a run
+/// that was interrupted and resumed.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/montecarlo/draw_sums.h"
+#include "volcal/identify/montecarlo/quantities.h"
+#include "volcal/identify/montecarlo/repeated_campaign.h"
+
+namespace volcal {
+
+enum class DrawPath { Automatic, Linear, Chord, Refit };
+std::string_view to_string(DrawPath path);
+
+struct MonteCarloOptions {
+  DrawPath path = DrawPath::Automatic;  ///< the fastest that the sample of refits supports
+  std::uint64_t draws = 0;              ///< 0: as many as the tolerance asks for (7.9)
+  int digits = 2;                       ///< significant digits of u that shall be right: 1 or 2
+  std::uint64_t most_draws = 10000000;  ///< of an adaptive study
+  std::uint64_t seed = 1;
+  int threads = 0;        ///< 0 = as many as the machine has
+  int refits = 20;        ///< sample on which the paths are compared
+  int grid_per_axis = 3;  ///< points of the volume
+  DrawnSources sources;
+};
+
+/// How far a path is from refits of the same draws.
+struct PathCheck {
+  int draws = 0;
+  double largest_length = 0.0;  ///< m, over all quantities in m
+  double largest_angle = 0.0;   ///< rad, over those in rad
+  double largest_share = 0.0;   ///< of the numerical tolerance of a quantity
+  std::string where;            ///< the quantity of largest_share
+  double seconds = 0.0;         ///< per draw
+};
+
+struct RefitCheck {
+  PathCheck linear;
+  PathCheck chord;
+  double refit_seconds = 0.0;  ///< per draw
+  int not_converged = 0;       ///< refits
+};
+
+/// Clause 8: linear propagation is validated when the ends of its interval are within the numerical tolerance
+/// of u of those of Monte Carlo. Undecided: the difference exceeds the tolerance by less than the scatter of
+/// the ends can explain (kScatter of their standard errors, which allows for thousands of values); more draws
+/// decide.
+enum class LinearVerdict { Validated, Undecided, NotValidated };
+inline constexpr double kScatter = 4.0;
+std::string_view to_string(LinearVerdict verdict);
+
+/// SI.
+struct QuantityResult {
+  Quantity quantity;
+  double u_linear = 0.0;
+  double bias_linear = 0.0;
+  double u = 0.0;           ///< of the draws
+  double bias = 0.0;        ///< mean of the draws minus the estimate of the fit
+  double bias_error = 0.0;  ///< standard error of the bias
+  CoverageInterval linear;  ///< estimate + bias_linear -+ k u_linear
+  CoverageInterval symmetric;
+  CoverageInterval shortest;
+  double tolerance = 0.0;   ///< delta of u for the digits asked for
+  double difference = 0.0;  ///< larger of d_low and d_high (8.1)
+  double end_error = 0.0;   ///< larger standard error of the two ends
+  double scatter = 0.0;     ///< 2 s of the least settled of mean, u and ends (7.9.4)
+  LinearVerdict verdict = LinearVerdict::Undecided;
+};
+
+struct MonteCarloResult {
+  DrawPath path = DrawPath::Linear;
+  FunctionRoughness functions = FunctionRoughness::Drawn;
+  std::vector<std::string> disturbances;  ///< in words
+  std::uint64_t draws = 0;
+  std::uint64_t seed = 0;
+  int digits = 2;
+  bool adaptive = false;
+  bool settled = false;  ///< 2 s < delta for all quantities
+  RefitCheck check;
+  std::uint64_t steps = 0;          ///< of the chord path or iterations of refits
+  std::uint64_t refitted = 0;       ///< draws that chord steps did not solve
+  std::uint64_t not_converged = 0;  ///< draws; they are in the sums
+  double to_come = 0.0;  ///< largest bound on what further chord steps would change, standard deviations
+  std::vector<QuantityResult> quantities;
+};
+
+/// One study: made, run block by block, read out.
+class MonteCarloStudy {
+ public:
+  /// `result` must come from fit() of the campaign, without a robust loss; both must outlive the object. The
+  /// sample of refits is made here. Throws InputError (repeated_campaign.h).
+  MonteCarloStudy(const Campaign& campaign, const FitResult& result, MonteCarloOptions options);
+  ~MonteCarloStudy();
+
+  DrawPath path() const;
+  std::uint64_t draws() const;
+  /// Draws that the study will take as far as is known: given, or by the scatter so far; 0 = not known yet.
+  std::uint64_t expected_draws() const;
+  bool done() const;
+  void run_block();
+  MonteCarloResult result() const;
+
+  /// Of everything that the draws depend on, threads and number of draws left out.
+  std::uint64_t fingerprint() const;
+  /// State after whole blocks.
+  std::string save() const;
+  /// Throws std::invalid_argument for a state of another size.
+  void restore(const std::string& state);
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace volcal

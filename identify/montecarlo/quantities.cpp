@@ -1,0 +1,206 @@
+#include "volcal/identify/montecarlo/quantities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/tables/error_tables.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kExact = 1e-9;  // of the largest uncertainty of the same unit: known by the datum
+
+constexpr const char* kVectorNames[] = {"ex", "ey", "ez"};
+
+/// Collects quantities with their rows.
+class QuantityList {
+ public:
+  explicit QuantityList(int parameters) : parameters_(parameters) {}
+
+  void add(Quantity quantity, const Eigen::VectorXd& row) {
+    items.push_back(std::move(quantity));
+    rows_.push_back(row);
+  }
+  Eigen::MatrixXd rows() const {
+    Eigen::MatrixXd all(static_cast<Eigen::Index>(rows_.size()), parameters_);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      all.row(static_cast<Eigen::Index>(i)) = rows_[i].transpose();
+    return all;
+  }
+
+  std::vector<Quantity> items;
+
+ private:
+  int parameters_;
+  std::vector<Eigen::VectorXd> rows_;
+};
+
+void add_tables(const FitResult& result, QuantityList& list) {
+  const std::vector<ErrorTableRow> table = error_table(result);
+  const Eigen::MatrixXd rows = error_table_derivatives(result);
+  double largest[2] = {0.0, 0.0};
+  for (const ErrorTableRow& row : table) largest[row.rotation] = std::max(largest[row.rotation], row.u);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].u <= kExact * largest[table[i].rotation]) continue;
+    list.add({.kind = QuantityKind::TableValue,
+              .name = table[i].symbol,
+              .axis = table[i].axis,
+              .position = table[i].position,
+              .direction = table[i].direction,
+              .tool = {},
+              .at = {},
+              .unit = table[i].rotation ? "urad" : "um",
+              .si_per_unit = kMicro,
+              .estimate = table[i].value},
+             rows.row(static_cast<Eigen::Index>(i)));
+  }
+}
+
+void add_parameters(const FitResult& result, QuantityList& list) {
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location) continue;
+    for (int k = 0; k < block.size(); ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      if (!(result.covariance(block.offset + k, block.offset + k) > 0.0)) continue;
+      list.add({.kind = QuantityKind::Parameter,
+                .name = block.name + (block.labels[index].empty() ? "" : " " + block.labels[index]),
+                .axis = {},
+                .tool = {},
+                .at = {},
+                .unit = block.units[index],
+                .si_per_unit = block.si_per_unit[index],
+                .estimate = result.parameters[block.offset + k]},
+               Eigen::VectorXd::Unit(result.layout.size, block.offset + k));
+    }
+  }
+}
+
+Quantity of_volume(QuantityKind kind, const std::string& name, const std::string& tool, double estimate) {
+  return {
+
+      .kind = kind,
+      .name = name,
+      .axis = {},
+      .tool = tool,
+      .at = {},
+      .unit = "um",
+      .si_per_unit = kMicro,
+      .estimate = estimate};
+}
+
+/// Derivatives of the root mean square and of the largest length about the estimate.
+void add_sizes(QuantitySet::Volume& volume, QuantityList& list) {
+  const VolumeSizes sizes = volume_sizes(volume.error);
+  const Eigen::Index points = volume.error.size() / 3;
+  Eigen::Index furthest = 0;
+  for (Eigen::Index i = 0; i < points; ++i) {
+    if (volume.error.segment<3>(3 * i).norm() >= sizes.largest) furthest = i;
+  }
+  const auto share = [](double size) { return size > 0.0 ? 1.0 / size : 0.0; };
+  volume.rms = list.items.size();
+  list.add(of_volume(QuantityKind::VolumetricRms, "rms", volume.tool, sizes.rms),
+           volume.rows.transpose() * volume.error * (share(sizes.rms) / static_cast<double>(points)));
+  volume.largest = list.items.size();
+  list.add(of_volume(QuantityKind::VolumetricMax, "max", volume.tool, sizes.largest),
+           volume.rows.middleRows<3>(3 * furthest).transpose() * volume.error.segment<3>(3 * furthest) *
+               share(sizes.largest));
+}
+
+QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per_axis) {
+  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
+  QuantitySet::Volume volume{
+      .tool = tool.name,
+      .rows = Eigen::MatrixXd(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size),
+      .error = {}};
+  Eigen::Index row = 0;
+  for (const AxisPosition& position : positions) {
+    volume.rows.middleRows<3>(row) = volumetric_error_rows(result, position, tool).topRows<3>();
+    row += 3;
+  }
+  volume.error = volume.rows * result.parameters;
+  return volume;
+}
+
+void add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_axis, QuantityList& list) {
+  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
+  for (std::size_t point = 0; point < positions.size(); ++point) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto row = static_cast<Eigen::Index>(3 * point + k);
+      const Eigen::VectorXd derivatives = volume.rows.row(row);
+      const double variance = derivatives.dot(result.covariance * derivatives);
+      if (!(variance > 1e-24)) continue;  // under 1 pm: at the point where the datum makes it zero
+      Quantity quantity =
+          of_volume(QuantityKind::VolumetricError, kVectorNames[k], volume.tool, volume.error[row]);
+      quantity.at = positions[point];
+      list.add(std::move(quantity), derivatives);
+    }
+  }
+  add_sizes(volume, list);
+}
+
+double edge_position(AxisName axis, double q) {
+  return q / (is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre);
+}
+
+}  // namespace
+
+std::string_view to_string(QuantityKind kind) {
+  switch (kind) {
+    case QuantityKind::TableValue:
+      return "table";
+    case QuantityKind::Parameter:
+      return "parameter";
+    case QuantityKind::VolumetricError:
+      return "volumetric";
+    case QuantityKind::VolumetricRms:
+      return "volumetric-rms";
+    case QuantityKind::VolumetricMax:
+      return "volumetric-max";
+  }
+  return "";
+}
+
+std::string Quantity::words() const {
+  if (axis) {
+    return fmt::format("{} at {:.6g} {}{}", name, edge_position(*axis, position),
+                       is_rotary(*axis) ? "deg" : "mm",
+                       direction > 0   ? " +"
+                       : direction < 0 ? " -"
+                                       : "");
+  }
+  if (tool.empty()) return name;
+  if (!at) return fmt::format("volumetric error, {}, tool {}", name, tool);
+  return fmt::format("{} of tool {} at {:.6g}, {:.6g}, {:.6g} mm", name, tool, (*at)[0] / kMetrePerMillimetre,
+                     (*at)[1] / kMetrePerMillimetre, (*at)[2] / kMetrePerMillimetre);
+}
+
+VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors) {
+  double squares = 0.0, largest = 0.0;
+  for (Eigen::Index i = 0; i < vectors.size(); i += 3) {
+    const double square = vectors.segment<3>(i).squaredNorm();
+    squares += square;
+    largest = std::max(largest, square);
+  }
+  const auto points = static_cast<double>(vectors.size() / 3);
+  return {points > 0.0 ? std::sqrt(squares / points) : 0.0, std::sqrt(largest)};
+}
+
+QuantitySet quantities_of(const FitResult& result, int grid_per_axis) {
+  QuantityList list(result.layout.size);
+  add_tables(result, list);
+  add_parameters(result, list);
+  QuantitySet set;
+  for (const Tool& tool : result.machine.tools) {
+    if (grid_per_axis <= 0) break;
+    set.volumes.push_back(volume_of(result, tool, grid_per_axis));
+    add_volume(result, set.volumes.back(), grid_per_axis, list);
+  }
+  set.items = std::move(list.items);
+  set.rows = list.rows();
+  return set;
+}
+
+}  // namespace volcal

@@ -1,0 +1,61 @@
+#pragma once
+/// What a Monte Carlo study gives distributions of: every value of the error tables, every other parameter
+/// (effects, tool offsets, expansions, stations, dead paths), volumetric errors on a grid over the travel for
+/// every tool, and of each tool their root mean square and their largest, which are not linear.
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+enum class QuantityKind { TableValue, Parameter, VolumetricError, VolumetricRms, VolumetricMax };
+std::string_view to_string(QuantityKind kind);
+
+struct Quantity {
+  QuantityKind kind = QuantityKind::TableValue;
+  std::string name;                ///< "EXX", "EC0Y", "station P1 x", "ex", "rms", "max"
+  std::optional<AxisName> axis;    ///< of a table value with a position
+  double position = 0.0;           ///< m or rad
+  int direction = 0;               ///< as in the tables
+  std::string tool;                ///< of a volumetric error
+  std::optional<AxisPosition> at;  ///< of a volumetric error
+  std::string unit;                ///< edge unit: "um", "urad", "mm", "ppm" ...
+  double si_per_unit = 1.0;
+  double estimate = 0.0;  ///< SI, of the fit
+
+  /// "EXX at 400 mm +", "station P1 x", "ex of tool long at 500, 300, 0 mm": for messages.
+  std::string words() const;
+};
+
+/// Quantities that are exactly known (a function at home) are left out.
+struct QuantitySet {
+  std::vector<Quantity> items;
+  /// Derivatives to the parameters, quantities x layout.size; of rms and max about the estimate.
+  Eigen::MatrixXd rows;
+  /// The volume of one tool: ex, ey, ez of its points are the vectors error + (rows[first ...] deviation).
+  struct Volume {
+    std::string tool;
+    Eigen::MatrixXd rows;   ///< 3 points x layout.size
+    Eigen::VectorXd error;  ///< 3 points, m
+    std::size_t rms = 0;    ///< index of the quantity
+    std::size_t largest = 0;
+  };
+  std::vector<Volume> volumes;
+};
+
+/// `grid_per_axis`: points of the volume per linear axis; 0 leaves the volume out.
+QuantitySet quantities_of(const FitResult& result, int grid_per_axis);
+
+/// Root mean square and largest length of vectors x y z x y z ...
+struct VolumeSizes {
+  double rms = 0.0;
+  double largest = 0.0;
+};
+VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors);
+
+}  // namespace volcal

@@ -1,0 +1,235 @@
+#include "volcal/identify/montecarlo/repeated_campaign.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "volcal/identify/montecarlo/counter_random.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/adjustment.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kNoEigenvalue = 1e-12;  // of the largest
+
+/// The noise that the weights of the fit stand for, per group of `groups`.
+std::vector<NoiseParameters> noise_of(const FitResult& result, const std::vector<std::string>& groups) {
+  std::vector<NoiseParameters> noise(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto component =
+        std::ranges::find(result.variance_components, groups[g], &VarianceComponent::instrument);
+    if (component != result.variance_components.end()) noise[g].white = component->scale;
+  }
+  if (!result.noise.more_than_white) return noise;
+  for (const NoiseRow& row : result.noise.rows) {
+    const auto group = std::ranges::find(groups, result.noise.groups.at(row.instrument));
+    NoiseParameters& own = noise.at(static_cast<std::size_t>(group - groups.begin()));
+    if (row.term == "wander") own.wander = row.value;
+    if (row.term == "tau" && row.value > 0.0) own.tau = row.value;
+    if (row.term == "line") own.line = row.value;
+    if (row.term == "per_metre") own.per_metre = row.value;
+  }
+  return noise;
+}
+
+/// Root of a positive semidefinite covariance, columns of the eigenvalues that are not zero.
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
+  const SymmetricEigen eigen = eigen_decomposition(covariance);
+  const double floor = kNoEigenvalue * std::max(eigen.values.tail(1).value(), 0.0);
+  const auto kept = static_cast<Eigen::Index>((eigen.values.array() > floor).count());
+  return eigen.vectors.rightCols(kept) * eigen.values.tail(kept).cwiseSqrt().asDiagonal();
+}
+
+/// Root of a covariance whose diagonal spans many orders (rad, m, 1): that of its correlations, scaled back.
+Eigen::MatrixXd scaled_covariance_root(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd scale = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::VectorXd inverse = (scale.array() > 0.0).select(scale.cwiseInverse(), 0.0);
+  return scale.asDiagonal() * covariance_root(inverse.asDiagonal() * covariance * inverse.asDiagonal());
+}
+
+/// Of what the fit is told of everything but the error functions; each parameter by itself.
+Eigen::VectorXd stated_precision(const DatumSpace& datum, const Eigen::MatrixXd& precision) {
+  Eigen::VectorXd stated = Eigen::VectorXd::Zero(precision.rows());
+  for (const auto& block : datum.blocks())
+    stated.segment(block.offset, block.size) = precision.diagonal().segment(block.offset, block.size);
+  return stated;
+}
+
+}  // namespace
+
+RepeatedCampaign::RepeatedCampaign(const Campaign& campaign, const FitResult& result, DrawnSources sources)
+    : result_(result),
+      sources_(std::move(sources)),
+      linear_(campaign, result),
+      datum_(linear_.model().layout(), campaign.machine, result.parameters),
+      identified_(result.adjustment->reduced),
+      noise_(noise_of(result, linear_.noise_groups())),
+      whitener_(linear_.problem().data, noise_),
+      sampler_(linear_.problem().data, noise_) {
+  require_determined();
+  const NoiseProblem& problem = linear_.problem();
+  predicted_.resize(problem.residual.size());
+  for (std::size_t i = 0; i < linear_.size(); ++i) {
+    const ObservationPlace& place = linear_.observations()[i];
+    const auto index = static_cast<Eigen::Index>(i);
+    const Readings& readings = campaign.setups[place.setup].readings;
+    predicted_[index] =
+        readings.value[static_cast<std::size_t>(place.channel)][place.row] - problem.residual[index];
+  }
+  whitener_.whiten(problem.jacobian, whitened_, 1);
+  const auto factor = cholesky_lower(whitened_.transpose() * whitened_ + problem.prior_precision);
+  if (!factor) throw std::runtime_error("the normal matrix is not positive definite");
+  gain_ = inverse_from_cholesky(*factor);
+  set_statements();
+  add_disturbances();
+  set_linear_propagation();
+}
+
+void RepeatedCampaign::require_determined() const {
+  if (result_.status != FitStatus::RankDeficient) return;
+  const std::string which = result_.rank.invisible.empty() ? "" : ": " + result_.rank.invisible.front();
+  throw InputError({linear_.campaign().file, 0}, "the readings do not determine every error" + which,
+                   "measure what volcal fit names, or switch the error off in the model "
+                   "(EAX = { basis = \"zero\" }), and draw again");
+}
+
+void RepeatedCampaign::set_statements() {
+  stated_ = stated_precision(datum_, result_.adjustment->prior.precision);
+  fixed_statement_ = Eigen::VectorXd::Zero(parameters());
+  roughness_root_.resize(parameters(), 0);
+  if (draws_functions()) {
+    Eigen::MatrixXd of_functions = prior_precision();
+    of_functions.diagonal() -= stated_;
+    roughness_root_ = scaled_covariance_root(gain_ * of_functions * gain_ +
+                                             amplitude_covariance(linear_.smoothing(), gain_, identified_));
+    return;
+  }
+  for (const SmoothingTerm& term : linear_.smoothing()) {
+    const Eigen::Index size = term.precision().rows();
+    fixed_statement_.segment(term.offset, size) = -identified_.segment(term.offset, size);
+  }
+}
+
+void RepeatedCampaign::add_disturbances() {
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index columns = 0;
+  for (const Disturbance& disturbance : sources_.disturbances) {
+    const EffectKind* kind = find_effect(disturbance.effect.kind);
+    if (kind == nullptr) throw std::invalid_argument("there is no effect " + disturbance.effect.kind);
+    const auto effect = kind->make(disturbance.effect, {});
+    effect->check(linear_.campaign(), {linear_.campaign().file, 0});
+    const auto amplitudes = static_cast<Eigen::Index>(effect->amplitudes().size());
+    Eigen::MatrixXd& part = parts.emplace_back(observations(), amplitudes);
+    for (std::size_t setup = 0; setup + 1 < linear_.parts().size(); ++setup) {
+      const Eigen::Index first = linear_.parts()[setup], count = linear_.parts()[setup + 1] - first;
+      linear_.columns(*effect, effect->shape_values(), setup, part.middleRows(first, count));
+    }
+    disturbance_sigma_.insert(disturbance_sigma_.end(), effect->amplitudes().size(), disturbance.sigma);
+    disturbance_shape_.insert(disturbance_shape_.end(), effect->amplitudes().size(), disturbance.shape);
+    columns += amplitudes;
+  }
+  disturbance_columns_.resize(observations(), columns);
+  Eigen::Index column = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    disturbance_columns_.middleCols(column, part.cols()) = part;
+    column += part.cols();
+  }
+}
+
+void RepeatedCampaign::set_linear_propagation() {
+  const Eigen::MatrixXd normal_matrix = whitened_.transpose() * whitened_;
+  Eigen::MatrixXd covariance = gain_ * normal_matrix * gain_ + gain_ * stated_.asDiagonal() * gain_ +
+                               roughness_root_ * roughness_root_.transpose();
+  bias_ = gain_ * (prior_precision() * fixed_statement_);
+  Eigen::MatrixXd whitened_columns;
+  whitener_.whiten(disturbance_columns_, whitened_columns, 1);
+  const Eigen::MatrixXd response = gain_ * (whitened_.transpose() * whitened_columns);
+  std::vector<Eigen::Index> rectangular;
+  for (Eigen::Index k = 0; k < response.cols(); ++k) {
+    const auto index = static_cast<std::size_t>(k);
+    if (disturbance_shape_[index] == DistributionShape::Rectangular) {
+      rectangular.push_back(k);
+      continue;
+    }
+    const Eigen::VectorXd moved = response.col(k) * disturbance_sigma_[index];
+    covariance += moved * moved.transpose();
+  }
+  rectangular_response_.resize(parameters(), static_cast<Eigen::Index>(rectangular.size()));
+  for (std::size_t k = 0; k < rectangular.size(); ++k) {
+    rectangular_response_.col(static_cast<Eigen::Index>(k)) =
+        response.col(rectangular[k]) * disturbance_sigma_[static_cast<std::size_t>(rectangular[k])];
+  }
+  root_ = scaled_covariance_root(0.5 * (covariance + covariance.transpose()));
+}
+
+Eigen::MatrixXd RepeatedCampaign::linear_covariance() const {
+  return root_ * root_.transpose() + rectangular_response_ * rectangular_response_.transpose();
+}
+
+namespace {
+
+/// Uniform on (0, 1] to a rectangular distribution of standard deviation 1.
+double rectangular_from(double uniform) { return std::numbers::sqrt3 * (2.0 * uniform - 1.0); }
+
+std::span<double> span_of(Eigen::Ref<Eigen::VectorXd> values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+}  // namespace
+
+void RepeatedCampaign::draw_linear(std::uint64_t seed, std::uint64_t first,
+                                   Eigen::Ref<Eigen::MatrixXd> normals,
+                                   Eigen::Ref<Eigen::MatrixXd> amplitudes) const {
+  for (Eigen::Index k = 0; k < normals.cols(); ++k) {
+    const std::uint64_t number = first + static_cast<std::uint64_t>(k);
+    CounterRandom(seed, number, RandomSource::Parameters).normals(span_of(normals.col(k)));
+    if (amplitudes.rows() == 0) continue;
+    CounterRandom(seed, number, RandomSource::Disturbances).uniforms(span_of(amplitudes.col(k)));
+    amplitudes.col(k) = amplitudes.col(k).unaryExpr(&rectangular_from);
+  }
+}
+
+CampaignDraw RepeatedCampaign::draw(std::uint64_t seed, std::uint64_t number) const {
+  CampaignDraw draw{Eigen::VectorXd(observations()), fixed_statement_, Eigen::VectorXd::Zero(parameters())};
+  sampler_.draw(seed, number, span_of(draw.errors));
+  Eigen::VectorXd normal(parameters());
+  CounterRandom(seed, number, RandomSource::Statements).normals(span_of(normal));
+  draw.statement.array() += (stated_.array() > 0.0).select(normal.array() * stated_.array().rsqrt(), 0.0);
+  normal.resize(roughness_root_.cols());
+  CounterRandom(seed, number, RandomSource::Roughness).normals(span_of(normal));
+  draw.roughness += roughness_root_ * normal;
+  if (disturbance_sigma_.empty()) return draw;
+  const std::size_t count = disturbance_sigma_.size();
+  std::vector<double> uniform(count), normals(count);
+  const CounterRandom random(seed, number, RandomSource::Disturbances);
+  random.uniforms(uniform);
+  random.normals(normals);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double standard =
+        disturbance_shape_[k] == DistributionShape::Normal ? normals[k] : rectangular_from(uniform[k]);
+    draw.errors += disturbance_sigma_[k] * standard * disturbance_columns_.col(static_cast<Eigen::Index>(k));
+  }
+  return draw;
+}
+
+Eigen::MatrixXd RepeatedCampaign::linear_estimates(const std::vector<CampaignDraw>& draws) const {
+  const auto count = static_cast<Eigen::Index>(draws.size());
+  Eigen::MatrixXd errors(observations(), count), gradient = Eigen::MatrixXd::Zero(parameters(), count);
+  Eigen::MatrixXd statements(parameters(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    errors.col(k) = draws[static_cast<std::size_t>(k)].errors;
+    statements.col(k) = draws[static_cast<std::size_t>(k)].statement;
+  }
+  whitener_.whiten(errors, errors, 1);
+  add_transposed_product(whitened_, errors, gradient);
+  gradient += prior_precision() * statements;
+  return gain_ * gradient;
+}
+
+}  // namespace volcal

@@ -1,0 +1,176 @@
+#include "volcal/identify/report/montecarlo_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/report/text_tables.h"
+
+namespace volcal {
+namespace {
+
+/// Quantities that are shown in one line.
+struct QuantityGroup {
+  std::string name;
+  std::string unit;
+  std::vector<const QuantityResult*> values;
+};
+
+std::string group_name(const Quantity& quantity) {
+  switch (quantity.kind) {
+    case QuantityKind::VolumetricError:
+      return "volume, tool " + quantity.tool + ", " + quantity.name;
+    case QuantityKind::VolumetricRms:
+    case QuantityKind::VolumetricMax:
+      return "volume, tool " + quantity.tool + ", |e| " + quantity.name;
+    default:
+      return quantity.name;
+  }
+}
+
+std::vector<QuantityGroup> grouped(const MonteCarloResult& result) {
+  std::vector<QuantityGroup> groups;
+  for (const QuantityResult& value : result.quantities) {
+    const std::string name = group_name(value.quantity);
+    auto group = std::ranges::find(groups, name, &QuantityGroup::name);
+    if (group == groups.end()) {
+      groups.push_back({name, value.quantity.unit, {}});
+      group = groups.end() - 1;
+    }
+    group->values.push_back(&value);
+  }
+  return groups;
+}
+
+std::string ratio_words(const QuantityGroup& group) {
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (const QuantityResult* value : group.values) {
+    if (!(value->u_linear > 0.0)) return "-";
+    low = std::min(low, value->u / value->u_linear);
+    high = std::max(high, value->u / value->u_linear);
+  }
+  return group.values.size() == 1 ? fixed_number(low, 4)
+                                  : fixed_number(low, 4) + " .. " + fixed_number(high, 4);
+}
+
+std::string verdict_words(const QuantityGroup& group) {
+  std::size_t validated = 0;
+  LinearVerdict worst = LinearVerdict::Validated;
+  for (const QuantityResult* value : group.values) {
+    validated += value->verdict == LinearVerdict::Validated ? 1U : 0U;
+    worst = std::max(worst, value->verdict);
+  }
+  if (worst == LinearVerdict::Validated || validated == 0) return std::string(to_string(worst));
+  return fmt::format("{}, {} of {}", to_string(worst), group.values.size() - validated, group.values.size());
+}
+
+std::string quantity_table(const MonteCarloResult& result) {
+  TextTable table(
+      {{"quantity", Align::Left},
+       {"values"},
+       {"unit", Align::Left},
+       {"u linear"},
+       {"u"},
+       {"u / u linear"},
+       {"largest bias"},
+       {"+-"},
+       {"linear propagation", Align::Left}},
+      "Standard uncertainties (the largest of each line) by linear propagation and by Monte Carlo");
+  for (const QuantityGroup& group : grouped(result)) {
+    const auto by_u = [](const QuantityResult* a, const QuantityResult* b) { return a->u < b->u; };
+    const auto by_bias = [](const QuantityResult* a, const QuantityResult* b) {
+      return std::abs(a->bias) < std::abs(b->bias);
+    };
+    const QuantityResult& widest = **std::ranges::max_element(group.values, by_u);
+    const QuantityResult& biased = **std::ranges::max_element(group.values, by_bias);
+    const double unit = widest.quantity.si_per_unit;
+    table.add_row({group.name, std::to_string(group.values.size()), group.unit,
+                   short_number(widest.u_linear / unit), short_number(widest.u / unit), ratio_words(group),
+                   short_number(biased.bias / unit, 2), short_number(biased.bias_error / unit, 1),
+                   verdict_words(group)});
+  }
+  return table.text();
+}
+
+std::string refit_table(const RefitCheck& check) {
+  TextTable table(
+      {{"path", Align::Left}, {"lengths [nm]"}, {"angles [nrad]"}, {"of tolerance"}, {"where", Align::Left}},
+      fmt::format("Largest difference from full refits of the same {} draws", check.linear.draws));
+  for (const auto& [name, path] : {std::pair("linear", &check.linear), std::pair("chord", &check.chord)}) {
+    table.add_row({name, short_number(path->largest_length * 1e9, 2),
+                   short_number(path->largest_angle * 1e9, 2), short_number(path->largest_share, 2),
+                   path->where});
+  }
+  return table.text();
+}
+
+std::string head(const MonteCarloResult& result) {
+  static constexpr const char* kPathWords[] = {"", "linear: one matrix product, drawn among the parameters",
+                                               "chord: readings drawn, steps with an exact gradient",
+                                               "refit: readings drawn, the adjustment run again"};
+  std::string text = fmt::format("Monte Carlo, {} draws, seed {}\n  path       {}\n  functions  {}\n",
+                                 count_number(static_cast<long long>(result.draws)), result.seed,
+                                 kPathWords[static_cast<int>(result.path)],
+                                 result.functions == FunctionRoughness::Drawn
+                                     ? "drawn: what is said of their roughness is drawn about the machine"
+                                     : "fixed: repeated campaigns on one machine, smoothing's bias apart");
+  for (const std::string& disturbance : result.disturbances)
+    text += "  disturbed  by " + disturbance + ", which the fit knows nothing of\n";
+  if (result.adaptive) {
+    text += fmt::format("  tolerance  {} significant digits of u: {}\n", result.digits,
+                        result.settled ? "reached for every value" : "not reached for every value");
+  }
+  if (result.path == DrawPath::Chord) {
+    text += fmt::format(
+        "  steps      {:.2f} a draw; further ones would change less than {} standard deviations\n",
+        static_cast<double>(result.steps) / static_cast<double>(result.draws),
+        short_number(result.to_come, 2));
+    if (result.refitted > 0)
+      text += fmt::format("  refitted   {} draws that steps did not solve\n", result.refitted);
+  }
+  if (result.not_converged > 0)
+    text += fmt::format("  WARNING    {} draws did not converge\n", result.not_converged);
+  return text;
+}
+
+/// GUM Supplement 1, clause 8, over all values.
+std::string verdict_text(const MonteCarloResult& result) {
+  std::size_t counts[3] = {0, 0, 0};
+  const QuantityResult* worst = nullptr;
+  const auto share = [](const QuantityResult& value) { return value.difference / value.tolerance; };
+  for (const QuantityResult& value : result.quantities) {
+    ++counts[static_cast<int>(value.verdict)];
+    if (worst == nullptr || share(value) > share(*worst)) worst = &value;
+  }
+  if (worst == nullptr) return "";
+  const LinearVerdict overall = counts[2] > 0   ? LinearVerdict::NotValidated
+                                : counts[1] > 0 ? LinearVerdict::Undecided
+                                                : LinearVerdict::Validated;
+  const double unit = worst->quantity.si_per_unit;
+  std::string text = fmt::format(
+      "Linear propagation (GUM Supplement 1, clause 8, {} digits): {}\n"
+      "  {} of {} values validated, {} undecided, {} not\n"
+      "  ends of the 95 % intervals differ most, against their tolerance, at {}:\n"
+      "  {} {}, tolerance {}, standard error of the ends {}\n",
+      result.digits, to_string(overall), counts[0], result.quantities.size(), counts[1], counts[2],
+      worst->quantity.words(), short_number(worst->difference / unit, 2), worst->quantity.unit,
+      short_number(worst->tolerance / unit, 2), short_number(worst->end_error / unit, 2));
+  if (counts[1] > 0)
+    text += "  undecided: the scatter of the ends explains the difference; more draws decide\n";
+  return text;
+}
+
+}  // namespace
+
+std::string montecarlo_text(const MonteCarloResult& result) {
+  std::string text = head(result);
+  if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
+  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result);
+}
+
+}  // namespace volcal

@@ -1,0 +1,192 @@
+/// `volcal montecarlo` as a user runs it: its files, an interruption by SIGKILL, and what it says of bad
+/// input.
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "tests/support/program.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+/// A tracer, a diagonal and a level on straight functions: a fit takes milliseconds.
+class MonteCarloCommand : public ::testing::Test {
+ protected:
+  MonteCarloCommand() {
+    std::ofstream(model_) << "format = \"volcal-model-1\"\nmachine = \"" << machine()
+                          << "\"\n[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 2 }\n";
+    std::ofstream(study_) << "format = \"volcal-study-1\"\nmachine = \"" << machine() << "\"\nseed = 5\n"
+                          << "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 3]\n";
+  }
+
+  void SetUp() override {
+    const testing::ProgramRun run = run_program("simulate " + study_ + " -o " + path("campaign"));
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+  }
+
+  static std::string machine() { return VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml"; }
+  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
+  std::string campaign() const { return path("campaign/campaign.toml"); }
+  testing::ProgramRun montecarlo(const std::string& options) const {
+    return run_program("montecarlo " + campaign() + " -m " + model_ + " --noise white " + options);
+  }
+
+  /// Starts a study and kills it once its checkpoint is there.
+  bool killed_after_checkpoint(const std::string& output) const {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const int nowhere = ::open("/dev/null", O_RDWR);
+      ::dup2(nowhere, STDOUT_FILENO);
+      ::dup2(nowhere, STDERR_FILENO);
+      ::execl(VOLCAL_PROGRAM, "volcal", "montecarlo", campaign().c_str(), "-m", model_.c_str(), "--noise",
+              "white", "--path", "chord", "-n", "6000", "--refits", "2", "--threads", "1",
+              "--checkpoint-every", "0", "-o", output.c_str(), static_cast<char*>(nullptr));
+      ::_exit(127);
+    }
+    int status = 0;
+    while (!fs::exists(output + ".checkpoint")) {
+      if (::waitpid(child, &status, WNOHANG) == child) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ::kill(child, SIGKILL);
+    ::waitpid(child, &status, 0);
+    return WIFSIGNALED(status);
+  }
+
+ private:
+  testing::ScratchFolder scratch_;
+
+ protected:
+  std::string model_ = path("model.toml");
+  std::string study_ = path("study.toml");
+};
+
+TEST_F(MonteCarloCommand, WritesDistributionsOfEveryQuantity) {
+  const testing::ProgramRun run = montecarlo("-n 20000 --seed 3 -o " + path("mc"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Monte Carlo, 20,000 draws, seed 3"));
+  EXPECT_THAT(run.output, HasSubstr("Largest difference from full refits of the same 20 draws"));
+  EXPECT_THAT(run.output, HasSubstr("Linear propagation (GUM Supplement 1, clause 8, 2 digits): "));
+  const auto json = nlohmann::json::parse(content(path("mc/montecarlo.json")));
+  EXPECT_EQ(json.at("format"), "volcal-montecarlo-1");
+  EXPECT_EQ(json.at("draws"), 20000);
+  std::map<std::string, int> kinds;
+  for (const auto& quantity : json.at("quantities")) {
+    ++kinds[quantity.at("kind").get<std::string>()];
+    const double u = quantity.at("u").get<double>(), linear = quantity.at("u_linear").get<double>();
+    EXPECT_GT(u, 0.0);
+    if (quantity.at("kind") == "table") {
+      EXPECT_NEAR(u / linear, 1.0, 0.03) << quantity;
+    }
+    EXPECT_LT(quantity.at("symmetric")[0].get<double>(), quantity.at("symmetric")[1].get<double>());
+    EXPECT_LE(quantity.at("shortest")[1].get<double>() - quantity.at("shortest")[0].get<double>(),
+              quantity.at("symmetric")[1].get<double>() - quantity.at("symmetric")[0].get<double>() + 1e-12);
+  }
+  EXPECT_GT(kinds["table"], 300);
+  EXPECT_GT(kinds["parameter"], 3);
+  EXPECT_GT(kinds["volumetric"], 70);
+  EXPECT_GE(kinds["volumetric-max"], 1);
+  const std::string csv = content(path("mc/montecarlo.csv"));
+  EXPECT_THAT(csv, ::testing::StartsWith("kind,name,axis,position,position_unit,direction,tool,"));
+  EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            json.at("quantities").size() + 1);
+  EXPECT_FALSE(fs::exists(path("mc.checkpoint")));
+}
+
+TEST_F(MonteCarloCommand, JsonIsTheFileAndNothingElse) {
+  const testing::ProgramRun run = montecarlo("-n 1000 --json -o " + path("mc"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_EQ(run.output, content(path("mc/montecarlo.json")));
+  EXPECT_EQ(run.errors, "");
+}
+
+TEST_F(MonteCarloCommand, KilledStudyResumesToTheSameBits) {
+  const std::string options = "--path chord -n 6000 --refits 2 ";
+  ASSERT_EQ(montecarlo(options + "--threads 2 -o " + path("whole")).exit_code, 0);
+  ASSERT_TRUE(killed_after_checkpoint(path("killed")));
+  EXPECT_FALSE(fs::exists(path("killed")));
+  const testing::ProgramRun again = montecarlo(options + "-o " + path("killed"));
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.errors, HasSubstr("an interrupted study of this output folder is kept here"));
+  EXPECT_THAT(again.errors, HasSubstr("give --resume to go on with it, or delete the file to begin anew"));
+  const testing::ProgramRun other = montecarlo(options + "--seed 2 --resume -o " + path("killed"));
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.errors, HasSubstr("the checkpoint belongs to another study"));
+  const testing::ProgramRun resumed = montecarlo(options + "--resume -o " + path("killed"));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
+  for (const char* file : {"montecarlo.json", "montecarlo.csv", "montecarlo.txt"})
+    EXPECT_EQ(content(path("killed/") + file), content(path("whole/") + file)) << file;
+  EXPECT_FALSE(fs::exists(path("killed.checkpoint")));
+}
+
+TEST_F(MonteCarloCommand, BadCheckpointsAreRefused) {
+  const testing::ProgramRun none = montecarlo("-n 1000 --resume -o " + path("mc"));
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.errors, HasSubstr("there is no checkpoint to resume from"));
+  ASSERT_TRUE(killed_after_checkpoint(path("cut")));
+  const std::string whole = content(path("cut.checkpoint"));
+  std::ofstream(path("cut.checkpoint"), std::ios::binary) << whole.substr(0, whole.size() / 2);
+  const testing::ProgramRun cut = montecarlo("-n 6000 --path chord --resume -o " + path("cut"));
+  EXPECT_EQ(cut.exit_code, 2);
+  EXPECT_THAT(cut.errors, HasSubstr("cut.checkpoint"));
+  EXPECT_THAT(cut.errors, HasSubstr("the checkpoint is cut off or was changed"));
+  std::ofstream(path("cut.checkpoint")) << "x_mm,y_mm\n";
+  EXPECT_THAT(montecarlo("-n 6000 --path chord --resume -o " + path("cut")).errors,
+              HasSubstr("the file is no checkpoint of volcal montecarlo"));
+}
+
+TEST_F(MonteCarloCommand, DisturbancesWidenWhatTheFitBelieves) {
+  const testing::ProgramRun run =
+      montecarlo("-n 20000 --json --disturb 'length-scale:readings=+-3' -o " + path("mc"));
+  if (run.exit_code != 0) GTEST_FAIL() << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  ASSERT_EQ(json.at("disturbances").size(), 1U);
+  EXPECT_THAT(json.at("disturbances")[0].get<std::string>(), HasSubstr("within +- 3"));
+  const auto plain = nlohmann::json::parse(montecarlo("-n 20000 --json -o " + path("plain")).output);
+  double widest = 0.0;
+  for (std::size_t i = 0; i < plain.at("quantities").size(); ++i) {
+    const auto& quantity = json.at("quantities")[i];
+    if (quantity.at("kind") == "table") {
+      EXPECT_NEAR(quantity.at("u").get<double>() / quantity.at("u_linear").get<double>(), 1.0, 0.05)
+          << quantity;
+    }
+    widest =
+        std::max(widest, quantity.at("u").get<double>() / plain.at("quantities")[i].at("u").get<double>());
+  }
+  EXPECT_GT(widest, 1.5);
+}
+
+TEST_F(MonteCarloCommand, BadOptionsAreNamed) {
+  const auto errors = [&](const std::string& options) {
+    const testing::ProgramRun run = montecarlo(options + " -o " + path("bad"));
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_FALSE(fs::exists(path("bad"))) << options;
+    return run.errors;
+  };
+  EXPECT_THAT(errors("--path straight"), HasSubstr("--path"));
+  EXPECT_THAT(errors("--digits 3"), HasSubstr("--digits"));
+  EXPECT_THAT(errors("-n 10 --disturb 'length-scale:readings'"),
+              HasSubstr("how large the effect may be is missing or not positive"));
+  EXPECT_THAT(errors("-n 10 --disturb 'length-scale:readings=-1'"),
+              HasSubstr("write KIND:TARGET=U for a standard uncertainty"));
+  EXPECT_THAT(errors("-n 10 --disturb 'moonlight:EXX=1'"), HasSubstr("\"moonlight\" is no kind of effect"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -86,6 +86,13 @@ std::string montecarlo_json(const MonteCarloResult& result) {
                            {"chord", check_json(result.check.chord)}}}};
   json["quantities"] = MonteCarloJson::array();
   for (const QuantityResult& value : result.quantities) json["quantities"].push_back(quantity_json(value));
+  json["sources"] = result.budget.sources;
+  for (std::size_t i = 0; i < result.quantities.size(); ++i) {
+    MonteCarloJson& of_quantity = json["quantities"][i]["u_of_sources"];
+    of_quantity = MonteCarloJson::array();
+    for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
+      of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
+  }
   return json.dump(1) + "\n";
 }
 

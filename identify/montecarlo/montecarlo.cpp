@@ -170,6 +170,7 @@ class MonteCarloStudy::Work {
     result.not_converged = tally_.not_converged;
     result.to_come = tally_.to_come;
     for (std::size_t i = 0; i < set_.items.size(); ++i) result.quantities.push_back(quantity_result(i));
+    result.budget = uncertainty_budget(repeated_, set_);
     return result;
   }
 

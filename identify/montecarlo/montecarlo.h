@@ -19,6 +19,7 @@
 #include "volcal/identify/montecarlo/draw_sums.h"
 #include "volcal/identify/montecarlo/quantities.h"
 #include "volcal/identify/montecarlo/repeated_campaign.h"
+#include "volcal/identify/montecarlo/uncertainty_budget.h"
 
 namespace volcal {
 
@@ -95,6 +96,7 @@ struct MonteCarloResult {
   std::uint64_t not_converged = 0;  ///< draws; they are in the sums
   double to_come = 0.0;  ///< largest bound on what further chord steps would change, standard deviations
   std::vector<QuantityResult> quantities;
+  UncertaintyBudget budget;  ///< rows as `quantities`
 };
 
 /// One study: made, run block by block, read out.

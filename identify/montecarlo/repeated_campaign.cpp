@@ -88,6 +88,7 @@ RepeatedCampaign::RepeatedCampaign(const Campaign& campaign, const FitResult& re
   gain_ = inverse_from_cholesky(*factor);
   set_statements();
   add_disturbances();
+  list_sources();
   set_linear_propagation();
 }
 
@@ -132,6 +133,7 @@ void RepeatedCampaign::add_disturbances() {
     }
     disturbance_sigma_.insert(disturbance_sigma_.end(), effect->amplitudes().size(), disturbance.sigma);
     disturbance_shape_.insert(disturbance_shape_.end(), effect->amplitudes().size(), disturbance.shape);
+    amplitudes_.push_back(amplitudes);
     columns += amplitudes;
   }
   disturbance_columns_.resize(observations(), columns);
@@ -142,29 +144,60 @@ void RepeatedCampaign::add_disturbances() {
   }
 }
 
-void RepeatedCampaign::set_linear_propagation() {
-  const Eigen::MatrixXd normal_matrix = whitened_.transpose() * whitened_;
-  Eigen::MatrixXd covariance = gain_ * normal_matrix * gain_ + gain_ * stated_.asDiagonal() * gain_ +
-                               roughness_root_ * roughness_root_.transpose();
-  bias_ = gain_ * (prior_precision() * fixed_statement_);
+/// Of each instrument: C J_g^T Sigma_g^-1 J_g C, instruments being independent.
+void RepeatedCampaign::list_noise() {
+  const std::vector<NoiseSequence>& sequences = linear_.problem().data.sequences;
+  for (std::size_t group = 0; group < linear_.noise_groups().size(); ++group) {
+    std::vector<Eigen::Index> rows;
+    for (const NoiseSequence& sequence : sequences) {
+      if (sequence.group == group)
+        rows.insert(rows.end(), sequence.observation.begin(), sequence.observation.end());
+    }
+    const Eigen::MatrixXd own = whitened_(rows, Eigen::all);
+    uncertainty_sources_.push_back(
+        {"noise of " + linear_.noise_groups()[group], gain_ * scaled_covariance_root(own.transpose() * own)});
+  }
+}
+
+void RepeatedCampaign::list_statements() {
+  for (const auto& block : datum_.blocks()) {
+    const Eigen::VectorXd stated = stated_.segment(block.offset, block.size);
+    if (stated.isZero(0.0)) continue;
+    uncertainty_sources_.push_back(
+        {"prior of " + linear_.model().layout().blocks[block.block].name,
+         gain_.middleCols(block.offset, block.size) * stated.cwiseSqrt().asDiagonal()});
+  }
+}
+
+void RepeatedCampaign::list_sources() {
+  list_noise();
+  list_statements();
+  if (draws_functions())
+    uncertainty_sources_.push_back({"roughness of the error functions", roughness_root_});
   Eigen::MatrixXd whitened_columns;
   whitener_.whiten(disturbance_columns_, whitened_columns, 1);
-  const Eigen::MatrixXd response = gain_ * (whitened_.transpose() * whitened_columns);
+  const Eigen::Map<const Eigen::VectorXd> sigma(disturbance_sigma_.data(), disturbance_columns_.cols());
+  disturbance_response_ = gain_ * (whitened_.transpose() * whitened_columns) * sigma.asDiagonal();
+  Eigen::Index column = 0;
+  for (std::size_t i = 0; i < sources_.disturbances.size(); ++i) {
+    uncertainty_sources_.push_back(
+        {sources_.disturbances[i].words, disturbance_response_.middleCols(column, amplitudes_[i])});
+    column += amplitudes_[i];
+  }
+}
+
+void RepeatedCampaign::set_linear_propagation() {
+  bias_ = gain_ * (prior_precision() * fixed_statement_);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(parameters(), parameters());
+  for (const UncertaintySource& source : uncertainty_sources_)
+    covariance += source.root * source.root.transpose();
   std::vector<Eigen::Index> rectangular;
-  for (Eigen::Index k = 0; k < response.cols(); ++k) {
-    const auto index = static_cast<std::size_t>(k);
-    if (disturbance_shape_[index] == DistributionShape::Rectangular) {
+  for (Eigen::Index k = 0; k < disturbance_response_.cols(); ++k) {
+    if (disturbance_shape_[static_cast<std::size_t>(k)] == DistributionShape::Rectangular)
       rectangular.push_back(k);
-      continue;
-    }
-    const Eigen::VectorXd moved = response.col(k) * disturbance_sigma_[index];
-    covariance += moved * moved.transpose();
   }
-  rectangular_response_.resize(parameters(), static_cast<Eigen::Index>(rectangular.size()));
-  for (std::size_t k = 0; k < rectangular.size(); ++k) {
-    rectangular_response_.col(static_cast<Eigen::Index>(k)) =
-        response.col(rectangular[k]) * disturbance_sigma_[static_cast<std::size_t>(rectangular[k])];
-  }
+  rectangular_response_ = disturbance_response_(Eigen::all, rectangular);
+  covariance -= rectangular_response_ * rectangular_response_.transpose();
   root_ = scaled_covariance_root(0.5 * (covariance + covariance.transpose()));
 }
 

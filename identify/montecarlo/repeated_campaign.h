@@ -69,6 +69,13 @@ struct CampaignDraw {
   Eigen::VectorXd roughness;  ///< share of the functions' roughness in the estimate, to be added to it
 };
 
+/// Something that scatters the estimates, independent of every other source; root root^T is its share of the
+/// covariance of (2).
+struct UncertaintySource {
+  std::string name;      ///< for the user
+  Eigen::MatrixXd root;  ///< parameters x any
+};
+
 class RepeatedCampaign {
  public:
   /// `result` must come from fit() of this campaign without a robust loss; both must outlive the object.
@@ -94,6 +101,7 @@ class RepeatedCampaign {
   const Eigen::MatrixXd& linear_root() const { return root_; }
   const Eigen::VectorXd& linear_bias() const { return bias_; }
   const Eigen::MatrixXd& response() const { return rectangular_response_; }
+  const std::vector<UncertaintySource>& uncertainty_sources() const { return uncertainty_sources_; }
   /// Covariance of (2), all sources.
   Eigen::MatrixXd linear_covariance() const;
 
@@ -111,6 +119,9 @@ class RepeatedCampaign {
   void require_determined() const;
   void set_statements();
   void add_disturbances();
+  void list_sources();
+  void list_noise();
+  void list_statements();
   void set_linear_propagation();
   bool draws_functions() const { return sources_.functions == FunctionRoughness::Drawn; }
 
@@ -127,10 +138,13 @@ class RepeatedCampaign {
   Eigen::MatrixXd gain_;      ///< C
   Eigen::VectorXd stated_;    ///< precision of what the fit is told of stations, tools, scales
   Eigen::VectorXd fixed_statement_;
-  Eigen::MatrixXd roughness_root_;       ///< R
-  Eigen::MatrixXd disturbance_columns_;  ///< G, observations x amplitudes
+  Eigen::MatrixXd roughness_root_;        ///< R
+  Eigen::MatrixXd disturbance_columns_;   ///< G, observations x amplitudes
+  std::vector<Eigen::Index> amplitudes_;  ///< of every disturbance
   std::vector<double> disturbance_sigma_;
   std::vector<DistributionShape> disturbance_shape_;
+  Eigen::MatrixXd disturbance_response_;  ///< of the estimates, times a standard deviation
+  std::vector<UncertaintySource> uncertainty_sources_;
   Eigen::MatrixXd root_;
   Eigen::VectorXd bias_;
   Eigen::MatrixXd rectangular_response_;  ///< times a standard deviation

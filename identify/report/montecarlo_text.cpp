@@ -9,64 +9,46 @@
 #include <utility>
 #include <vector>
 
+#include "volcal/identify/report/budget_text.h"
+#include "volcal/identify/report/quantity_groups.h"
 #include "volcal/identify/report/text_tables.h"
 
 namespace volcal {
 namespace {
 
-/// Quantities that are shown in one line.
-struct QuantityGroup {
+/// The values of one line.
+struct QuantityLine {
   std::string name;
   std::string unit;
   std::vector<const QuantityResult*> values;
 };
 
-std::string group_name(const Quantity& quantity) {
-  switch (quantity.kind) {
-    case QuantityKind::VolumetricError:
-      return "volume, tool " + quantity.tool + ", " + quantity.name;
-    case QuantityKind::VolumetricRms:
-    case QuantityKind::VolumetricMax:
-      return "volume, tool " + quantity.tool + ", |e| " + quantity.name;
-    default:
-      return quantity.name;
-  }
+QuantityLine line_of(const MonteCarloResult& result, const QuantityGroup& group) {
+  QuantityLine line{group.name, group.unit, {}};
+  for (const std::size_t i : group.values) line.values.push_back(&result.quantities[i]);
+  return line;
 }
 
-std::vector<QuantityGroup> grouped(const MonteCarloResult& result) {
-  std::vector<QuantityGroup> groups;
-  for (const QuantityResult& value : result.quantities) {
-    const std::string name = group_name(value.quantity);
-    auto group = std::ranges::find(groups, name, &QuantityGroup::name);
-    if (group == groups.end()) {
-      groups.push_back({name, value.quantity.unit, {}});
-      group = groups.end() - 1;
-    }
-    group->values.push_back(&value);
-  }
-  return groups;
-}
-
-std::string ratio_words(const QuantityGroup& group) {
+std::string ratio_words(const QuantityLine& line) {
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
-  for (const QuantityResult* value : group.values) {
+  for (const QuantityResult* value : line.values) {
     if (!(value->u_linear > 0.0)) return "-";
     low = std::min(low, value->u / value->u_linear);
     high = std::max(high, value->u / value->u_linear);
   }
-  return group.values.size() == 1 ? fixed_number(low, 4)
-                                  : fixed_number(low, 4) + " .. " + fixed_number(high, 4);
+  return line.values.size() == 1 ? fixed_number(low, 4)
+                                 : fixed_number(low, 4) + " .. " + fixed_number(high, 4);
 }
 
-std::string verdict_words(const QuantityGroup& group) {
+std::string verdict_words(const QuantityLine& line) {
   std::size_t validated = 0;
   LinearVerdict worst = LinearVerdict::Validated;
-  for (const QuantityResult* value : group.values) {
+  for (const QuantityResult* value : line.values) {
     validated += value->verdict == LinearVerdict::Validated ? 1U : 0U;
     worst = std::max(worst, value->verdict);
   }
   if (worst == LinearVerdict::Validated || validated == 0) return std::string(to_string(worst));
-  return fmt::format("{}, {} of {}", to_string(worst), group.values.size() - validated, group.values.size());
+  return fmt::format("{}, {} of {}", to_string(worst), line.values.size() - validated, line.values.size());
 }
 
 std::string quantity_table(const MonteCarloResult& result) {
@@ -81,18 +63,19 @@ std::string quantity_table(const MonteCarloResult& result) {
        {"+-"},
        {"linear propagation", Align::Left}},
       "Standard uncertainties (the largest of each line) by linear propagation and by Monte Carlo");
-  for (const QuantityGroup& group : grouped(result)) {
+  for (const QuantityGroup& group : quantity_groups(result)) {
+    const QuantityLine line = line_of(result, group);
     const auto by_u = [](const QuantityResult* a, const QuantityResult* b) { return a->u < b->u; };
     const auto by_bias = [](const QuantityResult* a, const QuantityResult* b) {
       return std::abs(a->bias) < std::abs(b->bias);
     };
-    const QuantityResult& widest = **std::ranges::max_element(group.values, by_u);
-    const QuantityResult& biased = **std::ranges::max_element(group.values, by_bias);
+    const QuantityResult& widest = **std::ranges::max_element(line.values, by_u);
+    const QuantityResult& biased = **std::ranges::max_element(line.values, by_bias);
     const double unit = widest.quantity.si_per_unit;
-    table.add_row({group.name, std::to_string(group.values.size()), group.unit,
-                   short_number(widest.u_linear / unit), short_number(widest.u / unit), ratio_words(group),
+    table.add_row({line.name, std::to_string(line.values.size()), line.unit,
+                   short_number(widest.u_linear / unit), short_number(widest.u / unit), ratio_words(line),
                    short_number(biased.bias / unit, 2), short_number(biased.bias_error / unit, 1),
-                   verdict_words(group)});
+                   verdict_words(line)});
   }
   return table.text();
 }
@@ -170,7 +153,7 @@ std::string verdict_text(const MonteCarloResult& result) {
 std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
-  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result);
+  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result);
 }
 
 }  // namespace volcal

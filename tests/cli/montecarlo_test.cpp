@@ -98,6 +98,9 @@ TEST_F(MonteCarloCommand, WritesDistributionsOfEveryQuantity) {
     EXPECT_LE(quantity.at("shortest")[1].get<double>() - quantity.at("shortest")[0].get<double>(),
               quantity.at("symmetric")[1].get<double>() - quantity.at("symmetric")[0].get<double>() + 1e-12);
   }
+  EXPECT_EQ(json.at("sources").size(), json.at("quantities")[0].at("u_of_sources").size());
+  EXPECT_THAT(run.output, HasSubstr("] noise of laser-tracer\n"));
+  EXPECT_THAT(run.output, HasSubstr("If one source were half as large"));
   EXPECT_GT(kinds["table"], 300);
   EXPECT_GT(kinds["parameter"], 3);
   EXPECT_GT(kinds["volumetric"], 70);

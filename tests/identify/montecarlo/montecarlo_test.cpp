@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -17,6 +19,7 @@
 #include "volcal/identify/solve/normal_equations.h"
 #include "volcal/identify/tables/error_tables.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
 
@@ -115,6 +118,33 @@ INSTANTIATE_TEST_SUITE_P(Paths, HandWorked,
                          ::testing::Values(DrawPath::Linear, DrawPath::Chord, DrawPath::Refit),
                          [](const auto& tested) { return std::string(to_string(tested.param)); });
 
+// A wrong scale moves the slope by itself; noise by its share in the regression.
+TEST(Budget, SlopeOfLinesWithASharedScale) {
+  const LinesOfOneLaser lines;
+  const FitResult result = fit(lines.campaign, lines.model, lines.options);
+  MonteCarloOptions options;
+  options.draws = 1000;
+  options.refits = 0;
+  options.path = DrawPath::Linear;
+  options.sources.disturbances.push_back(
+      {effect_spec("length-scale", {{"target", std::string("readings")}}), 0.2e-6, "length scale unknown"});
+  const MonteCarloResult study = studied(lines.campaign, result, options);
+  const auto value = std::ranges::find_if(
+      study.quantities, [](const QuantityResult& each) { return each.quantity.words() == "EXX at 1000 mm"; });
+  const Eigen::Index row = value - study.quantities.begin();
+  std::map<std::string, double> u;
+  for (std::size_t s = 0; s < study.budget.sources.size(); ++s)
+    u[study.budget.sources[s]] += study.budget.u(row, static_cast<Eigen::Index>(s));
+  const double noise = std::sqrt(std::pow(LinesOfOneLaser::slope_u(), 2) - kScale * kScale);
+  EXPECT_NEAR(u.at("noise of displacement") / noise, 1.0, 1e-6);
+  EXPECT_NEAR(u.at("prior of length scale laser") / kScale, 1.0, 1e-6);
+  EXPECT_NEAR(u.at("length scale unknown") / 0.2e-6, 1.0, 1e-6);
+  const auto scale = std::ranges::find(study.budget.sources, "prior of length scale laser");
+  const double halved =
+      study.budget.u_with_half_of(static_cast<std::size_t>(scale - study.budget.sources.begin()))[row];
+  EXPECT_NEAR(halved / std::sqrt(noise * noise + 0.25 * kScale * kScale + 0.04e-12), 1.0, 1e-6);
+}
+
 /// Readings of a tracer on a grid; its fit with smoothed functions.
 class TracerStudy : public ::testing::Test {
  protected:
@@ -157,6 +187,21 @@ TEST_F(TracerStudy, LinearPropagationIsTheCovarianceOfTheFit) {
     const double fitted = rows.row(i).dot(result().covariance * rows.row(i).transpose());
     const double drawn = rows.row(i).dot(covariance * rows.row(i).transpose());
     EXPECT_NEAR(std::sqrt(drawn), std::sqrt(fitted), 5e-3 * std::sqrt(fitted) + 1e-12) << i;
+  }
+}
+
+TEST_F(TracerStudy, ContributionsOfTheBudgetAddUp) {
+  MonteCarloOptions options;
+  options.draws = 1000;
+  options.refits = 0;
+  options.path = DrawPath::Linear;
+  const MonteCarloResult study = studied(campaign(), result(), options);
+  const Eigen::VectorXd sum = study.budget.u.rowwise().norm();
+  ASSERT_GE(study.budget.sources.size(), 3U);
+  for (std::size_t i = 0; i < study.quantities.size(); ++i) {
+    const QuantityResult& value = study.quantities[i];
+    EXPECT_NEAR(sum[static_cast<Eigen::Index>(i)], value.u_linear, 1e-6 * value.u_linear + 1e-15)
+        << value.quantity.words();
   }
 }
 

@@ -20,6 +20,7 @@
 #include "volcal/identify/io/montecarlo_writer.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/report/montecarlo_text.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
@@ -160,11 +161,12 @@ void draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarlo
 }
 
 void write_study(const MonteCarloArguments& arguments, const std::string& json,
-                 const MonteCarloResult& result) {
+                 const MonteCarloResult& result, const Machine& machine) {
   AtomicFolder folder(arguments.output);
   folder.write("montecarlo.json", json);
   folder.write("montecarlo.csv", montecarlo_csv(result));
   folder.write("montecarlo.txt", montecarlo_text(result));
+  if (report_available()) folder.write("report.html", report_html(result, machine));
   folder.commit();
 }
 
@@ -189,7 +191,7 @@ int run_montecarlo(const MonteCarloArguments& arguments) {
   bar.finish();
   const MonteCarloResult result = study.result();
   const std::string json = montecarlo_json(result);
-  write_study(arguments, json, result);
+  write_study(arguments, json, result, campaign.machine);
   remove_checkpoint(checkpoint);
   if (arguments.json) {
     fmt::print("{}", json);
@@ -226,9 +228,9 @@ std::function<int()> define_montecarlo(CLI::App& app) {
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option("-m,--model", arguments->model,
                  "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
-  app.add_option(
-         "-o,--output", arguments->output,
-         "folder for montecarlo.json, .csv and .txt; an interrupted study is kept in OUTPUT.checkpoint")
+  app.add_option("-o,--output", arguments->output,
+                 "folder for montecarlo.json, .csv, .txt and report.html; an interrupted study is kept in "
+                 "OUTPUT.checkpoint")
       ->required();
   define_draws(app, arguments->options);
   app.add_option("--path", arguments->path,

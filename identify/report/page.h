@@ -1,6 +1,7 @@
 #pragma once
-/// Sections of the reports, of a result and of a diagnosis. A new section is one file in pages/ with a
-/// builder, one line in pages.cpp, and a renderer of the same kind with one line in web/src/pages.js.
+/// Sections of the reports, of a result, a diagnosis and a Monte Carlo study. A new section is one file in
+/// pages/ with a builder, one line in pages.cpp, and a renderer of the same kind with one line in
+/// web/src/pages.js.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/volume_error.h"
 
@@ -53,6 +55,17 @@ struct DiagnosisInput {
   const Diagnosis& diagnosis;
   const Campaign& campaign;
 };
+
+/// What a section of a Monte Carlo study's report is made from.
+struct MonteCarloPageInput {
+  const MonteCarloResult& study;
+};
+
+using MonteCarloPage = PageOf<MonteCarloPageInput>;
+std::span<const MonteCarloPage> montecarlo_pages();
+
+Json uncertainties_page(const MonteCarloPageInput& input);
+Json budget_page(const MonteCarloPageInput& input);
 
 using DiagnosisPage = PageOf<DiagnosisInput>;
 std::span<const DiagnosisPage> diagnosis_pages();

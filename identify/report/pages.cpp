@@ -32,9 +32,15 @@ constexpr std::array kDiagnosisPages = {
     DiagnosisPage{"noise_model", "Noise model", noise_model_page},
 };
 
+constexpr std::array kMonteCarloPages = {
+    MonteCarloPage{"uncertainties", "Linear propagation and Monte Carlo", uncertainties_page},
+    MonteCarloPage{"budget", "Where the uncertainty comes from", budget_page},
+};
+
 }  // namespace
 
 std::span<const Page> pages() { return kPages; }
 std::span<const DiagnosisPage> diagnosis_pages() { return kDiagnosisPages; }
+std::span<const MonteCarloPage> montecarlo_pages() { return kMonteCarloPages; }
 
 }  // namespace volcal::report

@@ -110,4 +110,13 @@ std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign, co
                      report_json(diagnosis, campaign, options));
 }
 
+std::string report_json(const MonteCarloResult& study, const Machine& machine, const ReportOptions& options) {
+  return document(machine.name, "How sure the identified errors are", options, report::montecarlo_pages(),
+                  report::MonteCarloPageInput{study});
+}
+
+std::string report_html(const MonteCarloResult& study, const Machine& machine, const ReportOptions& options) {
+  return filled_page(machine.name + " \u2013 volcal Monte Carlo", report_json(study, machine, options));
+}
+
 }  // namespace volcal

@@ -1,6 +1,6 @@
 #pragma once
-/// The reports of a result and of a diagnosis: each one self-contained HTML page with interactive plots,
-/// readable without a network.
+/// The reports of a result, of a diagnosis and of a Monte Carlo study: each one self-contained HTML page with
+/// interactive plots, readable without a network.
 ///
 /// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/description/campaign.h"
 
@@ -33,6 +34,12 @@ std::string report_html(const FitResult& result, const Campaign& campaign, const
 std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign,
                         const ReportOptions& options = {});
 std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign,
+                        const ReportOptions& options = {});
+
+/// The same for a Monte Carlo study of the machine.
+std::string report_json(const MonteCarloResult& study, const Machine& machine,
+                        const ReportOptions& options = {});
+std::string report_html(const MonteCarloResult& study, const Machine& machine,
                         const ReportOptions& options = {});
 
 }  // namespace volcal

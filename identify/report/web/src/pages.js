@@ -1,6 +1,7 @@
 // Renderers by kind of section; the C++ side has the matching table in pages.cpp.
 import { renderAddedVariable } from './pages/added_variable.js';
 import { renderAutocorrelation } from './pages/autocorrelation.js';
+import { renderBudget } from './pages/budget.js';
 import { renderComputation } from './pages/computation.js';
 import { renderConfounding } from './pages/confounding.js';
 import { renderDetectable } from './pages/detectable.js';
@@ -19,6 +20,7 @@ import { renderResolution } from './pages/resolution.js';
 import { renderSetups } from './pages/setups.js';
 import { renderStory } from './pages/story.js';
 import { renderSummary } from './pages/summary.js';
+import { renderUncertainties } from './pages/uncertainties.js';
 import { renderVolume } from './pages/volume.js';
 
 export const renderers = {
@@ -43,4 +45,6 @@ export const renderers = {
   autocorrelation: renderAutocorrelation,
   detectable: renderDetectable,
   noise_model: renderNoiseModel,
+  uncertainties: renderUncertainties,
+  budget: renderBudget,
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/draw_ranks.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
@@ -43,6 +44,11 @@ struct MonteCarloArguments {
   bool resume = false;
   bool json = false;
 };
+
+/// Of the ranks that share the draws.
+bool is_first(const MonteCarloArguments& arguments) {
+  return arguments.options.team == nullptr || arguments.options.team->rank() == 0;
+}
 
 DrawPath draw_path(const std::string& name) {
   for (const DrawPath path : {DrawPath::Linear, DrawPath::Chord, DrawPath::Refit}) {
@@ -146,6 +152,7 @@ void require_draws_left(const MonteCarloArguments& arguments, const std::string&
                    "give -n as before or larger");
 }
 
+/// Every rank draws; the first reports and keeps checkpoints.
 void draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloStudy& study) {
   using Clock = std::chrono::steady_clock;
   const std::string checkpoint = checkpoint_path(arguments);
@@ -153,6 +160,7 @@ void draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarlo
   Clock::time_point kept = Clock::now();
   while (!study.done()) {
     study.run_block();
+    if (!is_first(arguments)) continue;
     progress.update(study);
     if (std::chrono::duration<double>(Clock::now() - kept).count() < arguments.checkpoint_s) continue;
     write_checkpoint(checkpoint, study.fingerprint(), study.save());
@@ -170,13 +178,9 @@ void write_study(const MonteCarloArguments& arguments, const std::string& json,
   folder.commit();
 }
 
-int run_montecarlo(const MonteCarloArguments& arguments) {
-  require_output_folder(arguments.output);
-  const std::string checkpoint = checkpoint_path(arguments);
-  if (!arguments.resume) require_no_checkpoint(checkpoint);
-  const Campaign campaign = read_campaign(arguments.campaign);
-  ProgressBar bar("montecarlo");
-  const FitResult fit_result = fitted(arguments, campaign, bar);
+/// A study whose draws are all made.
+MonteCarloResult drawn(const MonteCarloArguments& arguments, const Campaign& campaign,
+                       const FitResult& fit_result, ProgressBar& bar) {
   MonteCarloOptions options = arguments.options;
   options.path = draw_path(arguments.path);
   options.sources.functions =
@@ -185,22 +189,36 @@ int run_montecarlo(const MonteCarloArguments& arguments) {
     options.sources.disturbances.push_back(disturbance(text, campaign));
   bar.update("refits", 0.0);
   MonteCarloStudy study(campaign, fit_result, options);
+  const std::string checkpoint = checkpoint_path(arguments);
   if (arguments.resume) restore(checkpoint, study);
   require_draws_left(arguments, checkpoint, study);
   draw_all(arguments, bar, study);
   bar.finish();
-  const MonteCarloResult result = study.result();
+  return study.result();
+}
+
+int run_montecarlo(MonteCarloArguments arguments) {
+  const std::unique_ptr<DrawTeam> ranks = draw_ranks();
+  arguments.options.team = ranks.get();
+  require_output_folder(arguments.output);
+  if (!arguments.resume) require_no_checkpoint(checkpoint_path(arguments));
+  const Campaign campaign = read_campaign(arguments.campaign);
+  ProgressBar bar("montecarlo");
+  const FitResult fit_result = fitted(arguments, campaign, bar);
+  const MonteCarloResult result = drawn(arguments, campaign, fit_result, bar);
+  const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
+                        (!result.adaptive || result.settled);
+  const int exit_code = complete ? kDone : kIncomplete;
+  if (!is_first(arguments)) return exit_code;
   const std::string json = montecarlo_json(result);
   write_study(arguments, json, result, campaign.machine);
-  remove_checkpoint(checkpoint);
+  remove_checkpoint(checkpoint_path(arguments));
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
     fmt::print("{}\nwritten: {}\n", montecarlo_text(result), arguments.output);
   }
-  const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
-                        (!result.adaptive || result.settled);
-  return complete ? kDone : kIncomplete;
+  return exit_code;
 }
 
 void define_draws(CLI::App& app, MonteCarloOptions& options) {
@@ -267,7 +285,8 @@ const Command& montecarlo_command() {
       "  volcal montecarlo campaign.toml --model model.toml --path chord -n 100000 --seed 7 -o uncertainty\n"
       "  volcal montecarlo campaign.toml -n 100000 --functions fixed -o scatter\n"
       "  volcal montecarlo campaign.toml --disturb \"station-drift:station P1=0.5\" -o drifting\n"
-      "  volcal montecarlo campaign.toml -o uncertainty --resume\n",
+      "  volcal montecarlo campaign.toml -o uncertainty --resume\n"
+      "  mpirun -n 4 volcal montecarlo campaign.toml -n 1000000 --threads 8 -o uncertainty\n",
       define_montecarlo};
   return command;
 }

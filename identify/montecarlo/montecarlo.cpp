@@ -15,6 +15,7 @@
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/normal.h"
 #include "volcal/identify/stats/threads.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -96,39 +97,19 @@ class MonteCarloStudy::Work {
     }
     check_paths();
     path_ = options_.path == DrawPath::Automatic ? supported_path() : options_.path;
+    require_same_numbers();
   }
 
   void run_block() {
-    const std::uint64_t block = draws_of_block(path_),
-                        of_batch = std::max<std::uint64_t>(1, block / kBatches);
-    std::uint64_t count = block;
-    if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
-    const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);
-    std::vector<Moments> moments(batches);
-    SolverTally tally;
-    std::mutex counting;
-    const std::uint64_t first = sums_.draws();
-    run_parallel(batches, threads_, [&](std::size_t batch) {
-      const std::uint64_t from = batch * of_batch;
-      SolverTally own;
-      const Eigen::ArrayXXd t =
-          draw_batch(first + from, static_cast<Eigen::Index>(std::min(of_batch, count - from)), own);
-      moments[batch] = Moments::of(t);
-      auto counts = histograms_.take([this] { return std::make_unique<Histograms>(set_.items.size()); });
-      counts->add(t);
-      histograms_.give_back(std::move(counts));
-      const std::lock_guard lock(counting);
-      tally.add(own);
-    });
-    for (std::size_t batch = 1; batch < batches; ++batch) moments[0].add(moments[batch]);
-    Histograms& counts = *histograms_.idle().front();
-    for (std::size_t i = 1; i < histograms_.idle().size(); ++i) {
-      counts.add(*histograms_.idle()[i]);
-      histograms_.idle()[i]->clear();
-    }
-    sums_.add(moments[0], counts);
-    counts.clear();
-    tally_.add(tally);
+    BlockShare block = draw_share();
+    if (options_.team != nullptr)
+      block = joined(options_.team->gather(bytes_of(block)), block.moments.size());
+    for (std::size_t batch = 1; batch < block.moments.size(); ++batch)
+      block.moments[0].add(block.moments[batch]);
+    sums_.add(block.moments[0], *block.counts);
+    tally_.add(block.tally);
+    block.counts->clear();
+    histograms_.give_back(std::move(block.counts));
   }
 
   bool settled() const {
@@ -211,6 +192,98 @@ class MonteCarloStudy::Work {
     visit(tally_.refitted);
     visit(tally_.not_converged);
     visit(tally_.to_come);
+  }
+
+  /// Of the batches of a block, those of one rank or of all; moments of others are empty.
+  struct BlockShare {
+    std::vector<Moments> moments;  ///< by batch
+    std::unique_ptr<Histograms> counts;
+    SolverTally tally;
+
+    /// Batches of `rank` in plain arrays.
+    template <class Visit>
+    void visit(std::size_t rank, std::size_t ranks, Visit& each) {
+      for (std::size_t batch = rank; batch < moments.size(); batch += ranks) {
+        each(moments[batch].draws);
+        each(moments[batch].sum);
+        each(moments[batch].squares);
+      }
+      each(counts->counts());
+      each(tally.steps);
+      each(tally.refitted);
+      each(tally.not_converged);
+      each(tally.to_come);
+    }
+  };
+
+  std::size_t rank() const { return options_.team == nullptr ? 0 : options_.team->rank(); }
+  std::size_t ranks() const { return options_.team == nullptr ? 1 : options_.team->size(); }
+  std::unique_ptr<Histograms> empty_histograms() {
+    return histograms_.take([this] { return std::make_unique<Histograms>(set_.items.size()); });
+  }
+
+  /// This rank's batches of the next block.
+  BlockShare draw_share() {
+    const std::uint64_t block = draws_of_block(path_),
+                        of_batch = std::max<std::uint64_t>(1, block / kBatches);
+    std::uint64_t count = block;
+    if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
+    const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);
+    BlockShare share{std::vector<Moments>(batches, Moments(set_.items.size())), nullptr, {}};
+    std::mutex counting;
+    const std::uint64_t first = sums_.draws();
+    const std::size_t own = batches > rank() ? (batches - rank() + ranks() - 1) / ranks() : 0;
+    run_parallel(own, threads_, [&](std::size_t k) {
+      const std::size_t batch = rank() + k * ranks();
+      const std::uint64_t from = batch * of_batch;
+      SolverTally tally;
+      const Eigen::ArrayXXd t =
+          draw_batch(first + from, static_cast<Eigen::Index>(std::min(of_batch, count - from)), tally);
+      share.moments[batch] = Moments::of(t);
+      auto counts = empty_histograms();
+      counts->add(t);
+      histograms_.give_back(std::move(counts));
+      const std::lock_guard lock(counting);
+      share.tally.add(tally);
+    });
+    share.counts = empty_histograms();
+    for (const auto& counts : histograms_.idle()) {
+      share.counts->add(*counts);
+      counts->clear();
+    }
+    return share;
+  }
+
+  std::string bytes_of(BlockShare& share) const {
+    StateWriter writer;
+    share.visit(rank(), ranks(), writer);
+    return writer.take();
+  }
+
+  BlockShare joined(const std::vector<std::string>& shares, std::size_t batches) {
+    BlockShare block{std::vector<Moments>(batches, Moments(set_.items.size())), empty_histograms(), {}};
+    BlockShare one{block.moments, std::make_unique<Histograms>(set_.items.size()), {}};
+    for (std::size_t from = 0; from < shares.size(); ++from) {
+      StateReader reader(shares[from]);
+      one.visit(from, shares.size(), reader);
+      for (std::size_t batch = from; batch < batches; batch += shares.size())
+        block.moments[batch] = one.moments[batch];
+      block.counts->add(*one.counts);
+      block.tally.add(one.tally);
+    }
+    return block;
+  }
+
+  /// Ranks on unlike processors would draw from unlike machines.
+  void require_same_numbers() {
+    if (options_.team == nullptr) return;
+    const std::string own = std::to_string(fingerprint());
+    const std::vector<std::string> all = options_.team->gather(own);
+    const auto other = std::ranges::find_if(all, [&](const std::string& each) { return each != all[0]; });
+    if (other == all.end()) return;
+    throw InputError({},
+                     "rank " + std::to_string(other - all.begin()) + " computes other numbers than rank 0",
+                     "start all ranks with the same program and files, on processors of one kind");
   }
 
   Eigen::ArrayXXd draw_batch(std::uint64_t first, Eigen::Index count, SolverTally& tally) {

@@ -8,8 +8,9 @@
 /// draw, on a sample.
 ///
 /// Draws are numbered. Their random numbers depend on seed and number alone, and blocks of draws enter the
-/// sums in their order, so that the same seed gives the same bits for any number of threads, and for a run
-/// that was interrupted and resumed.
+/// sums in their order, so that the same seed gives the same bits for any number of threads and ranks, and
+/// for a run that was interrupted and resumed. A block has 40 batches: that many threads, over all ranks,
+/// have work.
 
 #include <cstdint>
 #include <memory>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "volcal/identify/montecarlo/draw_sums.h"
+#include "volcal/identify/montecarlo/draw_team.h"
 #include "volcal/identify/montecarlo/quantities.h"
 #include "volcal/identify/montecarlo/repeated_campaign.h"
 #include "volcal/identify/montecarlo/uncertainty_budget.h"
@@ -36,6 +38,7 @@ struct MonteCarloOptions {
   int refits = 20;        ///< sample on which the paths are compared
   int grid_per_axis = 3;  ///< points of the volume
   DrawnSources sources;
+  DrawTeam* team = nullptr;  ///< that shares the draws; must outlive the study; none = this process alone
 };
 
 /// How far a path is from refits of the same draws.
@@ -103,7 +106,8 @@ struct MonteCarloResult {
 class MonteCarloStudy {
  public:
   /// `result` must come from fit() of the campaign, without a robust loss; both must outlive the object. The
-  /// sample of refits is made here. Throws InputError (repeated_campaign.h).
+  /// sample of refits is made here. Throws InputError (repeated_campaign.h), and where ranks of the team do
+  /// not compute the same numbers.
   MonteCarloStudy(const Campaign& campaign, const FitResult& result, MonteCarloOptions options);
   ~MonteCarloStudy();
 

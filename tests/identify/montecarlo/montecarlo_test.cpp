@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <barrier>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "volcal/identify/montecarlo/campaign_refit.h"
 #include "volcal/identify/montecarlo/chord_solver.h"
@@ -343,6 +346,75 @@ TEST_F(TracerStudy, ThreadsDoNotChangeABit) {
       EXPECT_EQ(study.save(), one) << to_string(path) << ", " << threads << " threads";
     }
   }
+}
+
+/// Two ranks as two threads of this process.
+class TwoRanks {
+ public:
+  class Rank final : public DrawTeam {
+   public:
+    Rank(TwoRanks& both, std::size_t rank) : both_(both), rank_(rank) {}
+    std::size_t rank() const override { return rank_; }
+    std::size_t size() const override { return 2; }
+    std::vector<std::string> gather(const std::string& own) override {
+      both_.given_[rank_] = own;
+      both_.all_here_.arrive_and_wait();
+      std::vector<std::string> all(both_.given_.begin(), both_.given_.end());
+      both_.all_here_.arrive_and_wait();
+      return all;
+    }
+
+   private:
+    TwoRanks& both_;
+    std::size_t rank_;
+  };
+
+ private:
+  std::array<std::string, 2> given_;
+  std::barrier<> all_here_{2};
+};
+
+TEST_F(TracerStudy, RanksDoNotChangeABit) {
+  for (const DrawPath path : {DrawPath::Linear, DrawPath::Chord}) {
+    MonteCarloOptions options;
+    options.path = path;
+    options.refits = 1;
+    options.threads = 1;
+    options.draws = path == DrawPath::Linear ? 20250 : 1010;  // a last block of one batch
+    MonteCarloStudy alone(campaign(), result(), options);
+    while (!alone.done()) alone.run_block();
+    TwoRanks ranks;
+    std::array<std::string, 2> states;
+    const auto run = [&](std::size_t rank) {
+      TwoRanks::Rank team(ranks, rank);
+      MonteCarloOptions own = options;
+      own.team = &team;
+      MonteCarloStudy study(campaign(), result(), own);
+      while (!study.done()) study.run_block();
+      states[rank] = study.save();
+    };
+    std::thread other(run, 1);
+    run(0);
+    other.join();
+    EXPECT_EQ(states[0], alone.save()) << to_string(path);
+    EXPECT_EQ(states[1], alone.save()) << to_string(path);
+  }
+}
+
+TEST_F(TracerStudy, RanksThatComputeOtherNumbersAreRefused) {
+  TwoRanks ranks;
+  const auto refused = [&](std::size_t rank) {
+    TwoRanks::Rank team(ranks, rank);
+    MonteCarloOptions own;
+    own.path = DrawPath::Linear;
+    own.refits = 0;
+    own.seed = 1 + rank;
+    own.team = &team;
+    EXPECT_THROW(MonteCarloStudy(campaign(), result(), own), InputError);
+  };
+  std::thread other(refused, 1);
+  refused(0);
+  other.join();
 }
 
 TEST_F(TracerStudy, ResumedStudyIsTheUninterruptedOne) {

@@ -15,6 +15,7 @@ namespace volcal::cli {
   COMMAND(diagnose_command)      \
   COMMAND(extend_command)        \
   COMMAND(tables_command)        \
+  COMMAND(compensate_command)    \
   COMMAND(study_command)
 
 #define VOLCAL_DECLARE(name) const Command& name();

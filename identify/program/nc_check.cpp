@@ -1,0 +1,117 @@
+#include "volcal/identify/program/nc_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace volcal {
+namespace {
+
+/// Places along a written segment at which errors are taken, and their weights (Gauss-Legendre of three
+/// points; the end counts for the maximum alone).
+constexpr std::array<double, 4> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417, 1.0};
+constexpr std::array<double, 4> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0, 0.0};
+
+Eigen::Vector3d value_of(const ErrorField& field, const Eigen::Vector3d& at,
+                         const ApproachDirection& directions) {
+  return field({at.x(), at.y(), at.z(), 0.0, 0.0, 0.0}, directions);
+}
+
+void add_time(const NcStep& step, PathErrors& errors) {
+  for (const NcMotion& motion : step.motions) {
+    if (motion.kind != NcMotionKind::Rapid) errors.feed_time += motion.duration;
+  }
+  const bool dwell = step.commands.non_modal == 40;
+  if (dwell) errors.feed_time += step.commands.value_or_zero('P');
+}
+
+}  // namespace
+
+NcCheck::NcCheck(const ProgramErrors& errors, NcSetup setup, FunctionalPoint functional_point)
+    : errors_(errors),
+      functional_point_(std::move(functional_point)),
+      original_(setup, "the program"),
+      written_(std::move(setup), "the rewritten program") {}
+
+void NcCheck::Sum::take(const Eigen::Vector3d& error, double weight, std::int64_t line,
+                        const Eigen::Vector3d& place) {
+  squares += weight * error.squaredNorm();
+  if (error.norm() <= errors.max) return;
+  errors.max = error.norm();
+  errors.line_of_max = line;
+  errors.place_of_max = place;
+}
+
+PathErrors NcCheck::figures(const Sum& sum) const {
+  PathErrors errors = sum.errors;
+  errors.rms = length_ > 0.0 ? std::sqrt(sum.squares / length_) : 0.0;
+  return errors;
+}
+
+void NcCheck::use_functional_point() {
+  const Eigen::Vector3d point = functional_point_.at(original_.state());
+  if (field_point_ && *field_point_ == point) return;
+  field_point_ = point;
+  field_ = errors_.field(point);
+}
+
+/// Directions in which the original moves at t.
+void NcCheck::turn_at(const NcMotion& original, double t) {
+  constexpr double kAside = 1e-4;
+  if (original.kind == NcMotionKind::Arc) {
+    turn_directions(original.point(t + kAside) - original.point(t - kAside), directions_);
+  } else {
+    turn_directions(original.to - original.from, directions_);
+  }
+}
+
+/// Errors along one written feed motion, which stands for the original from t_from to t_to.
+void NcCheck::compare(const NcMotion& original, const NcMotion& written, double t_from, double t_to) {
+  const double length = (t_to - t_from) * original.length();
+  const std::int64_t line = original_.place().line;
+  turn_at(original, 0.5 * (t_from + t_to));
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    const Eigen::Vector3d place = original.point(t_from + kPlaces[i] * (t_to - t_from));
+    const Eigen::Vector3d command = written.point(kPlaces[i]);
+    before_.take(value_of(field_, place, directions_), kWeights[i] * length, line, place);
+    const bool jumps =
+        t_to <= t_from && kWeights[i] > 0.0;  // on its way from one direction's command to the other's
+    if (jumps) continue;
+    after_.take(command + value_of(field_, command, directions_) - place, kWeights[i] * length, line, place);
+  }
+  length_ += length;
+}
+
+/// The direction that a rapid leaves behind.
+void NcCheck::pass(const NcMotion& motion, const std::array<bool, 3>& known_before) {
+  if (motion.kind != NcMotionKind::Rapid) return;
+  Eigen::Vector3d moved = motion.to - motion.from;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!known_before[k]) moved[static_cast<Eigen::Index>(k)] = 0.0;
+  }
+  turn_directions(moved, directions_);
+}
+
+void NcCheck::add(std::string_view line, std::span<const NcWrittenLine> written) {
+  const std::array<bool, 3> known_before = original_.state().known;
+  const NcStep& original = original_.execute(line);
+  add_time(original, before_.errors);
+  if (!original.motions.empty()) use_functional_point();
+  double reached = 0.0;
+  std::size_t passed = 0;
+  for (const NcWrittenLine& text : written) {
+    const NcStep& step = written_.execute(text.text);
+    add_time(step, after_.errors);
+    for (const NcMotion& motion : step.motions) {
+      if (motion.kind != NcMotionKind::Feed) continue;
+      const double index = text.at > reached ? std::ceil(text.at) - 1.0 : std::floor(text.at);
+      const auto i = static_cast<std::size_t>(index);
+      for (; passed < i; ++passed) pass(original.motions.at(passed), known_before);
+      compare(original.motions.at(i), motion, std::max(reached - index, 0.0), text.at - index);
+    }
+    reached = text.at;
+  }
+  for (; passed < original.motions.size(); ++passed) pass(original.motions[passed], known_before);
+}
+
+}  // namespace volcal

@@ -1,0 +1,66 @@
+#pragma once
+/// Writes motions into the text of their block: coordinates are replaced in place, everything else is kept.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/program/nc_interpreter.h"
+
+namespace volcal {
+
+/// A straight motion that is to be written, or a dwell.
+struct NcTarget {
+  NcMotionKind kind = NcMotionKind::Rapid;            ///< not Arc
+  Eigen::Vector3d command = Eigen::Vector3d::Zero();  ///< axis positions, m
+  double dwell = 0.0;                                 ///< s
+  double at = 0.0;  ///< place on the programmed path: index of the motion in its block + 0..1 along it
+};
+
+/// A written line with its line end; `at` as in NcTarget.
+struct NcWrittenLine {
+  std::string text;
+  double at = 0.0;
+};
+
+/// Keeps what the control that runs the written program holds: its positions, and with them its offsets.
+class NcWriter {
+ public:
+  /// Digits behind the point of coordinates in mm and inch; at least 4 and 5.
+  NcWriter(const NcSetup& setup, int decimals_mm);
+
+  const NcState& state() const { return state_; }
+
+  /// A block that moves nothing: copied.
+  void copy(const NcStep& step, std::string_view line, const NcSetup& setup, const NcPlace& place,
+            std::vector<NcWrittenLine>& lines);
+  /// A block with motions; `known`: axes that may be written. Coordinates are rounded to the last digit each
+  /// by itself: rounding does not add up, also under G91.
+  void write(const NcStep& step, const NcSetup& setup, const NcPlace& place, const std::array<bool, 3>& known,
+             std::span<const NcTarget> targets, std::vector<NcWrittenLine>& lines);
+
+ private:
+  struct AxisText {
+    bool wanted = false;
+    double value = 0.0;  ///< as written, in units of length
+  };
+  using AxisTexts = std::array<AxisText, 3>;
+
+  AxisTexts axis_texts(const NcStep& step, const NcTarget& target, bool first,
+                       const std::array<bool, 3>& known, const NcPlace& place);
+  void write_first(const NcStep& step, const NcTarget& target, AxisTexts& axes, bool keeps_stop, double feed,
+                   std::string& out);
+  void write_further(const NcStep& step, const NcTarget& target, const AxisTexts& axes, double feed,
+                     std::string& out);
+  void append_axis(std::size_t axis, AxisText& text, std::string& out) const;
+  void append_motion_code(int needed, std::string& out);
+  double feed_of_segment(const NcStep& step, double length, double total) const;
+  double written_length(std::span<const NcTarget> targets) const;
+
+  int decimals() const;
+  NcState state_;
+  int decimals_mm_;
+  std::string line_end_ = "\n";
+};
+
+}  // namespace volcal

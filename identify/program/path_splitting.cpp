@@ -1,0 +1,166 @@
+#include "volcal/identify/program/path_splitting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace volcal {
+namespace {
+
+constexpr double kShareOfNodes = 0.25;  ///< of the tolerance
+constexpr double kShareOfChoice = 0.5;
+constexpr double kLebesgue = 1.25;
+constexpr std::array<double, 3> kSteepnessPlaces = {0.02, 0.5, 0.98};  ///< of a piece or a travel
+
+/// Bound of the norm of the second derivative by t, on [0, 1], of the quartic through five equidistant
+/// values.
+double second_derivative_bound(const std::array<Eigen::Vector3d, 5>& f) {
+  constexpr double kPerStepSquared = 16.0 / 12.0;
+  const Eigen::Vector3d begin = 35.0 * f[0] - 104.0 * f[1] + 114.0 * f[2] - 56.0 * f[3] + 11.0 * f[4];
+  const Eigen::Vector3d middle = -f[0] + 16.0 * f[1] - 30.0 * f[2] + 16.0 * f[3] - f[4];
+  const Eigen::Vector3d end = 11.0 * f[0] - 56.0 * f[1] + 114.0 * f[2] - 104.0 * f[3] + 35.0 * f[4];
+  return kLebesgue * kPerStepSquared * std::max({begin.norm(), middle.norm(), end.norm()});
+}
+
+}  // namespace
+
+PathSplitter::PathSplitter(const ProgramErrors& errors, const Eigen::Vector3d& tool_offset, double tolerance)
+    : solver_(errors.machine, errors.field(tool_offset)), pieces_(errors.pieces), tolerance_(tolerance) {
+  set_steepness(errors.machine);
+}
+
+/// Largest slope along an axis at both ends and the middle of every piece, from a point of the other axes.
+double PathSplitter::steepness_along(int axis, Eigen::Vector3d point, const std::vector<double>& ends) const {
+  constexpr double kStep = 1e-6;  // m
+  double largest = 0.0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    for (const double place : kSteepnessPlaces) {
+      point[axis] = ends[i] + place * (ends[i + 1] - ends[i]);
+      const Eigen::Vector3d here = solver_.error(point, {});
+      point[axis] += kStep;
+      largest = std::max(largest, (solver_.error(point, {}) - here).norm() / kStep);
+    }
+  }
+  return largest;
+}
+
+/// Along every axis, near the corners and in the middle of the others.
+void PathSplitter::set_steepness(const Machine& machine) {
+  Eigen::Vector3d low = Eigen::Vector3d::Zero(), range = Eigen::Vector3d::Zero();
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name)) continue;
+    low[direction_of(axis.name)] = axis.travel_min;
+    range[direction_of(axis.name)] = axis.travel();
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+    std::vector<double> ends = pieces_[static_cast<std::size_t>(axis)];
+    if (ends.size() < 2) ends = {low[axis], low[axis] + range[axis]};
+    for (const double u : kSteepnessPlaces) {
+      for (const double v : kSteepnessPlaces) {
+        Eigen::Vector3d point = low;
+        point[second] += u * range[second];
+        point[third] += v * range[third];
+        steepness_ = std::max(steepness_, 2.0 * steepness_along(axis, point, ends));
+      }
+    }
+  }
+}
+
+/// Where the line crosses an end of a piece.
+void PathSplitter::cut_at_pieces(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  cuts_.assign({0.0, 1.0});
+  for (int axis = 0; axis < 3; ++axis) {
+    const double begin = from[axis], length = to[axis] - from[axis];
+    if (length == 0.0) continue;
+    const auto& ends = pieces_[static_cast<std::size_t>(axis)];
+    const auto first = std::upper_bound(ends.begin(), ends.end(), std::min(begin, to[axis]));
+    const auto last = std::lower_bound(first, ends.end(), std::max(begin, to[axis]));
+    for (auto end = first; end != last; ++end) cuts_.push_back((*end - begin) / length);
+  }
+  std::ranges::sort(cuts_);
+}
+
+/// Nodes behind t_begin up to t_end, close enough for the bound.
+void PathSplitter::add_interval(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                const ApproachDirection& directions, double t_begin, double t_end) {
+  const auto at = [&](double t) -> PathNode {
+    return {t, solver_.command(t >= 1.0 ? to : Eigen::Vector3d(from + t * (to - from)), directions)};
+  };
+  std::array<Eigen::Vector3d, 5> values;
+  values[0] = close_.back().command;
+  for (std::size_t i = 1; i < 5; ++i)
+    values[i] = at(t_begin + 0.25 * static_cast<double>(i) * (t_end - t_begin)).command;
+  const double bound = second_derivative_bound(values);
+  const double parts = std::ceil(std::sqrt(bound / (8.0 * kShareOfNodes * tolerance_)));
+  const int count = static_cast<int>(std::clamp(parts, 1.0, 1e6));
+  for (int i = 1; i < count; ++i) close_.push_back(at(t_begin + (t_end - t_begin) * i / count));
+  close_.push_back({t_end, values[4]});
+}
+
+/// The last node to which a straight segment from the anchor passes all between them.
+std::size_t PathSplitter::furthest(std::size_t anchor) const {
+  const PathNode& begin = close_[anchor];
+  std::size_t good = anchor + 1;
+  for (std::size_t end = anchor + 2; end < close_.size(); ++end) {
+    for (std::size_t k = anchor + 1; k < end; ++k) {
+      const double share = (close_[k].t - begin.t) / (close_[end].t - begin.t);
+      const Eigen::Vector3d on_line = begin.command + share * (close_[end].command - begin.command);
+      if ((close_[k].command - on_line).norm() > kShareOfChoice * tolerance_) return good;
+    }
+    good = end;
+  }
+  return good;
+}
+
+void PathSplitter::keep_needed(double t_from, double t_to, std::vector<PathNode>& nodes) const {
+  for (std::size_t at = 0; at + 1 < close_.size();) {
+    at = furthest(at);
+    const bool last = at + 1 == close_.size();
+    nodes.push_back({last ? t_to : t_from + close_[at].t * (t_to - t_from), close_[at].command});
+  }
+}
+
+void PathSplitter::split(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                         const ApproachDirection& directions, double t_from, double t_to,
+                         std::vector<PathNode>& nodes) {
+  // Nowhere further from its chord than it can change over the length.
+  if (steepness_ * (to - from).norm() < kShareOfNodes * tolerance_) {
+    nodes.push_back({t_to, solver_.command(to, directions)});
+    return;
+  }
+  cut_at_pieces(from, to);
+  close_.assign({{0.0, solver_.command(from, directions)}});
+  for (std::size_t i = 0; i + 1 < cuts_.size(); ++i) {
+    constexpr double kSamePlace = 1e-12;
+    if (cuts_[i + 1] - cuts_[i] > kSamePlace) add_interval(from, to, directions, cuts_[i], cuts_[i + 1]);
+  }
+  close_.back().t = 1.0;
+  keep_needed(t_from, t_to, nodes);
+}
+
+std::vector<double> chord_ends(const NcArc& arc, double tolerance) {
+  const double radius = std::max(arc.start_radius, arc.end_radius);
+  const double turn = std::abs(arc.sweep);
+  // A chord of angle a is radius (1 - cos(a / 2)) off.
+  const double widest = 2.0 * std::acos(std::max(1.0 - tolerance / radius, 0.0));
+  const double quarter = 0.5 * std::numbers::pi;
+  std::vector<double> ends = {0.0, 1.0};
+  const double low = std::min(arc.start_angle, arc.start_angle + arc.sweep);
+  for (double k = std::floor(low / quarter) + 1.0; k * quarter < low + turn; k += 1.0)
+    ends.push_back((k * quarter - arc.start_angle) / arc.sweep);
+  std::ranges::sort(ends);
+  std::vector<double> all = {0.0};
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double part = ends[i + 1] - ends[i];
+    constexpr double kSameAngle = 1e-12;
+    if (part < kSameAngle) continue;
+    const double count = std::max(1.0, std::ceil(part * turn / widest));
+    for (double k = 1.0; k < count; k += 1.0) all.push_back(ends[i] + part * k / count);
+    all.push_back(ends[i + 1]);
+  }
+  all.back() = 1.0;
+  return all;
+}
+
+}  // namespace volcal

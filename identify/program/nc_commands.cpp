@@ -118,7 +118,10 @@ void add_g(const NcWord& word, const NcPlace& place, NcCommands& commands) {
   if (code == kNoCutterCompensation || code == kSpindleSpeed) return;
   int* const group = group_of(code, commands);
   if (group == nullptr) refuse_g(word, place);
-  if (*group != kNoCode)
+  // G80 beside a motion ends a cycle and is otherwise silent.
+  constexpr int kCancelCycle = 800;
+  if (group == &commands.motion && *group != kNoCode && code == kCancelCycle) return;
+  if (*group != kNoCode && *group != kCancelCycle)
     place.refuse(fmt::format("{} and {} exclude each other", g_code_name(*group), g_code_name(code)),
                  "write them in two blocks");
   *group = code;

@@ -21,7 +21,13 @@ class DrillingCycle {
     read_words();
     const int axis = state_.plane.across;
     double clear = std::max(state_.position[axis], plane_);
-    if (state_.retract_to_plane) clear = plane_;
+    if (clear > plane_ && !state_.retract_to_plane)
+      place_.refuse(
+          "the cycle begins above R before G98 or G99 is written; controls differ in which they start with",
+          "write G98 (back to the height before the cycle) or G99 (to R)");
+    if (state_.retract_to_plane.value_or(true)) clear = plane_;
+    if (motion_ == 890 && clear > plane_)
+      place_.refuse("G89 goes back above R; controls differ in where its feed ends", "write G99 before it");
     if (state_.position[axis] < plane_) rapid_to_height(plane_);
     const Eigen::Vector3d step = sideways_step();
     for (int i = 0; i < repetitions_; ++i) {
@@ -104,11 +110,8 @@ class DrillingCycle {
 
   void retract(double clear) {
     const bool at_feed = motion_ == 850 || motion_ == 890;
-    if (at_feed) {
-      feed_to_height(clear);
-    } else {
-      rapid_to_height(clear);
-    }
+    if (at_feed) feed_to_height(plane_);
+    rapid_to_height(clear);
   }
 
   void dwell() {

@@ -47,7 +47,7 @@ struct NcState {
   NcFeedMode feed_mode = NcFeedMode::PerMinute;
   double feed = 0.0;                  ///< F as written; 0 = none in this mode and unit
   double spindle_speed = 0.0;         ///< 1/min; 0 = none
-  bool retract_to_plane = false;      ///< G99
+  std::optional<bool> retract_to_plane;  ///< G99; G98 is false; nothing = not said
   std::optional<double> cycle_depth;  ///< sticky Z of cycles, program coordinate or increment, m
   std::optional<double> cycle_plane;  ///< sticky R
   double cycle_dwell = 0.0;           ///< sticky P, s

@@ -103,7 +103,7 @@ TEST(NcInterpreter, KeepsTime) {
 
 TEST(NcInterpreter, ExpandsDrillingCycles) {
   // From Z 10 over to the hole, to R, to the bottom, and back to where it began (G98).
-  const auto g81 = motions_of("G0 Z10\nG81 X5 Y6 Z-3 R2 F60\nX7\n");
+  const auto g81 = motions_of("G98 G0 Z10\nG81 X5 Y6 Z-3 R2 F60\nX7\n");
   ASSERT_EQ(g81.size(), 9U);
   expect_point(g81[1].to, 5.0, 6.0, 10.0);
   expect_point(g81[2].to, 5.0, 6.0, 2.0);

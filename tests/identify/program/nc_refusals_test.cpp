@@ -144,6 +144,12 @@ TEST(NcRefusals, OfBlocksThatMeanNothingOrTwoThings) {
        "2: G52 and G92 stand in one program; controls differ in whether they add up (use one of the two)"},
       {"G81 X1 Z-1 F10\n",
        "1: G81 has no R (write the depth and the R plane in the first block of the cycle)"},
+      {"G0 Z5\nG81 X1 Z-1 R1 F10\n",
+       "2: the cycle begins above R before G98 or G99 is written; controls differ in which they start with "
+       "(write "
+       "G98 (back to the height before the cycle) or G99 (to R))"},
+      {"G98 G0 Z5\nG89 X1 Z-1 R1 F10\n",
+       "2: G89 goes back above R; controls differ in where its feed ends (write G99 before it)"},
       {"G83 X1 Z-1 R1 F10\n", "1: G83 has no positive Q (write the depth of a peck as Q)"},
       {"G93 G81 X1 Z-1 R1 F10\n", "1: G81 stands under G93 (write cycles under G94)"},
       {"G53 F10\n", "1: G53 stands without a motion by G0 or G1 (write G53 G0 and the coordinates)"},

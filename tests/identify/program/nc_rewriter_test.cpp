@@ -42,7 +42,7 @@ TEST(NcRewriter, SubtractsTheErrorAtTheCommand) {
 TEST(NcRewriter, AddsAxesThatTheBlockDoesNotMove) {
   EXPECT_EQ(rewritten("G0 X10 (over)\nG1 X20 F100 ; cut\n", shift(1, -2, 0.5)).text,
             "G0 X9.9990 Y0.0020 Z-0.0005 (over)\nG1 X19.9990 F100 ; cut\n");
-  EXPECT_EQ(rewritten("n10g0x10y5z3\r\n", shift(0, -2, 0)).text, "n10g0x10 Y5.0020 z3\r\n");
+  EXPECT_EQ(rewritten("n10g0x10y5z3\r\n", shift(0, -2, 0)).text, "n10g0x10 Y5.0020z3\r\n");
 }
 
 TEST(NcRewriter, CopiesWhatMovesNothing) {
@@ -107,8 +107,8 @@ TEST(NcRewriter, MakesChordsOfArcsAndKeepsTheModeRight) {
 
 TEST(NcRewriter, ExpandsCyclesAndKeepsWordsInOrder) {
   EXPECT_EQ(
-      rewritten("G0 Z10\nN7 G82 X5 Y6 Z-3 R2 P0.5 F60 M8 (hole)\nX8\nG80\nG0 X0\n", shift(1, 0, 0)).text,
-      "G0 Z10 X-0.0010\n"
+      rewritten("G98 G0 Z10\nN7 G82 X5 Y6 Z-3 R2 P0.5 F60 M8 (hole)\nX8\nG80\nG0 X0\n", shift(1, 0, 0)).text,
+      "G98 G0 Z10 X-0.0010\n"
       "N7 G0 X4.9990 Y6.0000 F60 M8 (hole)\nZ2.0000\nG1 Z-3.0000\nG4 P0.5000\nG0 Z10.0000\n"
       "X7.9990\nZ2.0000\nG1 Z-3.0000\nG4 P0.5000\nG0 Z10.0000\n"
       "G80\nG0 X-0.0010\n");

@@ -12,6 +12,8 @@ namespace {
 constexpr std::array<double, 4> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417, 1.0};
 constexpr std::array<double, 4> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0, 0.0};
 
+constexpr double kAside = 1e-7;  ///< of a path: behind a quadrant its axis moves the other way
+
 Eigen::Vector3d value_of(const ErrorField& field, const Eigen::Vector3d& at,
                          const ApproachDirection& directions) {
   return field({at.x(), at.y(), at.z(), 0.0, 0.0, 0.0}, directions);
@@ -57,9 +59,8 @@ void NcCheck::use_functional_point() {
 
 /// Directions in which the original moves at t.
 void NcCheck::turn_at(const NcMotion& original, double t) {
-  constexpr double kAside = 1e-4;
   if (original.kind == NcMotionKind::Arc) {
-    turn_directions(original.point(t + kAside) - original.point(t - kAside), directions_);
+    turn_directions(original.arc.tangent(t), directions_);
   } else {
     turn_directions(original.to - original.from, directions_);
   }
@@ -69,14 +70,13 @@ void NcCheck::turn_at(const NcMotion& original, double t) {
 void NcCheck::compare(const NcMotion& original, const NcMotion& written, double t_from, double t_to) {
   const double length = (t_to - t_from) * original.length();
   const std::int64_t line = original_.place().line;
-  turn_at(original, 0.5 * (t_from + t_to));
+  const bool jumps = t_to <= t_from;  // from the command of one direction to that of the next
+  turn_at(original, jumps ? t_to + kAside : 0.5 * (t_from + t_to));
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
     const Eigen::Vector3d place = original.point(t_from + kPlaces[i] * (t_to - t_from));
     const Eigen::Vector3d command = written.point(kPlaces[i]);
     before_.take(value_of(field_, place, directions_), kWeights[i] * length, line, place);
-    const bool jumps =
-        t_to <= t_from && kWeights[i] > 0.0;  // on its way from one direction's command to the other's
-    if (jumps) continue;
+    if (jumps && kWeights[i] > 0.0) continue;
     after_.take(command + value_of(field_, command, directions_) - place, kWeights[i] * length, line, place);
   }
   length_ += length;

@@ -48,6 +48,19 @@ Eigen::Vector3d NcArc::point(double t) const {
   return at;
 }
 
+Eigen::Vector3d NcArc::tangent(double t) const {
+  const double angle = start_angle + t * sweep;
+  const double radius = start_radius + t * (end_radius - start_radius);
+  const Eigen::Vector2d outwards(std::cos(angle), std::sin(angle));
+  const Eigen::Vector2d along =
+      (end_radius - start_radius) * outwards + radius * sweep * Eigen::Vector2d(-outwards.y(), outwards.x());
+  Eigen::Vector3d change;
+  change[plane.first] = along.x();
+  change[plane.second] = along.y();
+  change[plane.across] = end[plane.across] - start[plane.across];
+  return change;
+}
+
 double NcArc::length() const {
   return std::hypot(0.5 * (start_radius + end_radius) * sweep, end[plane.across] - start[plane.across]);
 }

@@ -30,6 +30,8 @@ struct NcArc {
 
   /// t = 0..1 along the angle; start and end exactly.
   Eigen::Vector3d point(double t) const;
+  /// Derivative of point() by t, m.
+  Eigen::Vector3d tangent(double t) const;
   double length() const;
 };
 

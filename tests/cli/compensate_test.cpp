@@ -1,0 +1,147 @@
+/// NC programs rewritten from the command line, for a machine that the program itself has identified.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/simulated_campaign.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+const std::string kPart =
+    "%\n(pocket)\nG21 G90 G17\nF1000\nT1 M6\nS3000 M3\nG43 H1\nG0 X-150 Y-100 Z50\nG1 Z-20 "
+    "F300\nF1500\nX150\nY100\n"
+    "G3 X-150 Y100 R150\nG1 Y-100\nG0 Z50\nM30\n%\n";
+const std::string kSetup = " --work-offset G54=X10,Y-20,Z-350 --tool-length H1=150";
+
+class CompensatedPrograms : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    simulated_ = new testing::SimulatedCampaign;
+    simulated_->simulate(8,
+                         "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [5, 4, 4]\n"
+                         "[validation]\npoints = 5\n",
+                         3, 4);
+    const auto run = simulated_->fit("--noise white");
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    std::ofstream(simulated_->path("part.ngc")) << kPart;
+  }
+  static void TearDownTestSuite() {
+    delete simulated_;
+    simulated_ = nullptr;
+  }
+  static std::string path(const std::string& name) { return simulated_->path(name); }
+  static auto compensate(const std::string& options, const std::string& program = "part.ngc") {
+    return run_program("compensate " + path("result") + " " + path(program) + " " + options);
+  }
+
+ private:
+  static testing::SimulatedCampaign* simulated_;
+};
+
+testing::SimulatedCampaign* CompensatedPrograms::simulated_ = nullptr;
+
+TEST_F(CompensatedPrograms, AreWrittenAndChecked) {
+  const auto run = compensate("-o " + path("out.ngc") + kSetup + " --check");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("lines in, "));
+  EXPECT_THAT(run.output, HasSubstr("Functional point X0 Y0 Z-150 mm from the spindle reference"));
+  EXPECT_THAT(run.output, HasSubstr("Error of the tool point along "));
+  const std::string text = content(path("out.ngc"));
+  EXPECT_THAT(text, ::testing::StartsWith("%\n(volcal compensate: result "));
+  EXPECT_THAT(
+      text,
+      HasSubstr("G54=X10,Y-20,Z-350 H1=150)\n(pocket)\nG21 G90 G17\nF1000\nT1 M6\nS3000 M3\nG43 H1\nG0 X"));
+  EXPECT_THAT(text, ::testing::EndsWith("M30\n%\n"));
+  for (const auto& entry : std::filesystem::directory_iterator(path("")))
+    EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos);
+}
+
+TEST_F(CompensatedPrograms, ErrorFallsInTheSameTime) {
+  const auto run = compensate("--check --json" + kSetup);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  const auto& check = json.at("check");
+  const double before = check.at("before").at("rms_um"), after = check.at("after").at("rms_um");
+  EXPECT_GT(before, 1.0);
+  EXPECT_LT(after, 0.5);
+  EXPECT_LT(after, before / 10.0);
+  EXPECT_LT(check.at("after").at("max_um").get<double>(), 1.2) << "half an um of path and half of chords";
+  const double time = check.at("before").at("feed_time_s");
+  EXPECT_NEAR(check.at("after").at("feed_time_s").get<double>(), time, 0.01 * time);
+  EXPECT_EQ(json.at("arcs"), 1);
+  EXPECT_FALSE(json.contains("file"));
+}
+
+TEST_F(CompensatedPrograms, DependOnTheToleranceAndTheTool) {
+  const auto lines = [](const std::string& options) {
+    return nlohmann::json::parse(compensate("--check --json" + kSetup + " " + options).output);
+  };
+  const auto fine = lines("--tolerance-um 0.1 --arc-tolerance-um 0.1"),
+             coarse = lines("--tolerance-um 5 --arc-tolerance-um 5");
+  EXPECT_GT(fine.at("lines_written").get<int>(), 2 * coarse.at("lines_written").get<int>());
+  EXPECT_LT(fine.at("check").at("after").at("rms_um").get<double>(),
+            coarse.at("check").at("after").at("rms_um").get<double>());
+  const auto differences = lines("--lengths-from long");
+  EXPECT_NE(differences.at("functional_points_mm"), fine.at("functional_points_mm"));
+}
+
+TEST_F(CompensatedPrograms, RefuseBadInput) {
+  std::ofstream(path("probe.ngc")) << "G21\nG38.2 Z-5 F10\n";
+  std::ofstream(path("binary.ngc")) << "G21\n" << '\0' << "\n";
+  const std::string out = "-o " + path("refused.ngc");
+  const std::vector<std::pair<std::string, std::string>> refused = {
+      {"", "give -o OUT.ngc, --check, or both"},
+      {"-o " + path("part.ngc"), "the output is the program itself"},
+      {out, "part.ngc:7: the length of tool H1 is not given (add --tool-length H1=LENGTH in mm)"},
+      {out + " --tool-length H1=150",
+       "part.ngc:8: the program moves in G54, whose offset is not given (add --work-offset "
+       "G54=X...,Y...,Z... in mm)"},
+      {out + " --tool-length H1=150 --work-offset G54=X0,Y0,Z100", "outside the identified travel"},
+      {out + " --work-offset G54=X0,Y0", "--work-offset G54: Z is not given"},
+      {out + " --work-offset G54=X0,Y0,Zten", "\"ten\" is no length in mm"},
+      {out + " --work-offset G53=X0,Y0,Z0", "--work-offset G53 is no work offset"},
+      {out + " --work-offset X0,Y0,Z0", "write G54=X10,Y20,Z-300 in mm"},
+      {out + " --work-offset G54=X0,Y0,Z0 --work-offset G54=X0,Y0,Z0", "--work-offset G54 is given twice"},
+      {out + " --tool-length 1=150", "write H1=150.2 in mm"},
+      {out + " --tool wrong" + kSetup, "the machine has no such tool"},
+      {out + " --tolerance-um 0" + kSetup, "must be positive"},
+      {"-o " + path("nowhere/out.ngc") + kSetup, "creating the file failed"},
+      {"-o " + path("result") + kSetup, "the output is a directory"},
+  };
+  for (const auto& [options, message] : refused) {
+    const auto run = compensate(options);
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(message)) << options;
+    EXPECT_EQ(run.output, "") << options;
+  }
+  EXPECT_THAT(compensate(out, "probe.ngc").errors, HasSubstr("probe.ngc:2: G38.2 (probing) is not followed"));
+  EXPECT_THAT(compensate(out, "binary.ngc").errors, HasSubstr("the file is binary"));
+  EXPECT_THAT(compensate(out, "part.nc").errors, HasSubstr("did you mean \"part.ngc\"?"));
+  EXPECT_FALSE(std::filesystem::exists(path("refused.ngc")));
+}
+
+TEST_F(CompensatedPrograms, AreNotCompensatedTwiceAndKeepTheOldFileWhenRefused) {
+  ASSERT_EQ(compensate("-o " + path("once.ngc") + kSetup).exit_code, 0);
+  const std::string once = content(path("once.ngc"));
+  EXPECT_THAT(
+      compensate("-o " + path("twice.ngc") + kSetup, "once.ngc").errors,
+      HasSubstr("once.ngc:2: the program has been compensated already (compensate the original program)"));
+  EXPECT_EQ(compensate("-o " + path("once.ngc")).exit_code, 2);
+  EXPECT_EQ(content(path("once.ngc")), once);
+}
+
+}  // namespace
+}  // namespace volcal

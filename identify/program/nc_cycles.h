@@ -1,6 +1,7 @@
 #pragma once
 /// Drilling cycles G73, G81, G82, G83, G85 and G89 as rapids, feeds and dwells (NISTIR 6556, clause 3.5.16).
-/// G85 feeds back to R and goes on as a rapid, as LinuxCNC 2.9. The clearance of G73 and G83 is 0.254 mm, as in NISTIR 6556 and LinuxCNC; other controls set another one.
+/// G85 feeds back to R and goes on as a rapid, as LinuxCNC 2.9. The clearance of G73 and G83 is 0.254 mm, as
+/// in NISTIR 6556 and LinuxCNC; other controls set another one.
 
 #include <vector>
 

@@ -45,6 +45,8 @@ void NcRewriter::use_functional_point() {
 }
 
 Eigen::Vector3d NcRewriter::solve(const Eigen::Vector3d& position) {
+  if (last_.splitter == splitter_ && last_.position == position && last_.directions == directions_)
+    return last_.command;
   return splitter_->solver().command(position, directions_);
 }
 
@@ -108,6 +110,7 @@ void NcRewriter::correct_line(const Eigen::Vector3d& from, const Eigen::Vector3d
     add_target(NcMotionKind::Feed, from, begin, at + t_from);
   nodes_.clear();
   splitter_->split(from, to, directions_, t_from, t_to, nodes_);
+  last_ = {splitter_, to, directions_, nodes_.back().command};
   for (const PathNode& node : nodes_) {
     const double share = (node.t - t_from) / (t_to - t_from);
     add_target(NcMotionKind::Feed, from + share * (to - from), node.command, at + node.t);
@@ -172,7 +175,6 @@ void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
     if (step.motions.empty()) {
       writer_.copy(step, line, interpreter_.setup(), place, written_);
     } else {
-      commanded_ = writer_.state().position;
       correct_motions(step, known_before);
       writer_.write(step, interpreter_.setup(), place, interpreter_.state().known, targets_, written_);
     }

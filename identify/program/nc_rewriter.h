@@ -69,6 +69,14 @@ class NcRewriter {
   void require_inside(const Eigen::Vector3d& position, const char* what) const;
   Eigen::Vector3d solve(const Eigen::Vector3d& position);
 
+  /// The command at the end of the last line, which is where the next one mostly begins.
+  struct LastCommand {
+    const PathSplitter* splitter = nullptr;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    ApproachDirection directions{};
+    Eigen::Vector3d command = Eigen::Vector3d::Zero();
+  };
+
   ProgramErrors errors_;
   NcInterpreter interpreter_;
   FunctionalPoint functional_point_;
@@ -80,7 +88,8 @@ class NcRewriter {
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero();  ///< travel
   Eigen::Vector3d high_ = Eigen::Vector3d::Zero();
   ApproachDirection directions_{};
-  Eigen::Vector3d commanded_ = Eigen::Vector3d::Zero();  ///< end of the last target
+  Eigen::Vector3d commanded_ = Eigen::Vector3d::Zero();  ///< end of the last target, before rounding
+  LastCommand last_;
   bool header_written_ = false;
   std::vector<NcTarget> targets_;
   std::vector<PathNode> nodes_;

@@ -45,13 +45,13 @@ struct NcState {
   bool absolute_centre = false;  ///< G90.1
   double unit = 0.0;             ///< m per unit of length; 0 = not known
   NcFeedMode feed_mode = NcFeedMode::PerMinute;
-  double feed = 0.0;                  ///< F as written; 0 = none in this mode and unit
-  double spindle_speed = 0.0;         ///< 1/min; 0 = none
+  double feed = 0.0;                     ///< F as written; 0 = none in this mode and unit
+  double spindle_speed = 0.0;            ///< 1/min; 0 = none
   std::optional<bool> retract_to_plane;  ///< G99; G98 is false; nothing = not said
-  std::optional<double> cycle_depth;  ///< sticky Z of cycles, program coordinate or increment, m
-  std::optional<double> cycle_plane;  ///< sticky R
-  double cycle_dwell = 0.0;           ///< sticky P, s
-  std::optional<double> cycle_peck;   ///< sticky Q, m
+  std::optional<double> cycle_depth;     ///< sticky Z of cycles, program coordinate or increment, m
+  std::optional<double> cycle_plane;     ///< sticky R
+  double cycle_dwell = 0.0;              ///< sticky P, s
+  std::optional<double> cycle_peck;      ///< sticky Q, m
 
   std::size_t work = 0;  ///< index of the work offset
   std::array<std::optional<Eigen::Vector3d>, kWorkOffsets> work_offsets;

@@ -1,10 +1,9 @@
 #include "volcal/identify/program/nc_writer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
+#include <cstdlib>
 
 #include "volcal/identify/program/nc_cycles.h"
 
@@ -34,14 +33,27 @@ bool belongs_to_curve(char letter, int motion) {
   return arc && (letter == 'I' || letter == 'J' || letter == 'K' || letter == 'R' || letter == 'P');
 }
 
+constexpr std::array<double, 11> kPowersOfTen = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10};
+
+/// With `decimals` digits behind the point, 0 to 10; |value| below 1e8.
 void append_number(double value, int decimals, std::string& out) {
-  char digits[40];
-  const auto end = fmt::format_to_n(digits, sizeof digits, "{:.{}f}", value, decimals);
-  out.append(digits, end.out);
+  const double scale = kPowersOfTen[static_cast<std::size_t>(decimals)];
+  long long steps = std::llround(value * scale);
+  if (steps < 0) out += '-';
+  steps = std::abs(steps);
+  char digits[24];
+  char* const end = digits + sizeof digits;
+  char* first = end;
+  for (int i = 0; i < decimals || steps > 0 || i == decimals; ++i) {
+    if (i == decimals && decimals > 0) *--first = '.';
+    *--first = static_cast<char>('0' + steps % 10);
+    steps /= 10;
+  }
+  out.append(first, end);
 }
 
 double rounded(double value, int decimals) {
-  const double scale = std::pow(10.0, decimals);
+  const double scale = kPowersOfTen[static_cast<std::size_t>(decimals)];
   return std::round(value * scale) / scale + 0.0;  // no negative zero
 }
 
@@ -49,6 +61,13 @@ void append_feed(double feed, std::string& out) {
   constexpr int kDigits = 7;
   const int whole = feed >= 1.0 ? static_cast<int>(std::floor(std::log10(feed))) + 1 : 0;
   append_number(feed, std::max(kDigits - whole, 1), out);
+}
+
+/// M0, M1, M2, M30 and M60 of the block.
+void append_stops(const NcBlock& block, std::string& out) {
+  for (const NcWord& word : block.words) {
+    if (is_stop_word(word)) out.append(" ").append(block.text.substr(word.begin, word.end - word.begin));
+  }
 }
 
 /// Blanks before a word that is taken out go with it.
@@ -92,7 +111,7 @@ NcWriter::AxisTexts NcWriter::axis_texts(const NcStep& step, const NcTarget& tar
     AxisText& text = texts[i];
     text.value = rounded((target.command[k] - from) / state_.unit, decimals());
     const double reached = from + text.value * state_.unit;
-    const double still = 0.4 * state_.unit * std::pow(10.0, -decimals());
+    const double still = 0.4 * state_.unit / kPowersOfTen[static_cast<std::size_t>(decimals())];
     text.wanted = (keeps_words && step.commands.has(kNcAxisLetters[i])) ||
                   std::abs(reached - state_.position[k]) > still || !state_.known[i];
     if (!text.wanted) continue;
@@ -117,50 +136,53 @@ void NcWriter::append_motion_code(int needed, std::string& out) {
   out += needed == kRapidCode ? "G0" : "G1";
 }
 
-/// The block's text with the first target in it. `feed`: of this segment under G93, 0 = F stays.
-void NcWriter::write_first(const NcStep& step, const NcTarget& target, AxisTexts& axes, bool keeps_stop,
-                           double feed, std::string& out) {
-  const NcBlock& block = step.block;
-  const int needed = target.kind == NcMotionKind::Rapid ? kRapidCode : kFeedCode;
-  const bool has_code = std::ranges::any_of(block.words, is_motion_word);
+/// An axis word of the block: its new value, its own text where that is the same, or nothing.
+void NcWriter::write_axis_word(const NcWord& word, const FirstLine& line, AxisTexts& axes, std::string& out) {
+  if (!line.has_code && state_.motion != line.needed) {
+    append_motion_code(line.needed, out);
+    out += ' ';
+  }
+  const auto axis = static_cast<std::size_t>(axis_of_letter(word.letter));
+  AxisText& text = axes[axis];
+  if (!text.wanted) {
+    drop_blanks(out);
+  } else if (text.value == word.value && !is_cycle(line.motion)) {
+    out.append(line.own(word));
+    text.wanted = false;
+  } else {
+    append_axis(axis, text, out);
+  }
+}
+
+void NcWriter::write_word(const NcWord& word, const FirstLine& line, AxisTexts& axes, std::string& out) {
+  if (is_motion_word(word)) {
+    state_.motion = line.needed;
+    out.append(word.code() == line.needed ? line.own(word) : line.needed == kRapidCode ? "G0" : "G1");
+  } else if (axis_of_letter(word.letter) >= 0) {
+    write_axis_word(word, line, axes, out);
+  } else if (word.letter == 'F' && line.feed > 0.0) {
+    out += 'F';
+    append_feed(line.feed, out);
+  } else if (belongs_to_curve(word.letter, line.motion) || (is_stop_word(word) && !line.keeps_stop)) {
+    drop_blanks(out);
+  } else {
+    out.append(line.own(word));
+  }
+}
+
+/// The block's text with the first target in it; new words go behind the last axis word, else behind the last
+/// word.
+void NcWriter::write_first(const NcBlock& block, const FirstLine& line, AxisTexts& axes, std::string& out) {
   const auto is_axis = [](const NcWord& word) { return axis_of_letter(word.letter) >= 0; };
   const auto last_axis = std::find_if(block.words.rbegin(), block.words.rend(), is_axis);
-  // New words go behind the last axis word, else behind the last word.
   const NcWord& place = last_axis != block.words.rend() ? *last_axis : block.words.back();
   std::uint32_t cursor = 0;
   for (const NcWord& word : block.words) {
     out.append(block.text.substr(cursor, word.begin - cursor));
     cursor = word.end;
-    const std::string_view own = block.text.substr(word.begin, word.end - word.begin);
-    const int axis = axis_of_letter(word.letter);
-    if (is_motion_word(word)) {
-      const bool same = word.code() == needed;
-      state_.motion = needed;
-      out.append(same ? own : needed == kRapidCode ? "G0" : "G1");
-    } else if (axis >= 0) {
-      if (!has_code && state_.motion != needed) {
-        append_motion_code(needed, out);
-        out += ' ';
-      }
-      AxisText& text = axes[static_cast<std::size_t>(axis)];
-      if (text.wanted && text.value == word.value && !is_cycle(step.motion)) {
-        out.append(own);
-        text.wanted = false;
-      } else if (text.wanted) {
-        append_axis(static_cast<std::size_t>(axis), text, out);
-      } else {
-        drop_blanks(out);
-      }
-    } else if (word.letter == 'F' && feed > 0.0) {
-      out += 'F';
-      append_feed(feed, out);
-    } else if (belongs_to_curve(word.letter, step.motion) || (is_stop_word(word) && !keeps_stop)) {
-      drop_blanks(out);
-    } else {
-      out.append(own);
-    }
+    write_word(word, line, axes, out);
     if (&word != &place) continue;
-    if (!has_code) append_motion_code(needed, out);
+    if (!line.has_code) append_motion_code(line.needed, out);
     for (std::size_t i = 0; i < 3; ++i) append_axis(i, axes[i], out);
   }
   out.append(block.text.substr(cursor));
@@ -228,15 +250,12 @@ void NcWriter::write(const NcStep& step, const NcSetup& setup, const NcPlace& pl
     NcWrittenLine& line = lines.emplace_back();
     line.at = targets[i].at;
     if (first) {
-      write_first(step, targets[i], axes, last, feed, line.text);
+      const int needed = targets[i].kind == NcMotionKind::Rapid ? kRapidCode : kFeedCode;
+      const bool has_code = std::ranges::any_of(step.block.words, is_motion_word);
+      write_first(step.block, {step.block.text, step.motion, needed, has_code, last, feed}, axes, line.text);
     } else {
       write_further(step, targets[i], axes, feed, line.text);
-    }
-    if (last && !first) {
-      for (const NcWord& word : step.block.words) {
-        if (is_stop_word(word))
-          line.text.append(" ").append(step.block.text.substr(word.begin, word.end - word.begin));
-      }
+      if (last) append_stops(step.block, line.text);
     }
     line.text += line_end_;
   }

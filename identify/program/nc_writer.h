@@ -45,11 +45,23 @@ class NcWriter {
     double value = 0.0;  ///< as written, in units of length
   };
   using AxisTexts = std::array<AxisText, 3>;
+  /// How the block's own line is changed.
+  struct FirstLine {
+    std::string_view text;   ///< of the block
+    int motion = kNoCode;    ///< that its coordinates belong to
+    int needed = 0;          ///< G code of the target: 0 or 10
+    bool has_code = false;   ///< the text holds a G code of a motion
+    bool keeps_stop = true;  ///< it is the last line too
+    double feed = 0.0;       ///< of this segment under G93, 0 = F stays
+
+    std::string_view own(const NcWord& word) const { return text.substr(word.begin, word.end - word.begin); }
+  };
 
   AxisTexts axis_texts(const NcStep& step, const NcTarget& target, bool first,
                        const std::array<bool, 3>& known, const NcPlace& place);
-  void write_first(const NcStep& step, const NcTarget& target, AxisTexts& axes, bool keeps_stop, double feed,
-                   std::string& out);
+  void write_first(const NcBlock& block, const FirstLine& line, AxisTexts& axes, std::string& out);
+  void write_word(const NcWord& word, const FirstLine& line, AxisTexts& axes, std::string& out);
+  void write_axis_word(const NcWord& word, const FirstLine& line, AxisTexts& axes, std::string& out);
   void write_further(const NcStep& step, const NcTarget& target, const AxisTexts& axes, double feed,
                      std::string& out);
   void append_axis(std::size_t axis, AxisText& text, std::string& out) const;

@@ -11,9 +11,8 @@ namespace volcal {
 namespace {
 
 std::string point_text(const Eigen::Vector3d& point) {
-  return fmt::format("X{} Y{} Z{}", short_number(point.x() / kMetrePerMillimetre, 7),
-                     short_number(point.y() / kMetrePerMillimetre, 7),
-                     short_number(point.z() / kMetrePerMillimetre, 7));
+  const Eigen::Vector3d mm = (point / kMetrePerMillimetre).array() + 0.0;  // no negative zero
+  return fmt::format("X{:.7g} Y{:.7g} Z{:.7g}", mm.x(), mm.y(), mm.z());
 }
 
 nlohmann::ordered_json point_json(const Eigen::Vector3d& point) {

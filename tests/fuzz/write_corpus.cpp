@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "tests/support/program_harness.h"
 #include "tests/support/reader_harness.h"
 #include "tests/support/table_samples.h"
 #include "volcal/identify/solve/result.h"
@@ -41,6 +42,8 @@ int main(int count, char** arguments) {
             choice + sample_csv(columns));
     }
   }
+  write(folder, "program", "modal", "\2" + sample_program());
+  write(folder, "program", "offsets", std::string(1, '\0') + sample_local_program());
   const auto formats = volcal::table_formats();
   for (std::size_t i = 0; i < formats.size(); ++i)
     write(folder, "tables", std::string(formats[i]->name),

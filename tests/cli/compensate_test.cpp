@@ -94,7 +94,7 @@ TEST_F(CompensatedPrograms, DependOnTheToleranceAndTheTool) {
   EXPECT_GT(fine.at("lines_written").get<int>(), 2 * coarse.at("lines_written").get<int>());
   EXPECT_LT(fine.at("check").at("after").at("rms_um").get<double>(),
             coarse.at("check").at("after").at("rms_um").get<double>());
-  const auto differences = lines("--lengths-from long");
+  const auto differences = lines("--lengths-from side_x");
   EXPECT_NE(differences.at("functional_points_mm"), fine.at("functional_points_mm"));
 }
 
@@ -141,6 +141,27 @@ TEST_F(CompensatedPrograms, AreNotCompensatedTwiceAndKeepTheOldFileWhenRefused) 
       HasSubstr("once.ngc:2: the program has been compensated already (compensate the original program)"));
   EXPECT_EQ(compensate("-o " + path("once.ngc")).exit_code, 2);
   EXPECT_EQ(content(path("once.ngc")), once);
+}
+
+/// docs/guides/compensate-a-program.md shows a command and what it prints, line by line.
+TEST(CompensateGuide, QuotesWhatTheProgramPrints) {
+  const std::filesystem::path source = VOLCAL_SOURCE_DIR;
+  const testing::ScratchFolder scratch;
+  const std::string result = (scratch.path() / "result").string(),
+                    out = (scratch.path() / "pocket.ngc").string();
+  const std::string demo = (source / "datasets/demo/campaign").string();
+  ASSERT_EQ(
+      run_program("fit " + demo + "/campaign.toml --model " + demo + "/model.toml -o " + result).exit_code,
+      0);
+  const std::string options = " -o " + out + " --check --work-offset G54=X10,Y-20,Z-350 --tool-length H1=150";
+  const auto run = run_program("compensate " + result + " " +
+                               (source / "tests/data/programs/pocket.ngc").string() + options);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  std::string printed = run.output;
+  ASSERT_TRUE(printed.ends_with(out + "\n"));
+  printed.replace(printed.size() - out.size() - 1, out.size(), "out/demo/pocket.ngc");
+  EXPECT_THAT(content(source / "docs/guides/compensate-a-program.md"),
+              HasSubstr("```\n" + printed + "```\n"));
 }
 
 }  // namespace

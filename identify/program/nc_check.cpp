@@ -12,8 +12,6 @@ namespace {
 constexpr std::array<double, 4> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417, 1.0};
 constexpr std::array<double, 4> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0, 0.0};
 
-constexpr double kAside = 1e-7;  ///< of a path: behind a quadrant its axis moves the other way
-
 Eigen::Vector3d value_of(const ErrorField& field, const Eigen::Vector3d& at,
                          const ApproachDirection& directions) {
   return field({at.x(), at.y(), at.z(), 0.0, 0.0, 0.0}, directions);
@@ -66,17 +64,17 @@ void NcCheck::turn_at(const NcMotion& original, double t) {
   }
 }
 
-/// Errors along one written feed motion, which stands for the original from t_from to t_to.
+/// Errors along one written feed motion, which stands for the original from t_from to t_to. A jump from the
+/// command of one direction to that of the next stands for no path.
 void NcCheck::compare(const NcMotion& original, const NcMotion& written, double t_from, double t_to) {
+  if (t_to <= t_from) return;
   const double length = (t_to - t_from) * original.length();
   const std::int64_t line = original_.place().line;
-  const bool jumps = t_to <= t_from;  // from the command of one direction to that of the next
-  turn_at(original, jumps ? t_to + kAside : 0.5 * (t_from + t_to));
+  turn_at(original, 0.5 * (t_from + t_to));
   for (std::size_t i = 0; i < kPlaces.size(); ++i) {
     const Eigen::Vector3d place = original.point(t_from + kPlaces[i] * (t_to - t_from));
     const Eigen::Vector3d command = written.point(kPlaces[i]);
     before_.take(value_of(field_, place, directions_), kWeights[i] * length, line, place);
-    if (jumps && kWeights[i] > 0.0) continue;
     after_.take(command + value_of(field_, command, directions_) - place, kWeights[i] * length, line, place);
   }
   length_ += length;

@@ -44,8 +44,7 @@ ProgramErrors program_errors(const FitResult& result) {
   }
   for (auto& ends : errors.pieces) {
     std::ranges::sort(ends);
-    const auto repeated = std::ranges::unique(ends);
-    ends.erase(repeated.begin(), repeated.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   }
   return errors;
 }

@@ -27,6 +27,7 @@ double second_derivative_bound(const std::array<Eigen::Vector3d, 5>& f) {
 PathSplitter::PathSplitter(const ProgramErrors& errors, const Eigen::Vector3d& tool_offset, double tolerance)
     : solver_(errors.machine, errors.field(tool_offset)), pieces_(errors.pieces), tolerance_(tolerance) {
   set_steepness(errors.machine);
+  solver_.set_steepness(steepness_);
 }
 
 /// Largest slope along an axis at both ends and the middle of every piece, from a point of the other axes.

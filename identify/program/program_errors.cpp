@@ -68,16 +68,21 @@ Eigen::Vector3d CommandSolver::error(const Eigen::Vector3d& position,
   return errors_(axis_position_of(position), directions);
 }
 
+void CommandSolver::set_steepness(double steepness) {
+  constexpr double kAccuracy = 1e-9;  // m
+  constexpr double kSteepest = 0.5, kFlattest = 1e-6;
+  last_step_ = kAccuracy;
+  if (steepness < kSteepest) last_step_ *= (1.0 - steepness) / std::max(steepness, kFlattest);
+}
+
 Eigen::Vector3d CommandSolver::command(const Eigen::Vector3d& position, const ApproachDirection& directions) {
-  // Errors change by less than a tenth of the distance, so that the next step would be below 1 nm.
-  constexpr double kLastStep = 1e-8;  // m
   constexpr int kMostSteps = 50;
   Eigen::Vector3d correction = last_correction_;
   for (int i = 0; i < kMostSteps; ++i) {
     const Eigen::Vector3d next = -movable_.cwiseProduct(error(position + correction, directions));
     const double step = (next - correction).norm();
     correction = next;
-    if (step < kLastStep) {
+    if (step < last_step_) {
       last_correction_ = correction;
       return position + correction;
     }

@@ -47,6 +47,9 @@ class CommandSolver {
   CommandSolver(const Machine& machine, ErrorField errors);
 
   Eigen::Vector3d error(const Eigen::Vector3d& position, const ApproachDirection& directions) const;
+  /// `steepness`: bound of the change of the error per m of motion, L. Iteration then ends at a step of
+  /// 1 nm (1 - L) / L, behind which less than 1 nm is to come.
+  void set_steepness(double steepness);
   /// The command at which the functional point is where it would be at `position` without errors, to 1 nm; by
   /// fixed-point iteration from the last solution. Throws std::runtime_error where it does not converge.
   Eigen::Vector3d command(const Eigen::Vector3d& position, const ApproachDirection& directions);
@@ -55,6 +58,7 @@ class CommandSolver {
   ErrorField errors_;
   Eigen::Vector3d movable_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d last_correction_ = Eigen::Vector3d::Zero();
+  double last_step_ = 1e-9;  ///< m
 };
 
 }  // namespace volcal

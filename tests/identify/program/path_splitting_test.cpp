@@ -65,6 +65,21 @@ TEST(PathSplitting, TakesAboutAsManySegmentsAsTheCurvatureAsksFor) {
   EXPECT_LE(deviation(splitter, line, 50), kTolerance);
 }
 
+/// p' + e(p') = p to 1 nm, from wherever the last solution was, with errors of 0.3 mm that change by 1e-3.
+TEST(PathSplitting, SolvesForTheCommandToANanometre) {
+  const auto field = [](const AxisPosition& q, const ApproachDirection&) {
+    return Eigen::Vector3d(3e-4 + 1e-3 * q[1], 5e-4 * q[2] - 2e-4, 1e-3 * q[0] * q[1]);
+  };
+  PathSplitter splitter(testing::errors_with(field), Eigen::Vector3d::Zero(), kTolerance);
+  EXPECT_GT(splitter.steepness(), 1e-3);
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d wanted = testing_support::random_vector(random, 0.9);
+    const Eigen::Vector3d command = splitter.solver().command(wanted, {});
+    EXPECT_LT((command + splitter.solver().error(command, {}) - wanted).norm(), 1e-9);
+  }
+}
+
 /// One narrow tooth of 4 um, which equal steps would walk over.
 TEST(PathSplitting, FindsANarrowTooth) {
   const auto field = [](const AxisPosition& q, const ApproachDirection&) {

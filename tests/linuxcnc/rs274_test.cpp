@@ -6,12 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iomanip>
-#include <memory>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/nc_programs.h"
@@ -163,6 +166,27 @@ bool has_rs274() { return std::system("command -v rs274 >/dev/null 2>&1") == 0; 
 
 constexpr double kInch = 25.4e-3;  // m; rs274 without an INI file has parameters and tools in inches
 
+/// What a command prints, and its exit status.
+std::pair<std::string, int> output_of(const std::string& command) {
+  std::FILE* const pipe = ::popen(command.c_str(), "r");
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  return {text, ::pclose(pipe)};
+}
+
+/// rs274 shares memory with every other LinuxCNC of the computer and crashes when one begins or ends beside
+/// it.
+std::string calls_of_rs274(const std::string& command) {
+  constexpr int kTries = 20;
+  for (int i = 0; i < kTries; ++i) {
+    const auto [text, status] = output_of(command);
+    if (status == 0) return text;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  ADD_FAILURE() << "rs274 fails: " << command;
+  return {};
+}
+
 /// Parameters of G54 ... G59.3, tool table, program; what rs274 makes of them.
 MachineRun rs274_run(const std::string& program, const NcSetup& setup) {
   const testing::ScratchFolder scratch;
@@ -182,17 +206,9 @@ MachineRun rs274_run(const std::string& program, const NcSetup& setup) {
   parameters.close();
   const std::string command = "rs274 -g -v " + path("scratch.var") + " -t " + path("tool.tbl") + " " +
                               path("part.ngc") + " </dev/null 2>" + path("errors");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(command.c_str(), "r"), &::pclose);
   CanonicalReader reader;
-  std::string line;
-  for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
-    if (c != '\n') {
-      line += static_cast<char>(c);
-      continue;
-    }
-    reader.read(line);
-    line.clear();
-  }
+  std::istringstream calls(calls_of_rs274(command));
+  for (std::string line; std::getline(calls, line);) reader.read(line);
   return reader.run();
 }
 

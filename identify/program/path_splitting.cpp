@@ -125,8 +125,8 @@ void PathSplitter::keep_needed(double t_from, double t_to, std::vector<PathNode>
 void PathSplitter::split(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                          const ApproachDirection& directions, double t_from, double t_to,
                          std::vector<PathNode>& nodes) {
-  // Nowhere further from its chord than it can change over the length.
-  if (steepness_ * (to - from).norm() < kShareOfNodes * tolerance_) {
+  // What changes by at most L per m is at most 2 L t (1 - t) h <= L h / 2 off its chord of length h.
+  if (0.5 * steepness_ * (to - from).norm() < kShareOfNodes * tolerance_) {
     nodes.push_back({t_to, solver_.command(to, directions)});
     return;
   }

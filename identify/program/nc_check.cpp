@@ -27,8 +27,8 @@ void add_time(const NcStep& step, PathErrors& errors) {
 
 }  // namespace
 
-NcCheck::NcCheck(const ProgramErrors& errors, NcSetup setup, FunctionalPoint functional_point)
-    : errors_(errors),
+NcCheck::NcCheck(ProgramErrors errors, NcSetup setup, FunctionalPoint functional_point)
+    : errors_(std::move(errors)),
       functional_point_(std::move(functional_point)),
       original_(setup, "the program"),
       written_(std::move(setup), "the rewritten program") {}

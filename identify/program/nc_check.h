@@ -23,7 +23,7 @@ struct PathErrors {
 
 class NcCheck {
  public:
-  NcCheck(const ProgramErrors& errors, NcSetup setup, FunctionalPoint functional_point);
+  NcCheck(ProgramErrors errors, NcSetup setup, FunctionalPoint functional_point);
 
   /// A line and what it was rewritten into.
   void add(std::string_view line, std::span<const NcWrittenLine> written);

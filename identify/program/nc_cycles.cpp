@@ -10,6 +10,9 @@
 namespace volcal {
 namespace {
 
+constexpr std::size_t kMostMotions = 100000;  ///< of one block
+constexpr double kRounding = 1e-9;            ///< m
+
 /// One cycle block; heights are axis positions across the plane, m.
 class DrillingCycle {
  public:
@@ -43,7 +46,7 @@ class DrillingCycle {
  private:
   void read_words() {
     const double unit = require_unit(state_, place_);
-    const std::size_t axis = static_cast<std::size_t>(state_.plane.across);
+    const auto axis = static_cast<std::size_t>(state_.plane.across);
     const char depth = kNcAxisLetters[axis];
     if (commands_.has(depth)) state_.cycle_depth = commands_.value(depth) * unit;
     if (commands_.has('R')) state_.cycle_plane = commands_.value('R') * unit;
@@ -99,8 +102,9 @@ class DrillingCycle {
 
   void drill_in_pecks() {
     const double peck = *state_.cycle_peck;
-    double depth = plane_ - peck;
-    for (; depth > bottom_ + 1e-9; depth -= peck) {
+    const int pecks = static_cast<int>(std::ceil((plane_ - bottom_ - kRounding) / peck));
+    for (int i = 1; i < pecks; ++i) {
+      const double depth = plane_ - i * peck;
       feed_to_height(depth);
       if (motion_ == 830) rapid_to_height(plane_);
       rapid_to_height(depth + kPeckClearance);
@@ -136,7 +140,7 @@ class DrillingCycle {
     if (to != state_.position) add(NcMotionKind::Rapid, to, std::numeric_limits<double>::quiet_NaN());
   }
   void add(NcMotionKind kind, const Eigen::Vector3d& to, double duration) {
-    if (motions_.size() > 10U * kMostCycleMotions)
+    if (motions_.size() > kMostMotions)
       place_.refuse("the cycle makes more than 100000 motions", "are L and Q as meant?");
     NcMotion motion;
     motion.kind = kind;

@@ -144,11 +144,13 @@ std::vector<double> chord_ends(const NcArc& arc, double tolerance) {
   const double radius = std::max(arc.start_radius, arc.end_radius);
   const double turn = std::abs(arc.sweep);
   // A chord of angle a is radius (1 - cos(a / 2)) off.
-  const double widest = 2.0 * std::acos(std::max(1.0 - tolerance / radius, 0.0));
+  constexpr double kNarrowest = 1e-4;  // rad; 1.25 nm off at a radius of 1 m
+  const double widest = std::max(2.0 * std::acos(std::max(1.0 - tolerance / radius, 0.0)), kNarrowest);
   const double quarter = 0.5 * std::numbers::pi;
   std::vector<double> ends = {0.0, 1.0};
   const double low = std::min(arc.start_angle, arc.start_angle + arc.sweep);
-  for (double k = std::floor(low / quarter) + 1.0; k * quarter < low + turn; k += 1.0)
+  const auto first = static_cast<int>(std::floor(low / quarter)) + 1;
+  for (int k = first; k * quarter < low + turn; ++k)
     ends.push_back((k * quarter - arc.start_angle) / arc.sweep);
   std::ranges::sort(ends);
   std::vector<double> all = {0.0};
@@ -156,8 +158,8 @@ std::vector<double> chord_ends(const NcArc& arc, double tolerance) {
     const double part = ends[i + 1] - ends[i];
     constexpr double kSameAngle = 1e-12;
     if (part < kSameAngle) continue;
-    const double count = std::max(1.0, std::ceil(part * turn / widest));
-    for (double k = 1.0; k < count; k += 1.0) all.push_back(ends[i] + part * k / count);
+    const int count = std::max(1, static_cast<int>(std::ceil(part * turn / widest)));
+    for (int k = 1; k < count; ++k) all.push_back(ends[i] + part * k / count);
     all.push_back(ends[i + 1]);
   }
   all.back() = 1.0;

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/tables/compensation.h"
+
 namespace volcal {
 namespace {
 
@@ -57,11 +59,8 @@ void turn_directions(const Eigen::Vector3d& motion, ApproachDirection& direction
   }
 }
 
-CommandSolver::CommandSolver(const Machine& machine, ErrorField errors) : errors_(std::move(errors)) {
-  for (const AxisName axis : kLinearAxes) {
-    if (machine.has_axis(axis)) movable_[direction_of(axis)] = 1.0;
-  }
-}
+CommandSolver::CommandSolver(const Machine& machine, ErrorField errors)
+    : errors_(std::move(errors)), movable_(movable_directions(machine)) {}
 
 Eigen::Vector3d CommandSolver::error(const Eigen::Vector3d& position,
                                      const ApproachDirection& directions) const {

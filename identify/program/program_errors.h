@@ -56,7 +56,7 @@ class CommandSolver {
 
  private:
   ErrorField errors_;
-  Eigen::Vector3d movable_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d movable_;
   Eigen::Vector3d last_correction_ = Eigen::Vector3d::Zero();
   double last_step_ = 1e-9;  ///< m
 };

@@ -151,6 +151,7 @@ TEST(NcRefusals, OfBlocksThatMeanNothingOrTwoThings) {
       {"G98 G0 Z5\nG89 X1 Z-1 R1 F10\n",
        "2: G89 goes back above R; controls differ in where its feed ends (write G99 before it)"},
       {"G83 X1 Z-1 R1 F10\n", "1: G83 has no positive Q (write the depth of a peck as Q)"},
+      {"G98 G83 X1 Z-1 R1 Q0.0000001 F10\n", "1: Q makes more than 10000 pecks (is it in the right unit?)"},
       {"G93 G81 X1 Z-1 R1 F10\n", "1: G81 stands under G93 (write cycles under G94)"},
       {"G53 F10\n", "1: G53 stands without a motion by G0 or G1 (write G53 G0 and the coordinates)"},
       {"G0 X1 R5\n", "1: R belongs to no code of the block (take it out)"},

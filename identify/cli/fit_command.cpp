@@ -7,6 +7,7 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/fit_policies.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -43,9 +44,9 @@ FitOptions fit_options(const FitArguments& arguments) {
   options.loss = arguments.loss == "huber"    ? RobustLoss::Huber
                  : arguments.loss == "cauchy" ? RobustLoss::Cauchy
                                               : RobustLoss::None;
-  options.outliers = arguments.outliers == "remove" ? OutlierPolicy::Remove : OutlierPolicy::List;
+  options.outliers = outlier_policy(arguments.outliers);
   options.solver = arguments.solver == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
-  options.noise = arguments.noise == "white" ? NoisePolicy::White : NoisePolicy::Automatic;
+  options.noise = noise_policy(arguments.noise);
   options.variance_components = !arguments.keep_stated_sigma;
   options.exact_kinematics = !arguments.first_order;
   return options;

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/draw_ranks.h"
+#include "volcal/identify/cli/fit_policies.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
@@ -62,8 +63,8 @@ FitResult fitted(const MonteCarloArguments& arguments, const Campaign& campaign,
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
   FitOptions options;
   options.threads = arguments.options.threads;
-  options.outliers = arguments.outliers == "remove" ? OutlierPolicy::Remove : OutlierPolicy::List;
-  options.noise = arguments.noise == "white" ? NoisePolicy::White : NoisePolicy::Automatic;
+  options.outliers = outlier_policy(arguments.outliers);
+  options.noise = noise_policy(arguments.noise);
   options.progress = [&bar](const std::string& stage, double done) { bar.update("fit: " + stage, done); };
   return fit(campaign, model, options);
 }

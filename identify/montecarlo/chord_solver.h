@@ -29,6 +29,8 @@ class ChordSolver {
   /// `campaign` must outlive the object.
   explicit ChordSolver(const RepeatedCampaign& campaign);
 
+  const CampaignGradient& gradient() const { return gradient_; }
+
   struct Outcome {
     int gradients = 0;     ///< taken
     double to_come = 0.0;  ///< bound on what further steps would change, standard deviations

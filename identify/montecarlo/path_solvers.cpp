@@ -15,7 +15,8 @@ void SolverTally::add(const SolverTally& other) {
 
 Eigen::MatrixXd PathSolvers::by_chord(const std::vector<CampaignDraw>& draws, SolverTally& tally) {
   Eigen::MatrixXd deviations = repeated_.linear_estimates(draws);
-  auto work = workspaces_.take([] { return std::make_unique<CampaignGradient::Workspace>(); });
+  auto work =
+      workspaces_.take([this] { return std::make_unique<CampaignGradient::Workspace>(chord_.gradient()); });
   std::vector<std::size_t> left;
   for (std::size_t k = 0; k < draws.size(); ++k) {
     const ChordSolver::Outcome outcome =

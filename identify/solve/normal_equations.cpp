@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numeric>
 #include <thread>
+#include <utility>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/normal_tile.h"
@@ -17,41 +17,40 @@ namespace {
 constexpr std::size_t kReadingsPerChunk = 16384;
 constexpr std::size_t kMaxChunks = 16;
 
-/// One active stretch of coefficients per function group.
-std::vector<int> active_cell(const MeasurementModel& model, std::size_t setup, std::size_t row) {
-  std::vector<int> cell;
-  double values[kMaxBasisSupport];
-  const Readings& readings = model.campaign().setups[setup].readings;
-  for (const FunctionGroup& group : model.layout().groups) {
-    cell.push_back(group.basis->evaluate(readings.position[index_of(group.axis)][row], values));
+/// Number of the stretch of coefficients that is active, over all function groups.
+std::uint64_t active_cell(const MeasurementModel& model, std::size_t setup, std::size_t row) {
+  std::uint64_t cell = 0;
+  for (std::size_t g = 0; g < model.layout().groups.size(); ++g) {
+    const std::size_t axis = index_of(model.layout().groups[g].axis);
+    const int start = model.tables().start(g, model.tables().entries(setup, axis)[row]);
+    cell = cell * 1021 + static_cast<std::uint64_t>(start);
   }
   return cell;
 }
 
 }  // namespace
 
-ReadingIndex::ReadingIndex(const MeasurementModel& model) : model_(model) {
+ReadingIndex::ReadingIndex(const MeasurementModel& model) : model_(model), blocks_(model) {
   const auto& setups = model.campaign().setups;
-  std::vector<std::uint64_t> key;
   for (std::size_t setup = 0; setup < setups.size(); ++setup) {
     first_.push_back(observations_);
-    const std::size_t rows = setups[setup].readings.size();
-    observations_ += rows * static_cast<std::size_t>(model.bound(setup).channels());
-    for (std::size_t row = 0; row < rows; ++row) {
-      std::uint64_t cell_key = 0;
-      for (const int start : active_cell(model, setup, row))
-        cell_key = cell_key * 1021 + static_cast<std::uint64_t>(start);
-      key.push_back(cell_key);
-      sorted_.push_back({static_cast<std::uint32_t>(setup), static_cast<std::uint32_t>(row)});
-    }
+    observations_ += setups[setup].readings.size() * static_cast<std::size_t>(model.bound(setup).channels());
   }
-  std::vector<std::uint32_t> order(sorted_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return key[i]; });
-  std::vector<Reading> unsorted = std::move(sorted_);
-  sorted_.clear();
-  sorted_.reserve(unsorted.size());
-  for (const std::uint32_t i : order) sorted_.push_back(unsorted[i]);
+}
+
+const std::vector<ReadingIndex::Reading>& ReadingIndex::sorted() const {
+  std::call_once(is_sorted_, [this] {
+    std::vector<std::pair<std::uint64_t, Reading>> keyed;
+    const auto& setups = model_.campaign().setups;
+    for (std::uint32_t setup = 0; setup < setups.size(); ++setup) {
+      for (std::uint32_t row = 0; row < setups[setup].readings.size(); ++row)
+        keyed.push_back({active_cell(model_, setup, row), {setup, row}});
+    }
+    std::ranges::stable_sort(keyed, {}, &std::pair<std::uint64_t, Reading>::first);
+    sorted_.reserve(keyed.size());
+    for (const auto& [cell, reading] : keyed) sorted_.push_back(reading);
+  });
+  return sorted_;
 }
 
 std::vector<std::size_t> ReadingIndex::left_out() const {
@@ -67,23 +66,31 @@ std::vector<std::size_t> ReadingIndex::left_out() const {
 
 NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                                      const ceres::LossFunction* loss, int threads)
-    : index_(index), weight_(weight), loss_(loss), threads_(std::max(1, threads)) {
+    : index_(index),
+      weight_(weight),
+      loss_(loss),
+      threads_(std::max(1, threads)),
+      by_pairs_(PairSums::pay(index.blocks())),
+      chunks_(make_chunks()) {
   use_single_threaded_blas();
-  const std::size_t readings = index.sorted().size();
-  const std::size_t chunks =
-      std::clamp<std::size_t>(readings / kReadingsPerChunk, readings >= 2000 ? 2 : 1, kMaxChunks);
-  for (std::size_t chunk = 1; chunk <= chunks; ++chunk) chunk_ends_.push_back(readings * chunk / chunks);
+}
+
+std::vector<NormalAccumulator::Chunk> NormalAccumulator::make_chunks() const {
+  const std::size_t observations = index_.observations();
+  const std::size_t count =
+      std::clamp<std::size_t>(observations / kReadingsPerChunk, observations >= 2000 ? 2 : 1, kMaxChunks);
+  return std::vector<Chunk>(count);
 }
 
 template <class Work>
 void NormalAccumulator::for_each_chunk(const Work& work) const {
   std::atomic<std::size_t> next{0};
   const auto run = [&] {
-    for (std::size_t chunk = next++; chunk < chunk_ends_.size(); chunk = next++) work(chunk);
+    for (std::size_t chunk = next++; chunk < chunks_.size(); chunk = next++) work(chunk);
   };
   std::vector<std::thread> workers;
-  const int extra = std::min<int>(threads_, static_cast<int>(chunk_ends_.size())) - 1;
-  workers.reserve(chunk_ends_.size());
+  const int extra = std::min<int>(threads_, static_cast<int>(chunks_.size())) - 1;
+  workers.reserve(chunks_.size());
   for (int i = 0; i < extra; ++i) workers.emplace_back(run);
   run();
   for (std::thread& worker : workers) worker.join();
@@ -92,78 +99,135 @@ void NormalAccumulator::for_each_chunk(const Work& work) const {
 const NormalEquations& NormalAccumulator::accumulate(const Eigen::VectorXd& parameters,
                                                      const std::vector<bool>* include, Sums what) {
   const TabulatedFunctions tabulated = index_.model().tabulate(parameters);
-  sums_.resize(chunk_ends_.size());
   for_each_chunk([&](std::size_t chunk) {
-    accumulate_chunk(chunk, parameters, tabulated, include, what, sums_[chunk]);
+    if (what == Sums::All && !by_pairs_) {
+      add_by_cell(chunk, parameters, tabulated, include, chunks_[chunk].sums);
+    } else {
+      add_blocks(chunk, parameters, tabulated, include, what, chunks_[chunk]);
+    }
   });
-  NormalEquations& total = sums_[0];
-  for (std::size_t chunk = 1; chunk < sums_.size(); ++chunk) {
-    if (what == Sums::All) total.matrix += sums_[chunk].matrix;
-    total.gradient += sums_[chunk].gradient;
-    total.cost += sums_[chunk].cost;
-    total.squares += sums_[chunk].squares;
-    total.observations += sums_[chunk].observations;
-  }
-  if (what == Sums::All) symmetrise_from_upper(total.matrix);
-  return total;
+  collect(what);
+  return chunks_.front().sums;
 }
 
-void NormalAccumulator::accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
-                                         const TabulatedFunctions& tabulated,
-                                         const std::vector<bool>* include, Sums what,
-                                         NormalEquations& sums) const {
-  const ParameterLayout& layout = index_.model().layout();
-  sums.gradient.setZero(layout.size);
-  if (what == Sums::AllButMatrix) {
-    visit_chunk(chunk, parameters, tabulated, include, sums,
-                [&](const RowJacobian& row, int channel, double weight, double error) {
-                  const double weighted = weight * error;
-                  for_each_derivative(layout, row, channel, [&](int parameter, double derivative) {
-                    sums.gradient[parameter] += weighted * derivative;
-                  });
-                });
-    return;
+/// Total of the chunks, in their order.
+void NormalAccumulator::collect(Sums what) {
+  const bool by_cell = what == Sums::All && !by_pairs_;
+  Chunk& total = chunks_.front();
+  for (std::size_t i = 1; i < chunks_.size(); ++i) {
+    const Chunk& chunk = chunks_[i];
+    total.sums.cost += chunk.sums.cost;
+    total.sums.squares += chunk.sums.squares;
+    total.sums.observations += chunk.sums.observations;
+    if (by_cell) {
+      total.sums.matrix += chunk.sums.matrix;
+      total.sums.gradient += chunk.sums.gradient;
+    } else {
+      total.gradient->add(*chunk.gradient);
+      if (what == Sums::All) total.pairs->add(*chunk.pairs);
+    }
   }
-  sums.matrix.setZero(layout.size, layout.size);
-  NormalTile tile(layout, index_.model().shared_tail_size(), sums.matrix, sums.gradient);
-  visit_chunk(chunk, parameters, tabulated, include, sums,
-              [&](const RowJacobian& row, int channel, double weight, double error) {
-                tile.add(row, channel, std::sqrt(weight), error);
-              });
-  tile.flush();
+  if (!by_cell) total.sums.gradient = total.gradient->gradient();
+  if (what != Sums::All) return;
+  if (by_pairs_) {
+    const int size = index_.model().layout().size;
+    total.sums.matrix.setZero(size, size);
+    total.pairs->add_to(total.sums.matrix);
+  }
+  symmetrise_from_upper(total.sums.matrix);
 }
 
-/// Cost, squares and count; `add` gets every observation's row, weight (of the loss, too) and error.
-template <class Add>
-void NormalAccumulator::visit_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
+/// Counts an observation; returns its weight, that of the loss included.
+double NormalAccumulator::observe(std::size_t observation, double error, NormalEquations& sums) const {
+  const double weight = weight_[observation];
+  if (weight == 0.0) return 0.0;
+  const double square = weight * error * error;
+  double rho[3] = {square, 1.0, 0.0};
+  if (loss_ != nullptr) loss_->Evaluate(square, rho);
+  sums.cost += 0.5 * rho[0];
+  sums.squares += square;
+  ++sums.observations;
+  return weight * rho[1];
+}
+
+void NormalAccumulator::add_blocks(std::size_t chunk, const Eigen::VectorXd& parameters,
+                                   const TabulatedFunctions& tabulated, const std::vector<bool>* include,
+                                   Sums what, Chunk& out) const {
+  const BlockModel& model = index_.blocks();
+  if (!out.gradient) {
+    out.gradient.emplace(model);
+    out.levers = model.make_levers();
+  }
+  out.gradient->set_zero();
+  if (what == Sums::All) {
+    if (!out.pairs) {
+      out.pairs.emplace(model);
+      out.rows.resize(kLanes * model.row_width());
+    }
+    out.pairs->set_zero();
+  }
+  out.sums.cost = out.sums.squares = 0.0;
+  out.sums.observations = 0;
+  const std::size_t blocks = model.blocks().size(), end = begin_of(chunk + 1, blocks);
+  for (std::size_t i = begin_of(chunk, blocks); i < end; ++i) {
+    const ReadingBlock& block = model.blocks()[i];
+    if (include != nullptr && !(*include)[block.setup]) continue;
+    model.linearize(block, parameters, tabulated, out.levers, out.linearized);
+    add_block(block, what, out);
+  }
+}
+
+void NormalAccumulator::add_block(const ReadingBlock& block, Sums what, Chunk& out) const {
+  const BlockModel& model = index_.blocks();
+  const LinearizationLanes& reading = out.linearized.reading;
+  const auto channels = static_cast<std::size_t>(reading.channels());
+  const auto& value = index_.model().campaign().setups[block.setup].readings.value;
+  const std::size_t first = index_.first_observation(block.setup, block.first_row);
+  Lanes weighted_error[kMaxChannels] = {};
+  for (std::size_t channel = 0; channel < channels; ++channel) {
+    const Lanes& predicted = reading.predicted(static_cast<int>(channel));
+    Lanes root = {};
+    for (int i = 0; i < block.size; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const double error = predicted[i] - value[channel][block.first_row + row];
+      const double weight = observe(first + row * channels + channel, error, out.sums);
+      weighted_error[channel][i] = weight * error;
+      root[i] = std::sqrt(weight);
+    }
+    if (what != Sums::All) continue;
+    model.make_rows(block, out.linearized, static_cast<int>(channel), root, out.levers, out.rows.data());
+    out.pairs->add(block, out.rows.data());
+  }
+  model.add_work(block, out.linearized, weighted_error, out.levers, *out.gradient);
+}
+
+void NormalAccumulator::add_by_cell(std::size_t chunk, const Eigen::VectorXd& parameters,
                                     const TabulatedFunctions& tabulated, const std::vector<bool>* include,
-                                    NormalEquations& sums, const Add& add) const {
+                                    NormalEquations& sums) const {
   const MeasurementModel& model = index_.model();
   const auto& setups = model.campaign().setups;
+  const int size = model.layout().size;
   sums.cost = sums.squares = 0.0;
   sums.observations = 0;
+  sums.gradient.setZero(size);
+  sums.matrix.setZero(size, size);
+  NormalTile tile(model.layout(), model.shared_tail_size(), sums.matrix, sums.gradient);
   RowJacobian row;
-  double rho[3] = {0.0, 1.0, 0.0};
-  const std::size_t begin = chunk == 0 ? 0 : chunk_ends_[chunk - 1];
-  for (std::size_t i = begin; i < chunk_ends_[chunk]; ++i) {
-    const auto [setup, reading] = index_.sorted()[i];
+  const auto& sorted = index_.sorted();
+  const std::size_t end = begin_of(chunk + 1, sorted.size());
+  for (std::size_t i = begin_of(chunk, sorted.size()); i < end; ++i) {
+    const auto [setup, reading] = sorted[i];
     if (include != nullptr && !(*include)[setup]) continue;
     model.linearize(setup, reading, parameters, row, &tabulated);
     const std::size_t observation = index_.first_observation(setup, reading);
     for (int channel = 0; channel < row.channels; ++channel) {
-      const double weight = weight_[observation + static_cast<std::size_t>(channel)];
-      if (weight == 0.0) continue;
-      const double error =
-          row.predicted[channel] - setups[setup].readings.value[static_cast<std::size_t>(channel)][reading];
-      const double square = weight * error * error;
-      rho[0] = square;
-      if (loss_ != nullptr) loss_->Evaluate(square, rho);
-      sums.cost += 0.5 * rho[0];
-      sums.squares += square;
-      ++sums.observations;
-      add(row, channel, weight * rho[1], error);
+      const auto c = static_cast<std::size_t>(channel);
+      const double error = row.predicted[channel] - setups[setup].readings.value[c][reading];
+      const double weight = observe(observation + c, error, sums);
+      if (weight > 0.0) tile.add(row, channel, std::sqrt(weight), error);
     }
   }
+  tile.flush();
 }
 
 }  // namespace volcal

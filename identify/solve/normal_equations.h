@@ -1,13 +1,17 @@
 #pragma once
-/// Weighted normal equations of a campaign, accumulated reading by reading without storing a Jacobian.
-/// Readings are visited by knot cell, so that the active coefficients of a batch are the same and its outer
-/// products are one dense matrix product. Sums run over chunks fixed by the number of readings: results do
-/// not depend on the number of threads.
+/// Weighted normal equations of a campaign, accumulated without storing a Jacobian. Where the readings'
+/// positions recur, products are summed by pairs of positions (pair_sums.h); elsewhere readings are visited
+/// by knot cell, so that the active coefficients of a batch are the same and its outer products are one dense
+/// matrix product. Sums run over chunks fixed by the number of readings: results do not depend on the number
+/// of threads.
 
 #include <Eigen/Core>
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
+#include "volcal/identify/solve/pair_sums.h"
+#include "volcal/model/observation/block_model.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace ceres {
@@ -42,14 +46,17 @@ class ReadingIndex {
   /// Observations that the campaign leaves out, ascending.
   std::vector<std::size_t> left_out() const;
   /// Readings sorted by knot cell, then setup.
-  const std::vector<Reading>& sorted() const { return sorted_; }
+  const std::vector<Reading>& sorted() const;
   const MeasurementModel& model() const { return model_; }
+  const BlockModel& blocks() const { return blocks_; }
 
  private:
   const MeasurementModel& model_;
+  BlockModel blocks_;
   std::vector<std::size_t> first_;
   std::size_t observations_ = 0;
-  std::vector<Reading> sorted_;
+  mutable std::once_flag is_sorted_;  ///< few campaigns need it
+  mutable std::vector<Reading> sorted_;
 };
 
 /// What an accumulation computes: M costs more than all the rest.
@@ -67,22 +74,34 @@ class NormalAccumulator {
                                     const std::vector<bool>* include = nullptr, Sums what = Sums::All);
 
  private:
-  void accumulate_chunk(std::size_t chunk, const Eigen::VectorXd& parameters,
-                        const TabulatedFunctions& tabulated, const std::vector<bool>* include, Sums what,
-                        NormalEquations& sums) const;
-  template <class Add>
-  void visit_chunk(std::size_t chunk, const Eigen::VectorXd& parameters, const TabulatedFunctions& tabulated,
-                   const std::vector<bool>* include, NormalEquations& sums, const Add& add) const;
+  /// Of one chunk, kept because memory is slow to come by; the first becomes the total.
+  struct Chunk {
+    NormalEquations sums;
+    std::optional<GradientSums> gradient;
+    std::optional<PairSums> pairs;
+    BlockLevers levers;
+    BlockLinearization linearized;
+    TileArray rows;
+  };
+
+  std::vector<Chunk> make_chunks() const;
+  void add_blocks(std::size_t chunk, const Eigen::VectorXd& parameters, const TabulatedFunctions& tabulated,
+                  const std::vector<bool>* include, Sums what, Chunk& out) const;
+  void add_block(const ReadingBlock& block, Sums what, Chunk& out) const;
+  void add_by_cell(std::size_t chunk, const Eigen::VectorXd& parameters, const TabulatedFunctions& tabulated,
+                   const std::vector<bool>* include, NormalEquations& sums) const;
+  double observe(std::size_t observation, double error, NormalEquations& sums) const;
+  void collect(Sums what);
   template <class Work>
   void for_each_chunk(const Work& work) const;
+  std::size_t begin_of(std::size_t chunk, std::size_t count) const { return count * chunk / chunks_.size(); }
 
   const ReadingIndex& index_;
   const std::vector<double>& weight_;
   const ceres::LossFunction* loss_;
   int threads_;
-  std::vector<std::size_t> chunk_ends_;  ///< reading one past the end of each chunk
-  std::vector<NormalEquations>
-      sums_;  ///< per chunk, kept because memory is slow to come by; the first is the total
+  bool by_pairs_;
+  std::vector<Chunk> chunks_;
 };
 
 }  // namespace volcal

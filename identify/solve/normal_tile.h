@@ -6,27 +6,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "volcal/identify/solve/tile_array.h"
 #include "volcal/identify/solve/tile_kernel.h"
 #include "volcal/model/observation/parameters.h"
 #include "volcal/model/observation/row_jacobian.h"
 
 namespace volcal {
-
-/// Array of doubles that starts at a cache line.
-class TileArray {
- public:
-  /// Sets all to zero.
-  void resize(std::ptrdiff_t size) {
-    lines_.assign(static_cast<std::size_t>(size + kTileAlignment - 1) / kTileAlignment, {});
-  }
-  double* data() { return lines_.data()->values; }
-
- private:
-  struct alignas(kTileAlignment * sizeof(double)) Line {
-    double values[kTileAlignment];
-  };
-  std::vector<Line> lines_;
-};
 
 class NormalTile {
  public:

@@ -52,6 +52,8 @@ class AngleSetup final : public EquationBase<AngleSetup> {
     out.d_nuisance[0][0] = 1.0;
   }
 
+  bool sees_rotation() const override { return true; }
+
   double noise_length(std::size_t /*row*/, int /*channel*/) const override { return 0.0; }
 
  private:

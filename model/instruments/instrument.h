@@ -11,6 +11,7 @@
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/schema.h"
+#include "volcal/model/kinematics/lanes.h"
 
 namespace volcal {
 
@@ -52,6 +53,39 @@ struct Linearization {
   double d_nuisance[kMaxChannels][kMaxLocalNuisance];
 };
 
+/// ToolState of consecutive readings, side by side.
+struct ToolStateLanes {
+  Lanes point_w[3];
+  Lanes rotation_tool_side[3];
+  Lanes rotation_workpiece_side[3];
+};
+
+/// Linearization of consecutive readings, side by side.
+class LinearizationLanes {
+ public:
+  /// `state_size`: kStateSize, or 3 where no channel depends on rotations.
+  void resize(int channels, int state_size, int nuisance_size);
+  int channels() const { return channels_; }
+  int state_size() const { return state_size_; }
+  int nuisance_size() const { return nuisance_size_; }
+  Lanes& predicted(int channel) { return at(channel); }
+  const Lanes& predicted(int channel) const { return at(channel); }
+  /// The derivatives of a channel to the state stand one after another, and so do those to the nuisance.
+  Lanes* d_state(int channel) { return &at(channels_ + channel * state_size_); }
+  const Lanes* d_state(int channel) const { return &at(channels_ + channel * state_size_); }
+  Lanes* d_nuisance(int channel) { return d_state(channels_) + channel * nuisance_size_; }
+  const Lanes* d_nuisance(int channel) const { return d_state(channels_) + channel * nuisance_size_; }
+
+ private:
+  Lanes& at(int index) { return lanes_.data()[index]; }
+  const Lanes& at(int index) const { return lanes_.data()[index]; }
+
+  int channels_ = 0;
+  int state_size_ = 0;
+  int nuisance_size_ = 0;
+  std::vector<Lanes> lanes_;
+};
+
 /// What an instrument needs to know of a setup before it can predict.
 struct SetupContext {
   const Setup& setup;
@@ -83,6 +117,12 @@ class BoundSetup {
                        InstrumentJet* predicted) const = 0;
   virtual void linearize(std::size_t row, const ToolState<double>& state, const double* nuisance,
                          Linearization& out) const = 0;
+  /// linearize() of rows first_row to first_row + count, which have the same nuisance parameters; lanes from
+  /// `count` on are finite, nothing else is known of them. `out` has its size.
+  virtual void linearize_lanes(std::size_t first_row, int count, const ToolStateLanes& state,
+                               const double* nuisance, LinearizationLanes& out) const;
+  /// Whether readings depend on the tool's rotation, besides the point that it moves.
+  virtual bool sees_rotation() const { return false; }
 
  protected:
   void set_channels(int channels) { channels_ = channels; }

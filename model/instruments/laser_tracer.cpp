@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "volcal/model/instruments/nuisance.h"
@@ -31,6 +32,26 @@ const InstrumentSchema kLaserTracerSchema = {
         }(),
     .column_sets = {{{.column = "length_mm", .help = "interferometer reading", .plausible_max = 1e5}}},
     .noise_keys = length_noise_keys()};
+
+/// `nuisance`: station and dead path; d_nuisance: their derivatives.
+VOLCAL_VECTOR_LOOPS void measure_lengths(const Lanes* __restrict point_w, const double* nuisance,
+                                         double scale, Lanes& __restrict predicted, Lanes* __restrict d_point,
+                                         Lanes* __restrict d_nuisance) {
+  const double sx = nuisance[0], sy = nuisance[1], sz = nuisance[2], dead_path = nuisance[3];
+  for (int i = 0; i < kLanes; ++i) {
+    const double x = point_w[0].value[i] - sx, y = point_w[1].value[i] - sy, z = point_w[2].value[i] - sz;
+    const double distance = std::sqrt(x * x + y * y + z * z);
+    const double factor = scale / distance;
+    predicted.value[i] = distance * scale - dead_path;
+    d_point[0].value[i] = x * factor;
+    d_point[1].value[i] = y * factor;
+    d_point[2].value[i] = z * factor;
+    d_nuisance[0].value[i] = -(x * factor);
+    d_nuisance[1].value[i] = -(y * factor);
+    d_nuisance[2].value[i] = -(z * factor);
+    d_nuisance[3].value[i] = -1.0;
+  }
+}
 
 class LaserTracerSetup final : public EquationBase<LaserTracerSetup> {
  public:
@@ -67,6 +88,16 @@ class LaserTracerSetup final : public EquationBase<LaserTracerSetup> {
     }
     out.d_nuisance[0][3] = -1.0;
     if (has_scale_) out.d_nuisance[0][4] = distance;
+  }
+
+  void linearize_lanes(std::size_t /*first_row*/, int /*count*/, const ToolStateLanes& state,
+                       const double* nuisance, LinearizationLanes& out) const override {
+    measure_lengths(state.point_w, nuisance, has_scale_ ? 1.0 + nuisance[4] : 1.0, out.predicted(0),
+                    out.d_state(0), out.d_nuisance(0));
+    if (has_scale_) {
+      for (int i = 0; i < kLanes; ++i)
+        out.d_nuisance(0)[4][i] = (out.predicted(0)[i] + nuisance[3]) / (1.0 + nuisance[4]);
+    }
   }
 
   double noise_length(std::size_t row, int /*channel*/) const override {

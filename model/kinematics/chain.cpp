@@ -6,6 +6,12 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+const Lanes kOnes = [] {
+  Lanes ones;
+  ones.fill(1.0);
+  return ones;
+}();
+
 /// Sign of a rotary location error in the tool's motion relative to the workpiece: it is stated for the
 /// physical axis line in the machine frame, and a table's axis line moves with the workpiece.
 double location_sign(const JointLever& lever, Component component) {
@@ -79,6 +85,37 @@ Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& to
     if (lever.workpiece_side) lever.rotation_ws = rotation;
   }
   return point;
+}
+
+void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w, Lanes* arm_s,
+                            Lanes* rotation_ws) const {
+  if (rotation_ws != nullptr) {
+    std::vector<JointLever> of_reading(joints_.size());
+    for (int i = 0; i < kLanes; ++i) {
+      AxisPosition at{};
+      for (const ChainJoint& joint : joints_) at[index_of(joint.axis)] = position[index_of(joint.axis)][i];
+      const Vector3d point = levers(at, tool_offset, of_reading.data());
+      for (int k = 0; k < 3; ++k) point_w[k][i] = point[k];
+      for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+        const JointLever& lever = of_reading[joint];
+        for (int k = 0; k < 3; ++k) arm_s[3 * joint + static_cast<std::size_t>(k)][i] = lever.arm_s[k];
+        for (int k = 0; k < 9; ++k)
+          rotation_ws[9 * joint + static_cast<std::size_t>(k)][i] = lever.rotation_ws(k / 3, k % 3);
+      }
+    }
+    return;
+  }
+  for (int k = 0; k < 3; ++k) point_w[k].fill(tool_offset[k]);
+  for (std::size_t joint = joints_.size(); joint-- > 0;) {
+    const ChainJoint& own = joints_[joint];
+    const auto move = [&] { add_scaled(position[index_of(own.axis)], 1.0, point_w[direction_of(own.axis)]); };
+    if (own.workpiece_side) move();
+    for (int k = 0; k < 3; ++k) {
+      arm_s[3 * joint + static_cast<std::size_t>(k)] = point_w[k];
+      add_scaled(kOnes, -own.reference_point[k], arm_s[3 * joint + static_cast<std::size_t>(k)]);
+    }
+    if (!own.workpiece_side) move();
+  }
 }
 
 ToolTwist KinematicChain::first_order(const AxisPosition& position, const Vector3d& tool_offset,

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "volcal/model/description/machine.h"
+#include "volcal/model/kinematics/lanes.h"
 
 namespace volcal {
 
@@ -86,6 +87,10 @@ class KinematicChain {
   /// point.
   Eigen::Vector3d levers(const AxisPosition& position, const Eigen::Vector3d& tool_offset,
                          JointLever* levers) const;
+  /// levers() of readings side by side. `position`: by AxisName; `arm_s`: 3 per joint; `rotation_ws`: 9 per
+  /// joint, row by row, null on a machine without rotary axes.
+  void levers(const Lanes* position, const Eigen::Vector3d& tool_offset, Lanes* point_w, Lanes* arm_s,
+              Lanes* rotation_ws) const;
   /// First-order pose error from given errors.
   ToolTwist first_order(const AxisPosition& position, const Eigen::Vector3d& tool_offset,
                         const PoseErrors<double>& errors) const;

@@ -75,14 +75,13 @@ void MeasurementModel::add_functions(std::size_t setup, std::size_t row, const E
     const std::size_t axis = index_of(place.axis);
     const int support = group_support_[g];
     const double* values = computed;
-    if (tables_.has_table(setup, axis)) {
-      const std::size_t entry = tables_.entry(setup, axis, row);
-      out.start[g] = tables_.basis_values(g, support, entry, basis);
-      if (tabulated != nullptr) values = (*tabulated)[g].data() + entry * place.component.size();
+    const std::size_t entry = tables_.entries(setup, axis)[row];
+    out.start[g] = tables_.basis_values(g, support, entry, basis);
+    if (tabulated != nullptr) {
+      values = (*tabulated)[g].data() + entry * place.component.size();
     } else {
-      out.start[g] = group.basis->evaluate(state.position[axis], basis);
+      function_values(group, out.start[g], basis, parameters, computed);
     }
-    if (values == computed) function_values(group, out.start[g], basis, parameters, computed);
     for (std::size_t s = 0; s < place.component.size(); ++s) motion[*slot_motion++] += values[s];
     basis += support;
   }

@@ -33,6 +33,13 @@ class MeasurementModel {
   const ParameterLayout& layout() const { return binding_.layout; }
   const BoundSetup& bound(std::size_t setup) const { return *binding_.setups[setup].bound; }
   const CampaignBinding& binding() const { return binding_; }
+  const PositionTables& tables() const { return tables_; }
+  /// Whether the joint's stator frame turns with rotary axes.
+  bool joint_turns(std::size_t joint) const { return joint_turns_[joint] != 0; }
+  /// Motion of every function, 6 x joint + component, group by group.
+  const std::vector<int>& slot_motion() const { return slot_motion_; }
+  /// Per setup and row; empty when predictions are first order.
+  const std::vector<std::vector<Eigen::Vector3d>>& second_order_remainder_w() const { return remainder_w_; }
   /// Number of parameters besides the functions' that every row depends on; they lead its tail.
   int shared_tail_size() const {
     return static_cast<int>(binding_.shared_terms.size()) + binding_.effect_parameters;
@@ -94,8 +101,8 @@ class MeasurementModel {
   KinematicChain chain_;
   CampaignBinding binding_;
   PositionTables tables_;
-  std::vector<char> joint_turns_;   ///< whether the joint's stator frame turns with rotary axes
-  std::vector<int> slot_motion_;    ///< per function: 6 x joint + component
+  std::vector<char> joint_turns_;
+  std::vector<int> slot_motion_;
   std::vector<int> group_support_;  ///< per function group: basis values of a row
   std::size_t value_count_ = 0;     ///< basis values of a row
   std::vector<std::vector<Eigen::Vector3d>> remainder_w_;

@@ -9,19 +9,19 @@ namespace {
 /// Numbers the distinct positions of one axis; neighbouring readings often share one.
 class PositionNumbers {
  public:
-  std::uint16_t number_of(double position) {
+  std::uint32_t number_of(double position) {
     if (!positions_.empty() && position == positions_[last_]) return last_;
     const auto [place, is_new] =
-        numbers_.try_emplace(position, static_cast<std::uint16_t>(positions_.size()));
+        numbers_.try_emplace(position, static_cast<std::uint32_t>(positions_.size()));
     if (is_new) positions_.push_back(position);
     return last_ = place->second;
   }
   const std::vector<double>& positions() const { return positions_; }
 
  private:
-  std::unordered_map<double, std::uint16_t> numbers_;
+  std::unordered_map<double, std::uint32_t> numbers_;
   std::vector<double> positions_;
-  std::uint16_t last_ = 0;
+  std::uint32_t last_ = 0;
 };
 
 /// sum[slot] = sum over j of basis[j] * coefficients[j][slot]
@@ -56,16 +56,9 @@ PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& 
     PositionNumbers numbers;
     for (std::size_t setup = 0; setup < campaign.setups.size(); ++setup) {
       const std::vector<double>& positions = campaign.setups[setup].readings.position[index_of(axis)];
-      std::vector<std::uint16_t>& entries = entry_[setup][index_of(axis)];
+      std::vector<std::uint32_t>& entries = entry_[setup][index_of(axis)];
       entries.reserve(positions.size());
-      for (const double position : positions) {
-        entries.push_back(numbers.number_of(position));
-        if (numbers.positions().size() > kMaxTabulated) break;
-      }
-    }
-    if (numbers.positions().size() > kMaxTabulated) {
-      for (auto& entries : entry_) entries[index_of(axis)] = {};
-      continue;
+      for (const double position : positions) entries.push_back(numbers.number_of(position));
     }
     for (std::size_t g = 0; g < tables_.size(); ++g) {
       const FunctionGroup& group = layout.groups[g];

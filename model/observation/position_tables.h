@@ -1,7 +1,6 @@
 #pragma once
-/// Basis values at the positions that a campaign's readings share. They depend on positions only, and most
-/// campaigns visit each position of an axis many times: grids, lines, several set-ups. An axis with more
-/// positions than kMaxTabulated has no table, and its values are computed at every reading.
+/// Basis values at the different positions of a campaign's readings. They depend on positions only, and most
+/// campaigns visit each position of an axis many times: grids, lines, several set-ups.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -23,27 +22,30 @@ using TabulatedFunctions = std::vector<std::vector<double>>;
 
 class PositionTables {
  public:
-  static constexpr std::size_t kMaxTabulated = 4096;
-
   PositionTables(const Campaign& campaign, const ParameterLayout& layout);
 
   TabulatedFunctions tabulate(const ParameterLayout& layout, const Eigen::VectorXd& parameters) const;
 
-  /// Whether there is a table for this axis, and which of its positions a reading has.
-  bool has_table(std::size_t setup, std::size_t axis) const { return !entry_[setup][axis].empty(); }
-  std::size_t entry(std::size_t setup, std::size_t axis, std::size_t row) const {
-    return entry_[setup][axis][row];
+  /// Which of its axis' positions every reading of a setup has; empty for an axis without functions.
+  const std::vector<std::uint32_t>& entries(std::size_t setup, std::size_t axis) const {
+    return entry_[setup][axis];
+  }
+  /// Different positions of a group's axis, over all setups.
+  std::size_t positions(std::size_t group) const { return tables_[group].start.size(); }
+  /// First active function of a group at a position, and the values of its active functions.
+  int start(std::size_t group, std::size_t entry) const { return tables_[group].start[entry]; }
+  const double* values(std::size_t group, int support, std::size_t entry) const {
+    return tables_[group].values.data() + static_cast<std::size_t>(support) * entry;
   }
   /// Writes the `support` values of a group's active functions; returns the first active function.
   int basis_values(std::size_t group, int support, std::size_t entry, double* values) const {
-    const Table& table = tables_[group];
-    const double* from = table.values.data() + static_cast<std::size_t>(support) * entry;
+    const double* from = this->values(group, support, entry);
     if (support == 4) {
       std::copy_n(from, 4, values);
     } else {
       std::copy_n(from, support, values);
     }
-    return table.start[entry];
+    return start(group, entry);
   }
 
  private:
@@ -52,7 +54,7 @@ class PositionTables {
     std::vector<double> values;  ///< support() values per position
   };
   std::vector<Table> tables_;                                              ///< per function group
-  std::vector<std::array<std::vector<std::uint16_t>, kAxisCount>> entry_;  ///< per setup: of every reading
+  std::vector<std::array<std::vector<std::uint32_t>, kAxisCount>> entry_;  ///< per setup: of every reading
 };
 
 }  // namespace volcal

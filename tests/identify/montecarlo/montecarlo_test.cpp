@@ -227,7 +227,7 @@ TEST_F(TracerStudy, GradientIsThatOfTheNormalEquations) {
         campaign().setups[place.setup].readings.value[static_cast<std::size_t>(place.channel)][place.row];
   }
   const CampaignGradient gradient(model, repeated.whitener());
-  CampaignGradient::Workspace work;
+  CampaignGradient::Workspace work(gradient);
   const Eigen::VectorXd computed = gradient.at(parameters, readings, work);
   EXPECT_LT((computed - expected).norm(), 1e-9 * expected.norm());
 }
@@ -242,7 +242,7 @@ PathDifferences differences(const Campaign& campaign, const FitResult& result) {
   const RepeatedCampaign repeated(campaign, result, {});
   const ChordSolver chord(repeated);
   CampaignRefit refit(repeated);
-  CampaignGradient::Workspace work;
+  CampaignGradient::Workspace work(chord.gradient());
   const Eigen::ArrayXd u = repeated.gain().diagonal().cwiseSqrt();
   PathDifferences largest;
   for (std::uint64_t number = 0; number < 5; ++number) {

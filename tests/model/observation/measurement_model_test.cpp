@@ -101,32 +101,6 @@ TEST_P(MeasurementModelOnRandomChains, TabulatedFunctionsChangeNothing) {
   }
 }
 
-TEST_P(MeasurementModelOnRandomChains, AxesWithTooManyPositionsForATableGiveTheSame) {
-  Campaign large = campaign_;
-  Readings& readings = large.setups[0].readings;
-  const Axis& axis = campaign_.machine.axes.front();
-  const std::size_t added = PositionTables::kMaxTabulated;
-  for (std::size_t i = 0; i < added; ++i) {
-    for (auto& positions : readings.position) {
-      if (!positions.empty()) positions.push_back(positions.front());
-    }
-    readings.position[index_of(axis.name)].back() =
-        axis.travel_min + axis.travel() * static_cast<double>(i) / static_cast<double>(added);
-    for (auto& directions : readings.direction) directions.push_back(1);
-    for (auto& [channel, values] : readings.temperature) values.push_back(20.0);
-    readings.value[0].push_back(0.0);
-    readings.source_line.push_back(readings.source_line.back() + 1);
-  }
-  const MeasurementModel untabulated(large, testing_support::rich_model(large.machine));
-  const TabulatedFunctions tabulated = untabulated.tabulate(parameters_);
-  RowJacobian row, expected;
-  for (std::size_t i = 0; i < kRows; ++i) {
-    model_.linearize(0, i, parameters_, expected);
-    untabulated.linearize(0, i, parameters_, row, &tabulated);
-    expect_same_row(model_, expected, row);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Seeds, MeasurementModelOnRandomChains, ::testing::Range<std::uint64_t>(1, 7));
 
 }  // namespace

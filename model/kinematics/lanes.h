@@ -1,0 +1,41 @@
+#pragma once
+/// Numbers of up to kLanes readings side by side, for loops that the compiler turns into vector instructions.
+/// Sums and products of lanes are the same to the bit for every instruction set: nothing is reordered and
+/// nothing contracted.
+
+namespace volcal {
+
+inline constexpr int kLanes = 64;
+
+struct alignas(64) Lanes {
+  double value[kLanes];
+
+  double& operator[](int lane) { return value[lane]; }
+  double operator[](int lane) const { return value[lane]; }
+  void fill(double number) {
+    for (double& v : value) v = number;
+  }
+};
+
+// A function so marked is compiled for several instruction sets; the program chooses when it starts.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define VOLCAL_VECTOR_LOOPS __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define VOLCAL_VECTOR_LOOPS
+#endif
+
+/// Three components.
+using Lanes3 = Lanes[3];
+
+/// to += factor * lanes
+void add_scaled(const Lanes& lanes, double factor, Lanes& to);
+/// to += a * b
+void add_product(const Lanes& a, const Lanes& b, Lanes& to);
+/// sum of a * b over the lanes, always in the same order
+double dot(const Lanes& a, const Lanes& b);
+/// to += a x b
+void add_cross(const Lanes* a, const Lanes* b, Lanes* to);
+/// to = R v, R row by row; with `transposed` R^T v.
+void rotate(const Lanes* rotation, const Lanes* v, bool transposed, Lanes* to);
+
+}  // namespace volcal

@@ -106,6 +106,21 @@ Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric) {
   return result.values;
 }
 
+PrecisionInverse invert_precision(const Eigen::MatrixXd& precision) {
+  if (const auto lower = cholesky_lower(precision))
+    return {inverse_from_cholesky(*lower), log_determinant(*lower)};
+  if (!(precision.diagonal().array() > 0.0).all())
+    throw std::runtime_error("invert_precision: the diagonal is not positive");
+  const Eigen::VectorXd scale = precision.diagonal().cwiseSqrt().cwiseInverse();
+  SymmetricEigen eigen = eigen_decomposition(scale.asDiagonal() * precision * scale.asDiagonal());
+  const double floor = static_cast<double>(precision.rows()) * std::numeric_limits<double>::epsilon();
+  eigen.values = eigen.values.cwiseMax(floor);
+  const Eigen::MatrixXd root =
+      scale.asDiagonal() * eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
+  return {root * root.transpose(),
+          eigen.values.array().log().sum() - 2.0 * scale.array().log().sum()};
+}
+
 LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold) {
   use_single_threaded_blas();
   const int m = static_cast<int>(a.rows()), n = static_cast<int>(a.cols()), one = 1, query = -1;

@@ -19,6 +19,16 @@ Eigen::MatrixXd inverse_from_cholesky(const Eigen::MatrixXd& lower);
 /// log det of the matrix whose lower Cholesky factor is given.
 double log_determinant(const Eigen::MatrixXd& lower);
 
+struct PrecisionInverse {
+  Eigen::MatrixXd covariance;
+  double log_determinant = 0.0;  ///< of the precision
+};
+/// Of a symmetric matrix that is positive definite but for rounding, as what remains of one when other
+/// parameters are integrated out: where its Cholesky factor fails, eigenvalues of the matrix scaled to a unit
+/// diagonal that rounding cannot tell from zero (n epsilon) count as that large. Throws std::runtime_error
+/// when the diagonal is not positive.
+PrecisionInverse invert_precision(const Eigen::MatrixXd& precision);
+
 struct SymmetricEigen {
   Eigen::VectorXd values;   ///< ascending
   Eigen::MatrixXd vectors;  ///< columns

@@ -77,13 +77,11 @@ Posterior posterior(const Quadratic& cost, const Eigen::VectorXd& z0, const std:
     gradient.segment(stretches[t].offset, n) += pull;
     minus_log += 0.5 * (z.dot(pull) - shape.log_determinant - shape.rank * std::log(lambda[t]));
   }
-  const auto factor = cholesky_lower(precision);
-  if (!factor)
-    throw std::runtime_error("maximise_evidence: the posterior precision is not positive definite");
-  Posterior result{inverse_from_cholesky(*factor), {}, 0.0};
+  PrecisionInverse inverse = invert_precision(precision);
+  Posterior result{std::move(inverse.covariance), {}, 0.0};
   const Eigen::VectorXd step = -(result.covariance * gradient);
   result.mean = z0 + step;
-  result.log_evidence = -(minus_log + 0.5 * gradient.dot(step) + 0.5 * log_determinant(*factor));
+  result.log_evidence = -(minus_log + 0.5 * gradient.dot(step) + 0.5 * inverse.log_determinant);
   return result;
 }
 

@@ -3,8 +3,9 @@
 #include <Random123/philox.h>
 
 #include <Random123/uniform.hpp>
-#include <cmath>
-#include <numbers>
+#include <algorithm>
+
+#include "volcal/identify/montecarlo/box_muller.h"
 
 namespace volcal {
 namespace {
@@ -22,12 +23,12 @@ CounterRandom::CounterRandom(std::uint64_t seed, std::uint64_t draw, RandomSourc
       source_(static_cast<std::uint32_t>(source)),
       draw_{low_word(draw), high_word(draw)} {}
 
-/// Calls use(2 k, uniform, uniform) until `count` numbers are made.
+/// Calls use(i, uniform, uniform) for numbers i and i + 1 of [begin, end), begin even.
 template <class Use>
-void CounterRandom::for_each_pair(std::size_t count, const Use& use) const {
+void CounterRandom::for_each_pair(std::size_t begin, std::size_t end, const Use& use) const {
   r123::Philox4x32 philox;
   const r123::Philox4x32::key_type key = {{key_[0], key_[1]}};
-  for (std::size_t i = 0; i < count; i += 2) {
+  for (std::size_t i = begin; i < end; i += 2) {
     const r123::Philox4x32::ctr_type counter = {{low_word(i / 2), source_, draw_[0], draw_[1]}};
     const r123::Philox4x32::ctr_type words = philox(counter, key);
     use(i, r123::u01<double>(joined(words[0], words[1])), r123::u01<double>(joined(words[2], words[3])));
@@ -35,16 +36,21 @@ void CounterRandom::for_each_pair(std::size_t count, const Use& use) const {
 }
 
 void CounterRandom::normals(std::span<double> out) const {
-  for_each_pair(out.size(), [&](std::size_t i, double first, double second) {
-    const double radius = std::sqrt(-2.0 * std::log(first));
-    const double angle = 2.0 * std::numbers::pi * second;
-    out[i] = radius * std::cos(angle);
-    if (i + 1 < out.size()) out[i + 1] = radius * std::sin(angle);
-  });
+  constexpr std::size_t kPairs = 256;
+  double first[kPairs], second[kPairs];
+  for (std::size_t begin = 0; begin < out.size(); begin += 2 * kPairs) {
+    const std::size_t end = std::min(begin + 2 * kPairs, out.size());
+    for_each_pair(begin, end, [&](std::size_t i, double a, double b) {
+      first[(i - begin) / 2] = a;
+      second[(i - begin) / 2] = b;
+    });
+    box_muller((end - begin + 1) / 2, first, second);
+    for (std::size_t i = begin; i < end; ++i) out[i] = (i % 2 == 0 ? first : second)[(i - begin) / 2];
+  }
 }
 
 void CounterRandom::uniforms(std::span<double> out) const {
-  for_each_pair(out.size(), [&](std::size_t i, double first, double second) {
+  for_each_pair(0, out.size(), [&](std::size_t i, double first, double second) {
     out[i] = first;
     if (i + 1 < out.size()) out[i + 1] = second;
   });

@@ -117,8 +117,7 @@ PrecisionInverse invert_precision(const Eigen::MatrixXd& precision) {
   eigen.values = eigen.values.cwiseMax(floor);
   const Eigen::MatrixXd root =
       scale.asDiagonal() * eigen.vectors * eigen.values.cwiseSqrt().cwiseInverse().asDiagonal();
-  return {root * root.transpose(),
-          eigen.values.array().log().sum() - 2.0 * scale.array().log().sum()};
+  return {root * root.transpose(), eigen.values.array().log().sum() - 2.0 * scale.array().log().sum()};
 }
 
 LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double threshold) {

@@ -104,6 +104,22 @@ TEST_P(NormalEquationsOnRandomChains, EqualTheSumOfRowsInOneCell) {
   expect_agreement(nullptr, {true, true});
 }
 
+TEST_P(NormalEquationsOnRandomChains, EqualTheSumOfRowsWherePositionsRecur) {
+  constexpr double kIntervals = 3.0;
+  for (volcal::Setup& setup : campaign_.setups) {
+    for (const Axis& axis : campaign_.machine.axes) {
+      for (double& position : setup.readings.position[index_of(axis.name)]) {
+        const double share = (position - axis.travel_min) / axis.travel();
+        position = axis.travel_min + axis.travel() * std::round(kIntervals * share) / kIntervals;
+      }
+    }
+  }
+  const MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
+  EXPECT_TRUE(PairSums::pay(BlockModel(model)));
+  expect_agreement(nullptr, {true, true});
+  expect_agreement(nullptr, {false, true});
+}
+
 TEST_P(NormalEquationsOnRandomChains, EqualTheSumOfOneSetupsRows) {
   expect_agreement(nullptr, {false, true});
 }

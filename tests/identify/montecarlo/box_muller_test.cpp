@@ -1,0 +1,45 @@
+// Against the library's functions in long double.
+
+#include "volcal/identify/montecarlo/box_muller.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+namespace volcal {
+namespace {
+
+constexpr double kRounding = 1e-15;  // of the radius
+
+void expect_normals(const std::vector<double>& first, const std::vector<double>& second) {
+  std::vector<double> cosine = first, sine = second;
+  box_muller(first.size(), cosine.data(), sine.data());
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const long double radius = std::sqrt(-2.0L * std::log(static_cast<long double>(first[i])));
+    const long double angle = 2.0L * std::numbers::pi_v<long double> * second[i];
+    const auto tolerance = static_cast<double>(kRounding * radius);
+    EXPECT_NEAR(cosine[i], static_cast<double>(radius * std::cos(angle)), tolerance) << first[i] << second[i];
+    EXPECT_NEAR(sine[i], static_cast<double>(radius * std::sin(angle)), tolerance) << first[i] << second[i];
+  }
+}
+
+TEST(BoxMuller, IsExactToRoundingForRandomNumbers) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<double> first(10'001), second(first.size());
+  for (double& u : first) u = 1.0 - uniform(random);
+  for (double& u : second) u = 1.0 - uniform(random);
+  expect_normals(first, second);
+}
+
+TEST(BoxMuller, IsExactAtTheEdges) {
+  const double least = std::ldexp(1.0, -65), half = std::sqrt(0.5);
+  expect_normals({1.0, least, 0.5, half, std::nextafter(half, 0.0), std::nextafter(1.0, 0.0), 0.25, 0.1},
+                 {1.0, least, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75});
+}
+
+}  // namespace
+}  // namespace volcal

@@ -6,12 +6,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-const Lanes kOnes = [] {
-  Lanes ones;
-  ones.fill(1.0);
-  return ones;
-}();
-
 /// Sign of a rotary location error in the tool's motion relative to the workpiece: it is stated for the
 /// physical axis line in the machine frame, and a table's axis line moves with the workpiece.
 double location_sign(const JointLever& lever, Component component) {
@@ -112,7 +106,7 @@ void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, 
     if (own.workpiece_side) move();
     for (int k = 0; k < 3; ++k) {
       arm_s[3 * joint + static_cast<std::size_t>(k)] = point_w[k];
-      add_scaled(kOnes, -own.reference_point[k], arm_s[3 * joint + static_cast<std::size_t>(k)]);
+      add_number(-own.reference_point[k], arm_s[3 * joint + static_cast<std::size_t>(k)]);
     }
     if (!own.workpiece_side) move();
   }

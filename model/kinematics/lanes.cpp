@@ -2,6 +2,15 @@
 
 namespace volcal {
 
+VOLCAL_VECTOR_LOOPS void add_number(double number, Lanes& to) {
+  for (double& v : to.value) v += number;
+}
+
+VOLCAL_VECTOR_LOOPS void add_entries(const double* __restrict table, const std::int32_t* __restrict place,
+                                     Lanes& __restrict to) {
+  for (int i = 0; i < kLanes; ++i) to.value[i] += table[place[i]];
+}
+
 VOLCAL_VECTOR_LOOPS void add_scaled(const Lanes& lanes, double factor, Lanes& to) {
   for (int i = 0; i < kLanes; ++i) to.value[i] += factor * lanes.value[i];
 }
@@ -20,6 +29,12 @@ VOLCAL_VECTOR_LOOPS double dot(const Lanes& a, const Lanes& b) {
     for (int j = 0; j < half; ++j) part[j] += part[j + half];
   }
   return part[0];
+}
+
+double sum(const Lanes& lanes) {
+  Lanes ones;
+  ones.fill(1.0);
+  return dot(lanes, ones);
 }
 
 VOLCAL_VECTOR_LOOPS void add_cross(const Lanes* __restrict a, const Lanes* __restrict b,

@@ -3,6 +3,8 @@
 /// Sums and products of lanes are the same to the bit for every instruction set: nothing is reordered and
 /// nothing contracted.
 
+#include <cstdint>
+
 namespace volcal {
 
 inline constexpr int kLanes = 64;
@@ -24,15 +26,17 @@ struct alignas(64) Lanes {
 #define VOLCAL_VECTOR_LOOPS
 #endif
 
-/// Three components.
-using Lanes3 = Lanes[3];
-
+/// to += number
+void add_number(double number, Lanes& to);
+/// to += table[place]
+void add_entries(const double* table, const std::int32_t* place, Lanes& to);
 /// to += factor * lanes
 void add_scaled(const Lanes& lanes, double factor, Lanes& to);
 /// to += a * b
 void add_product(const Lanes& a, const Lanes& b, Lanes& to);
-/// sum of a * b over the lanes, always in the same order
+/// Sums over the lanes, always in the same order: of a * b, of one.
 double dot(const Lanes& a, const Lanes& b);
+double sum(const Lanes& lanes);
 /// to += a x b
 void add_cross(const Lanes* a, const Lanes* b, Lanes* to);
 /// to = R v, R row by row; with `transposed` R^T v.

@@ -6,6 +6,8 @@
 namespace volcal {
 namespace {
 
+constexpr std::size_t kMostFunctions = kAllComponents.size();  // of a group
+
 int round_up_to_alignment(int size) {
   return (size + BlockModel::kRowAlignment - 1) / BlockModel::kRowAlignment * BlockModel::kRowAlignment;
 }
@@ -14,6 +16,10 @@ int round_up_to_alignment(int size) {
 void take_rows(const double* first, std::ptrdiff_t stride, int size, Lanes& lanes) {
   for (int i = 0; i < size; ++i) lanes[i] = first[i * stride];
   std::fill(lanes.value + size, lanes.value + kLanes, lanes[size - 1]);
+}
+
+bool all_equal(const std::uint32_t* numbers, int count) {
+  return std::all_of(numbers, numbers + count, [&](std::uint32_t number) { return number == *numbers; });
 }
 
 void set_zero(Lanes* lanes, int count) {
@@ -30,11 +36,21 @@ void add_warmed(const ExpansionBinding& expansion, const ReadingBlock& block, co
   }
 }
 
-const Lanes kEveryReading = [] {
-  Lanes ones;
-  ones.fill(1.0);
-  return ones;
-}();
+/// Adds `count` lanes of numbers to those of the positions where the readings stand; kCount: `count` if
+/// known.
+template <std::size_t kCount>
+void add_at_positions(const std::uint32_t* position, int size, const double* const* lanes, std::size_t count,
+                      double* sums) {
+  if constexpr (kCount > 0) count = kCount;
+  for (int i = 0; i < size;) {
+    const std::uint32_t here = position[i];
+    double sum[kMostFunctions] = {};
+    for (; i < size && position[i] == here; ++i) {
+      for (std::size_t slot = 0; slot < count; ++slot) sum[slot] += lanes[slot][i];
+    }
+    for (std::size_t slot = 0; slot < count; ++slot) sums[here * count + slot] += sum[slot];
+  }
+}
 
 /// Calls f(place in the shared tail, parameter, driver, disturbance) for what shared terms and effects add.
 template <class F>
@@ -193,13 +209,18 @@ void BlockModel::add_functions(const ReadingBlock& block, const TabulatedFunctio
     const std::uint32_t* entry =
         model_.tables().entries(block.setup, index_of(group.axis)).data() + block.first_row;
     const int count = group.count();
-    const double* values[kLanes];
+    const double* const table = tabulated[g].data();
+    const bool is_one_position = all_equal(entry, block.size);
+    std::int32_t place[kLanes];
     for (int i = 0; i < kLanes; ++i)
-      values[i] = tabulated[g].data() + static_cast<std::size_t>(entry[std::min(i, block.size - 1)]) *
-                                            static_cast<std::size_t>(count);
+      place[i] = static_cast<std::int32_t>(entry[std::min(i, block.size - 1)]) * count;
     for (int slot = 0; slot < count; ++slot) {
       Lanes& motion = levers.motion[static_cast<std::size_t>(*slot_motion++)];
-      for (int i = 0; i < kLanes; ++i) motion[i] += values[i][slot];
+      if (is_one_position) {
+        add_number(table[place[0] + slot], motion);
+      } else {
+        add_entries(table + slot, place, motion);
+      }
     }
   }
 }
@@ -251,7 +272,7 @@ void BlockModel::move_tool(const ReadingBlock& block, const Eigen::VectorXd& par
       add_scaled(turn[k], 1.0, side[k]);
     }
   }
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3 && !binding.effects.empty(); ++k)
     add_scaled(levers.motion[static_cast<std::size_t>(kStationDisturbance + k)], -1.0, tool.point_w[k]);
   if (binding.effect_moves_tool) move_offset(levers, &levers.motion[kToolDisturbance]);
   if (binding.effect_tilts_floor) tilt_floor(levers, out);
@@ -301,7 +322,8 @@ void BlockModel::linearize(const ReadingBlock& block, const Eigen::VectorXd& par
                            BlockLinearization& out) const {
   find_levers(block, parameters, levers);
   set_zero(levers.motion.data(), 6 * static_cast<int>(model_.chain().joint_count()));
-  set_zero(&levers.motion[kToolDisturbance], kDisturbances - kToolDisturbance);
+  const bool has_effects = !model_.binding().effects.empty();
+  if (has_effects) set_zero(&levers.motion[kToolDisturbance], kDisturbances - kToolDisturbance);
   add_functions(block, tabulated, levers);
   add_terms(block, parameters, levers);
   move_tool(block, parameters, levers, out);
@@ -314,7 +336,7 @@ void BlockModel::linearize(const ReadingBlock& block, const Eigen::VectorXd& par
     nuisance[k] = parameters[own[own.size() - static_cast<std::size_t>(local_size - k)]];
   out.reading.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, local_size);
   bound.linearize_lanes(block.first_row, block.size, levers.tool, nuisance, out.reading);
-  for (int channel = 0; channel < bound.channels(); ++channel) {
+  for (int channel = 0; channel < bound.channels() && has_effects; ++channel) {
     add_scaled(levers.motion[static_cast<std::size_t>(kReadingDisturbance + channel)], 1.0,
                out.reading.predicted(channel));
   }
@@ -386,7 +408,7 @@ void BlockModel::add_work(const ReadingBlock& block, const BlockLinearization& l
                   });
   const int* own = own_[block.own].data();
   for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    others[*own++] += dot(kEveryReading, levers.motion[static_cast<std::size_t>(kToolDisturbance + k)]);
+    others[*own++] += sum(levers.motion[static_cast<std::size_t>(kToolDisturbance + k)]);
   for (int k = 0; k < reading.nuisance_size(); ++k) {
     for (int channel = 0; channel < reading.channels(); ++channel)
       others[own[k]] += dot(error[channel], reading.d_nuisance(channel)[k]);
@@ -402,12 +424,13 @@ void BlockModel::gather(const ReadingBlock& block, const BlockLevers& levers, Gr
         model_.tables().entries(block.setup, index_of(group.axis)).data() + block.first_row;
     const auto count = static_cast<std::size_t>(group.count());
     double* const gathered = sums.gathered_.data() + gathered_begin_[g];
-    const double* work[6];
+    const double* work[kMostFunctions];
     for (std::size_t slot = 0; slot < count; ++slot)
       work[slot] = levers.motion[static_cast<std::size_t>(*slot_motion++)].value;
-    for (int i = 0; i < block.size; ++i) {
-      double* const at = gathered + entry[i] * count;
-      for (std::size_t slot = 0; slot < count; ++slot) at[slot] += work[slot][i];
+    if (count == kMostFunctions) {
+      add_at_positions<kMostFunctions>(entry, block.size, work, count, gathered);
+    } else {
+      add_at_positions<0>(entry, block.size, work, count, gathered);
     }
   }
 }

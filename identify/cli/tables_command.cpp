@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/cli/alignment_options.h"
 #include "volcal/identify/cli/axis_position.h"
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/number_checks.h"
@@ -38,6 +39,7 @@ struct TablesArguments {
   std::string tool;
   std::vector<std::string> settings;
   std::vector<std::string> records;
+  AlignmentArguments alignment;
   bool dry_run = false;
   bool list = false;
   bool json = false;
@@ -216,10 +218,16 @@ int list_formats(bool json) {
   return kDone;
 }
 
+FitResult aligned_result(const TablesArguments& arguments) {
+  FitResult result = read_result(arguments.result);
+  if (!arguments.alignment.any()) return result;
+  return align_result(result, alignment_of(result, arguments.alignment)).result;
+}
+
 int run_tables(const TablesArguments& arguments) {
   if (arguments.list) return list_formats(arguments.json);
   require_something_to_do(arguments);
-  const FitResult result = read_result(arguments.result);
+  const FitResult result = aligned_result(arguments);
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
   std::optional<MadeTables> made;
   if (makes_tables(arguments)) made = make_tables(result, arguments);
@@ -276,6 +284,7 @@ std::function<int()> define_tables(CLI::App& app) {
   app.add_option("RESULT", arguments->result, "result folder of volcal fit");
   app.add_option("-o,--output", arguments->output, "folder for the tables");
   add_compensation_options(app, *arguments);
+  add_alignment_options(app, arguments->alignment);
   app.add_option("--positions", arguments->positions,
                  "rows per function of the csv tables; default: round steps, 21 to 51 rows")
       ->check(CLI::Range(2, 100000));

@@ -11,6 +11,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/alignment.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/description/errors.h"
 
@@ -86,7 +87,8 @@ std::string figures_text(const Validation& validation) {
 
 int run_validate(const ValidateArguments& arguments) {
   const FitResult result = read_result(arguments.result);
-  const Campaign campaign = read_campaign(arguments.campaign);
+  Campaign campaign = read_campaign(arguments.campaign);
+  adopt_alignment(campaign, result);
   const std::string difference = machine_difference(result.machine, campaign.machine);
   if (!difference.empty()) {
     throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,

@@ -130,6 +130,7 @@ Json head_json(const FitResult& result) {
           {"outlier_critical_value", number(result.outlier_critical_value)},
           {"reference_temperature_degC", number(result.reference_temperature_degC)},
           {"temperature_is_campaign_mean", result.temperature_is_campaign_mean},
+          {"alignment", result.alignment},
           {"straightness_reference_line", "least squares, continuous over the travel"},
           {"setups", setups_json(result)},
           {"variance_components", variance_components_json(result)},
@@ -191,6 +192,7 @@ void read_head(const Json& json, FitResult& result) {
   result.outlier_critical_value = number(json.at("outlier_critical_value"));
   result.reference_temperature_degC = number(json.at("reference_temperature_degC"));
   result.temperature_is_campaign_mean = json.at("temperature_is_campaign_mean").get<bool>();
+  result.alignment = json.value("alignment", std::string());
   for (const Json& setup : json.at("setups")) {
     result.setups.push_back({.name = setup.at("name").get<std::string>(),
                              .instrument = setup.at("instrument").get<std::string>(),

@@ -57,6 +57,7 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
 }
 
 void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
+  out.add("alignment", result.alignment.empty() ? "as identified" : result.alignment);
   std::size_t readings = 0;
   std::string setups;
   for (const SetupSummary& setup : result.setups) {

@@ -11,12 +11,17 @@
 namespace volcal::sim {
 namespace {
 
+/// Offset of a tool that reaches farther from the spindle along z.
+Eigen::Vector3d longer(const Tool& tool, double by) {
+  return tool.offset + by * Eigen::Vector3d(0.0, 0.0, tool.offset.z() > 0.0 ? 1.0 : -1.0);
+}
+
 std::vector<Eigen::Vector3d> true_tool_offsets(const Study& study) {
   std::vector<Eigen::Vector3d> offsets;
   offsets.reserve(study.machine.tools.size());
   for (const Tool& tool : study.machine.tools) {
     RandomStream random(study.seed, "tool " + tool.name);
-    offsets.emplace_back(tool.offset + tool.offset_sigma * random.normal_vector());
+    offsets.emplace_back(longer(tool, study.wrong_tool_length) + tool.offset_sigma * random.normal_vector());
   }
   return offsets;
 }
@@ -71,7 +76,8 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth) {
   std::vector<std::string> tools = study.validation.tools;
   if (tools.empty()) tools.push_back(study.machine.tools.front().name);
   std::vector<Eigen::Vector3d> nominal_offsets;
-  for (const Tool& tool : study.machine.tools) nominal_offsets.push_back(tool.offset);
+  for (const Tool& tool : study.machine.tools)
+    nominal_offsets.push_back(longer(tool, study.wrong_tool_length));
   const MeasuringConditions conditions{truth, study.environment, nominal_offsets, study.seed, true};
   for (const std::string& tool : tools) {
     const auto index = study.machine.tool_index(tool);
@@ -140,6 +146,7 @@ TruthMachine true_machine(const Study& study) {
   for (const auto& [symbol, value] : study.truth.reversals) truth.set_reversal(symbol, value);
   set_expansions(study, truth);
   if (study.truth.alter) study.truth.alter(truth);
+  if (!study.compensation.tables.empty()) truth.set_correction(command_correction(study.compensation));
   return truth;
 }
 
@@ -159,6 +166,7 @@ SimulatedCampaign simulate(const Study& study) {
     add_hidden(answer.effect, answer.amplitude, context, scene);
   }
   simulated.campaign = readout.with_noise(simulated.truth, interference);
+  simulated.campaign.active_compensations = study.compensation.description;
   simulated.validation = validation_campaign(study, simulated.truth);
   for (const SetupPlan& plan : simulated.plans) append_gross_errors(plan, study.seed, simulated.outliers);
   if (study.unseen || !study.hidden.empty()) {

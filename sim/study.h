@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/sim/control.h"
 #include "volcal/sim/environment.h"
 #include "volcal/sim/hidden_answer.h"
 #include "volcal/sim/hidden_effects.h"
@@ -43,6 +44,10 @@ struct Study {
   ValidationSettings validation;
   double pause_between_setups = 600.0;  ///< s
   std::vector<HiddenEffect> hidden;
+  ActiveCompensation compensation;  ///< of the control while everything is measured
+  /// The tools are longer than the control knows, m; what the campaign file says of them is what the control
+  /// knows (ISO/TR 16907, 11.2 d).
+  double wrong_tool_length = 0.0;
   bool unseen = false;  ///< make the campaigns at unseen positions, and what is sealed about the noise
 };
 
@@ -61,7 +66,7 @@ struct SimulatedCampaign {
 };
 
 /// The truth of a study alone: the random machine with expansions (true coefficients drawn from the stated
-/// uncertainty) and what the study sets, without its hidden effects.
+/// uncertainty), what the study sets, and its compensation, without its hidden effects.
 TruthMachine true_machine(const Study& study);
 
 /// Repeatable to the bit for a given study and seed. Throws InputError for a study that makes no sense.

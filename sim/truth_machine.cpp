@@ -69,6 +69,8 @@ void TruthMachine::add_state_error(ErrorSymbol symbol, StateError error) {
   state_errors_[symbol].push_back(std::move(error));
 }
 
+void TruthMachine::set_correction(CommandCorrection correction) { correction_ = std::move(correction); }
+
 double TruthMachine::function_value(ErrorSymbol symbol, double position) const {
   const auto found = functions_.find(symbol);
   return found == functions_.end() ? 0.0 : found->second(position);
@@ -146,7 +148,16 @@ Eigen::Matrix4d TruthMachine::nominal_joint_transform(const Joint& joint, const 
   return translation(c) * rotation_about(direction_of(joint.axis), q) * translation(-c);
 }
 
-Eigen::Matrix4d TruthMachine::chain(Side side, bool nominal, const MachineState& state) const {
+MachineState TruthMachine::corrected(const MachineState& state) const {
+  MachineState actual = state;
+  if (!correction_) return actual;
+  const Eigen::Vector3d added = correction_(state);
+  for (const AxisName axis : kLinearAxes) actual.position[index_of(axis)] += added[direction_of(axis)];
+  return actual;
+}
+
+Eigen::Matrix4d TruthMachine::chain(Side side, bool nominal, const MachineState& programmed) const {
+  const MachineState state = nominal ? programmed : corrected(programmed);
   Eigen::Matrix4d product = Eigen::Matrix4d::Identity();
   for (const Joint& joint : machine_.structure.joints) {
     if (side != Side::Both && joint.workpiece_side != (side == Side::Workpiece)) continue;

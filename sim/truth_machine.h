@@ -40,6 +40,8 @@ struct MachineState {
 
 using ErrorFunction = std::function<double(double position)>;         ///< m or rad
 using StateError = std::function<double(const MachineState& state)>;  ///< m or rad
+/// What the control adds to the commands of X, Y and Z, m.
+using CommandCorrection = std::function<Eigen::Vector3d(const MachineState& state)>;
 
 inline constexpr double kReferenceTemperature = 20.0;  ///< degC, ISO 1
 
@@ -63,6 +65,10 @@ class TruthMachine {
   void add_state_error(ErrorSymbol symbol, StateError error);
   /// A location error that changes; symbols as in set_location(). It adds to location().
   void add_location_change(LocationSymbol symbol, StateError change);
+
+  /// The control corrects its commands from now on: axes go to position + correction, where they have the
+  /// errors of that place. What is nominal stays the programmed position.
+  void set_correction(CommandCorrection correction);
 
   /// The error function alone, without reversal, expansion and state errors.
   double function_value(ErrorSymbol symbol, double position) const;
@@ -91,6 +97,7 @@ class TruthMachine {
 
  private:
   enum class Side { Workpiece, Tool, Both };
+  MachineState corrected(const MachineState& state) const;
   Eigen::Matrix4d joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d nominal_joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& state) const;
@@ -103,6 +110,7 @@ class TruthMachine {
   std::map<ErrorSymbol, std::vector<StateError>> state_errors_;
   std::map<LocationSymbol, double> locations_;
   std::map<LocationSymbol, std::vector<StateError>> location_changes_;
+  CommandCorrection correction_;
 };
 
 }  // namespace volcal::sim

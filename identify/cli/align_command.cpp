@@ -35,9 +35,8 @@ std::vector<AngleWithU> squareness_of(const FitResult& result) {
   for (const LocationSymbol symbol : result.machine.datum.squareness()) {
     const ParameterBlock* block = result.layout.find_location(symbol);
     if (block == nullptr) continue;
-    const double variance = result.covariance.rows() > block->offset
-                                ? result.covariance(block->offset, block->offset)
-                                : 0.0;
+    const double variance =
+        result.covariance.rows() > block->offset ? result.covariance(block->offset, block->offset) : 0.0;
     angles.push_back({symbol.name(), result.parameters[block->offset], std::sqrt(std::max(0.0, variance))});
   }
   return angles;
@@ -62,7 +61,8 @@ std::string angles_text(const AlignedResult& aligned, const FitResult& before) {
   TextTable table({{"", Align::Left}, {"", Align::Left}, {"value [urad]"}, {"u [urad]"}});
   const auto add = [&](const char* what, const std::vector<AngleWithU>& angles) {
     for (const AngleWithU& angle : angles) {
-      table.add_row({what, angle.name, fixed_number(angle.value / kMicro, 3), fixed_number(angle.u / kMicro, 3)});
+      table.add_row(
+          {what, angle.name, fixed_number(angle.value / kMicro, 3), fixed_number(angle.u / kMicro, 3)});
       what = "";
     }
   };
@@ -119,8 +119,7 @@ std::function<int()> define_align(CLI::App& app) {
 
 const Command& align_command() {
   static const Command command = {
-      "align",
-      "turn a result to another primary or secondary axis, origin or spindle direction",
+      "align", "turn a result to another primary or secondary axis, origin or spindle direction",
       "  volcal align result --primary Y --secondary X -o result-y\n"
       "  volcal align result --origin X=0,Y=0,Z=-200 -o result-centre\n"
       "  volcal align result --align spindle --spindle-tilt A=12,B=-5 -o result-spindle\n",

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <vector>
 
 #include "volcal/identify/cli/axis_position.h"
 #include "volcal/model/description/errors.h"
@@ -10,7 +11,7 @@
 namespace volcal::cli {
 namespace {
 
-const char* const kLinearAxisNames[] = {"X", "Y", "Z"};
+const std::vector<std::string> kLinearAxisNames = {"X", "Y", "Z"};
 
 AxisName axis_named(const std::string& letter) { return *axis_from_letter(letter[0]); }
 
@@ -59,9 +60,10 @@ void add_alignment_options(CLI::App& app, AlignmentArguments& arguments) {
       ->check(CLI::IsMember(kLinearAxisNames));
   app.add_option("--origin", arguments.origin,
                  "where every error is zero, X=500,Y=300,Z=0 in mm, axes not named at home");
-  app.add_option("--align", arguments.align,
-                 "what the frame's direction follows: axis = the straight line of the primary axis, spindle = "
-                 "the spindle, with Z as primary axis (10.2)")
+  app.add_option(
+         "--align", arguments.align,
+         "what the frame's direction follows: axis = the straight line of the primary axis, spindle = "
+         "the spindle, with Z as primary axis (10.2)")
       ->check(CLI::IsMember({"axis", "spindle"}));
   app.add_option("--spindle-tilt", arguments.spindle_tilt,
                  "with --align spindle: rotation of the spindle against the straight line of Z, A=12,B=-5 in "

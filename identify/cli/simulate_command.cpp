@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/io/study_reader.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::cli {
 namespace {
@@ -19,12 +21,24 @@ struct SimulateArguments {
   std::string study;
   std::string output;
   std::optional<std::uint64_t> seed;
+  std::string compensation;
+  double least_increment_um = 0.0;
+  double wrong_tool_length_mm = 0.0;
   bool json = false;
 };
+
+void compensate(const SimulateArguments& arguments, sim::Study& study) {
+  if (!arguments.compensation.empty())
+    study.compensation =
+        active_compensation(arguments.compensation, arguments.least_increment_um * kMetrePerMicrometre);
+  if (arguments.wrong_tool_length_mm != 0.0)
+    study.wrong_tool_length = arguments.wrong_tool_length_mm * kMetrePerMillimetre;
+}
 
 int run_simulate(const SimulateArguments& arguments) {
   sim::Study study = read_study(arguments.study);
   if (arguments.seed) study.seed = *arguments.seed;
+  compensate(arguments, study);
   AtomicFolder folder(arguments.output);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
   write_simulation(simulated, folder);
@@ -33,11 +47,14 @@ int run_simulate(const SimulateArguments& arguments) {
     const nlohmann::ordered_json json = {{"folder", arguments.output},
                                          {"seed", study.seed},
                                          {"setups", simulated.campaign.setups.size()},
-                                         {"readings", simulated.campaign.reading_count()}};
+                                         {"readings", simulated.campaign.reading_count()},
+                                         {"active_compensations", study.compensation.description}};
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
                simulated.campaign.setups.size(), study.seed, arguments.output);
+    if (!study.compensation.description.empty())
+      fmt::print("active while it was measured: {}\n", study.compensation.description);
     fmt::print("next: volcal fit {0}/campaign.toml --model {0}/model.toml -o result\n", arguments.output);
   }
   return kDone;
@@ -51,6 +68,16 @@ std::function<int()> define_simulate(CLI::App& app) {
   app.add_option("--seed", arguments->seed,
                  "instead of the study's seed; same seed, same readings to the bit")
       ->check(not_negative());
+  auto* compensation =
+      app.add_option("--compensation", arguments->compensation,
+                     "folder of tables that the control applies while everything is measured");
+  app.add_option("--least-increment", arguments->least_increment_um,
+                 "corrections come in whole steps of it, um (ISO/TR 16907, 11.2 c)")
+      ->check(positive())
+      ->needs(compensation);
+  app.add_option("--wrong-tool-length", arguments->wrong_tool_length_mm,
+                 "every tool is longer by this than the control and the campaign file say, mm (11.2 d)")
+      ->check(CLI::Range(-1000.0, 1000.0));
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_simulate(*arguments); };
 }
@@ -60,7 +87,8 @@ std::function<int()> define_simulate(CLI::App& app) {
 const Command& simulate_command() {
   static const Command command = {"simulate", "make a campaign from a machine with known errors",
                                   "  volcal simulate datasets/demo/study.toml -o campaign\n"
-                                  "  volcal simulate study.toml --seed 7 -o campaign-7\n",
+                                  "  volcal simulate study.toml --seed 7 -o campaign-7\n"
+                                  "  volcal simulate other-setups.toml --compensation tables -o after\n",
                                   define_simulate};
   return command;
 }

@@ -10,6 +10,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/compensation_text.h"
 #include "volcal/identify/report/correction_text.h"
@@ -40,6 +41,7 @@ struct TablesArguments {
   std::vector<std::string> settings;
   std::vector<std::string> records;
   AlignmentArguments alignment;
+  std::string superimpose;
   bool dry_run = false;
   bool list = false;
   bool json = false;
@@ -122,6 +124,12 @@ std::map<std::string, std::string> named_values(const std::string& option,
   return values;
 }
 
+/// Tables that were active, by the rules of their controller.
+CompensationTables tables_in(const std::string& folder) {
+  const TablesFolder active = read_tables_folder(folder);
+  return active.format->read(active.files);
+}
+
 TableFormatOptions table_options(const TableFormat& format, const FitResult& result,
                                  const TablesArguments& arguments) {
   TableFormatOptions options;
@@ -134,6 +142,7 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
   if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
   options.settings = named_values("--set", arguments.settings);
   options.record = {arguments.result, named_values("--record", arguments.records)};
+  if (!arguments.superimpose.empty()) options.active = tables_in(arguments.superimpose);
   return options;
 }
 
@@ -184,6 +193,9 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (made.tolerance > 0.0 && !made.step.reached)
     fmt::print("! the limits of the controller do not allow {:g} um: {}\n", made.tolerance / kMicro,
                limits_text(made.format->limits));
+  if (!arguments.superimpose.empty())
+    fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
+               arguments.superimpose);
   for (const std::string& effect : made.effects_left_out)
     fmt::print("! {} was identified and is in no table\n", effect);
   fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
@@ -201,6 +213,7 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"verified", made.format->verified},
                                  {"effects_in_no_table", made.effects_left_out}};
   if (!arguments.dry_run) json["folder"] = arguments.output;
+  if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;
   if (made.tolerance > 0.0) {
     json["tolerance_um"] = made.tolerance / kMicro;
     json["deviation_um"] = made.step.deviation / kMicro;
@@ -272,6 +285,9 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
       "where the specific lines of L-POS, L-STR and L-SQU cross, X=500,Y=300,Z=200 in mm, axes not "
       "named at home; default: the middle of the travel");
   app.add_option("--set", arguments.settings, "NAME=VALUE, a setting of the format (--list)");
+  app.add_option("--superimpose", arguments.superimpose,
+                 "folder of the tables that were active while the machine was measured: the new ones replace "
+                 "them and correct both (ISO/TR 16907, 10.5)");
   app.add_option("--record", arguments.records,
                  fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
                              fmt::join(recordable_conditions(), ", ")));
@@ -313,6 +329,8 @@ const Command& tables_command() {
       "  volcal tables result -o tables\n"
       "  volcal tables result --positions 101 --grid 9 -o tables\n"
       "  volcal tables result --format csv --tool long --dry-run\n"
+      "  volcal tables result --align spindle --origin Z=0 -o tables\n"
+      "  volcal tables again --format neutral-csv --superimpose tables -o tables-2\n"
       "  volcal tables result --at X=100,Y=250,Z=-80 --tool long\n",
       define_tables};
   return command;

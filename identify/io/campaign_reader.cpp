@@ -61,6 +61,7 @@ class CampaignReader {
     campaign_.machine = std::move(machine);
     root_.know("machine");
     root_.text("name");
+    campaign_.active_compensations = root_.text("active_compensations").value_or("");
     noise_ = root_.table("noise");
     if (noise_) repeatability_ = read_repeatability(*noise_).value_or(0.0);
     for (const TomlTable& table : root_.required_tables("setups", kNoSetups))

@@ -208,6 +208,8 @@ std::string readings_file_name(const Setup& setup) {
 
 std::string campaign_toml(const Campaign& campaign, const std::string& machine_path) {
   std::string text = fmt::format("format = \"{}\"\nmachine = {}\n", kCampaignFormat, toml_text(machine_path));
+  if (!campaign.active_compensations.empty())
+    text += "active_compensations = " + toml_text(campaign.active_compensations) + "\n";
   std::set<std::string> files;
   for (const Setup& setup : campaign.setups) {
     if (!files.insert(readings_file_name(setup)).second) {

@@ -130,6 +130,7 @@ Json head_json(const FitResult& result) {
           {"outlier_critical_value", number(result.outlier_critical_value)},
           {"reference_temperature_degC", number(result.reference_temperature_degC)},
           {"temperature_is_campaign_mean", result.temperature_is_campaign_mean},
+          {"active_compensations", result.active_compensations},
           {"alignment", result.alignment},
           {"straightness_reference_line", "least squares, continuous over the travel"},
           {"setups", setups_json(result)},
@@ -192,6 +193,7 @@ void read_head(const Json& json, FitResult& result) {
   result.outlier_critical_value = number(json.at("outlier_critical_value"));
   result.reference_temperature_degC = number(json.at("reference_temperature_degC"));
   result.temperature_is_campaign_mean = json.at("temperature_is_campaign_mean").get<bool>();
+  result.active_compensations = json.value("active_compensations", std::string());
   result.alignment = json.value("alignment", std::string());
   for (const Json& setup : json.at("setups")) {
     result.setups.push_back({.name = setup.at("name").get<std::string>(),

@@ -1,8 +1,11 @@
 #include "volcal/identify/io/study_reader.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
+#include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/io/machine_reader.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/units.h"
@@ -121,6 +124,14 @@ sim::ValidationSettings read_validation(const TomlTable& table, const Machine& m
   return validation;
 }
 
+void read_compensation(const TomlTable& table, const std::string& file, sim::Study& study) {
+  double least_increment = 0.0;
+  read_number(table, "least_increment_um", least_increment);
+  read_number(table, "wrong_tool_length_mm", study.wrong_tool_length, {-1.0, 1.0});
+  if (const auto tables = table.text("tables"))
+    study.compensation = active_compensation(resolve_path(file, *tables), least_increment);
+}
+
 sim::Study read_document(const TomlDocument& document, const std::string& file, const Machine& machine) {
   const TomlTable root = document.root();
   sim::Study study;
@@ -134,6 +145,7 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
   for (const TomlTable& table : root.tables("temperatures")) {
     study.environment.channels.push_back(read_channel(table));
   }
+  if (const auto table = root.table("compensation")) read_compensation(*table, file, study);
   if (const auto table = root.table("validation")) study.validation = read_validation(*table, machine);
   for (const TomlTable& table : root.required_tables("measurements")) {
     study.measurements.push_back(read_measurement(table));
@@ -145,6 +157,14 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
 }
 
 }  // namespace
+
+sim::ActiveCompensation active_compensation(const std::string& folder, double least_increment) {
+  const TablesFolder tables = read_tables_folder(folder);
+  std::string description = fmt::format("{} tables of {}", tables.format->name, folder);
+  if (least_increment > 0.0)
+    description += fmt::format(", least increment {:g} um", least_increment / kMetrePerMicrometre);
+  return {control_tables(*tables.format, tables.files), least_increment, description};
+}
 
 sim::Study read_study(const std::string& path) {
   const TomlDocument document = TomlDocument::read(path);

@@ -21,6 +21,10 @@
 ///     [[temperatures]]
 ///     channel = "X"
 ///     start_degC, drift_K_per_hour, amplitude_K, period_s, phase_deg, step_K, step_time_s
+///     [compensation]                     # of the control while everything is measured
+///     tables = "tables"                  # folder that volcal tables wrote
+///     least_increment_um = 1.0           # corrections come in whole steps of it; absent = as computed
+///     wrong_tool_length_mm = 0.0         # by which every tool is longer than the control knows
 ///     [validation]
 ///     points = 400
 ///     tools = ["short"]
@@ -50,6 +54,9 @@ inline constexpr const char* kStudyFormat = "volcal-study-1";
 sim::Study read_study(const std::string& path);
 /// The same from text with a given machine (its `machine` key is not followed).
 sim::Study parse_study(const std::string& text, const std::string& file, const Machine& machine);
+
+/// The compensation of a folder of tables, with what is said of it in campaign files. Throws InputError.
+sim::ActiveCompensation active_compensation(const std::string& folder, double least_increment);
 
 /// One [[measurements]] table.
 sim::Measurement read_measurement(const TomlTable& table);

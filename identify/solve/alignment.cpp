@@ -12,14 +12,14 @@
 namespace volcal {
 namespace {
 
-using Functional = Eigen::RowVectorXd;                       ///< of (parameters, 1)
+using Functional = Eigen::RowVectorXd;                        ///< of (parameters, 1)
 using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as function of (parameters, 1)
 
 constexpr double kHolds = 1e-9;         // largest misfit of 1, or of a slope over the travel, in a basis
 constexpr double kSameOrigin = 1e-9;    // m
 constexpr double kLargestTilt = 10e-3;  // rad
 
-Eigen::Vector3d unit_of(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
+Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
 /// a x e, column by column.
 VectorRows crossed(const VectorRows& a, const Eigen::Vector3d& e) {
@@ -124,13 +124,12 @@ class Realignment {
   /// Mean direction of an axis minus its nominal one: squareness, straightness slopes, angles at the new
   /// origin of the axes that carry it.
   VectorRows direction(AxisName axis) const {
-    const Eigen::Vector3d e = unit_of(axis);
+    const Eigen::Vector3d e = axis_vector(axis);
     VectorRows rows = VectorRows::Zero(3, columns());
     for (const ParameterBlock& block : old_.layout.blocks) {
       if (!block.location || block.location->axis != axis) continue;
-      rows.col(block.offset) += unit_of(kAllAxes[static_cast<std::size_t>(
-                                            direction_of(block.location->component))])
-                                    .cross(e);
+      rows.col(block.offset) +=
+          axis_vector(kAllAxes[static_cast<std::size_t>(direction_of(block.location->component))]).cross(e);
     }
     for (const Component component : {Component::X, Component::Y, Component::Z})
       rows.row(direction_of(component)) += slope({component, axis});
@@ -144,7 +143,7 @@ class Realignment {
 
   VectorRows frame_rotation() const {
     const Datum& datum = machine_.datum;
-    const Eigen::Vector3d e_p = unit_of(datum.primary), e_s = unit_of(datum.secondary);
+    const Eigen::Vector3d e_p = axis_vector(datum.primary), e_s = axis_vector(datum.secondary);
     VectorRows reference = direction_[index_of(datum.primary)];
     if (to_.spindle_tilt)
       reference.col(columns() - 1) +=
@@ -157,13 +156,13 @@ class Realignment {
 
   /// Direction error of an axis in the new frame.
   VectorRows turned_direction(AxisName axis) const {
-    return direction_[index_of(axis)] - crossed(phi_, unit_of(axis));
+    return direction_[index_of(axis)] - crossed(phi_, axis_vector(axis));
   }
 
   std::array<Functional, 3> squareness_rows() const {
     const Datum& datum = machine_.datum;
-    const Eigen::Vector3d e_p = unit_of(datum.primary), e_s = unit_of(datum.secondary),
-                          e_t = unit_of(datum.third());
+    const Eigen::Vector3d e_p = axis_vector(datum.primary), e_s = axis_vector(datum.secondary),
+                          e_t = axis_vector(datum.third());
     const VectorRows secondary = turned_direction(datum.secondary), third = turned_direction(datum.third());
     return {e_t.cross(e_s).transpose() * secondary, e_p.cross(e_t).transpose() * third,
             e_s.cross(e_t).transpose() * third};
@@ -282,7 +281,7 @@ class Realignment {
   VectorRows phi_;
 };
 
-void check_machine(const Machine& machine) {
+void check_linear_axes(const Machine& machine) {
   for (const AxisName axis : kLinearAxes) {
     if (!machine.has_axis(axis))
       throw InputError({}, std::string("the machine has no axis ") + letter_of(axis),
@@ -309,7 +308,8 @@ bool moves_origin(const Machine& machine, const Alignment& alignment) {
 void check_parameters(const FitResult& result, bool origin_moves) {
   for (const FunctionGroup& group : result.layout.groups) {
     if (is_rotary(group.axis))
-      throw InputError({}, std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified",
+      throw InputError({},
+                       std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified",
                        "alignment is for machines whose linear axes alone are identified");
   }
   for (const ParameterBlock& block : result.layout.blocks) {
@@ -336,8 +336,9 @@ void check_spindle(const FitResult& result, const Alignment& alignment) {
   for (const Component component : {Component::X, Component::Y}) {
     const ErrorSymbol symbol{component, AxisName::Z};
     if (alignment.spindle_tilt->norm() > 0.0 && !result.layout.find(symbol))
-      throw InputError({}, symbol.name() + " is switched off and cannot hold the slope of Z to the spindle",
-                       "fit with " + symbol.name() + " in a B-spline or Legendre basis, or align to the axis");
+      throw InputError(
+          {}, symbol.name() + " is switched off and cannot hold the slope of Z to the spindle",
+          "fit with " + symbol.name() + " in a B-spline or Legendre basis, or align to the axis");
   }
 }
 
@@ -358,7 +359,7 @@ std::string alignment_words(const FitResult& result) {
 AlignedResult align_result(const FitResult& result, const Alignment& alignment) {
   if (alignment.datum.primary == alignment.datum.secondary)
     throw InputError({}, "primary and secondary axis are the same", "name two different axes");
-  check_machine(result.machine);
+  check_linear_axes(result.machine);
   if (alignment.origin) check_origin(result.machine, *alignment.origin);
   check_parameters(result, moves_origin(result.machine, alignment));
   check_spindle(result, alignment);

@@ -55,6 +55,7 @@ class Identification {
         model_(campaign, spec_),
         index_(model_) {
     result_.machine = campaign.machine;
+    result_.active_compensations = campaign.active_compensations;
     parameters_ = model_.initial_parameters();
     start_weights();
     group_observations();

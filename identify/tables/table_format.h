@@ -52,6 +52,9 @@ struct TableFormatOptions {
   double step = 0.0;                  ///< between positions, m; 0 = the format's own
   std::map<std::string, std::string> settings;  ///< of the format
   TableRecord record;
+  /// Tables that were active while the machine was measured and that the new ones replace: what they correct
+  /// is added to what was identified (ISO/TR 16907:2015, 10.5).
+  std::optional<CompensationTables> active;
 };
 
 struct TableFormat {
@@ -84,7 +87,8 @@ struct RefusedFormat {
 };
 std::span<const RefusedFormat> refused_table_formats();
 
-/// Throws InputError for a type or a setting that the format does not have.
+/// Throws InputError for a type or a setting that the format does not have, and where the active tables
+/// correct something that the type does not hold and would be lost.
 void check_table_options(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options);
 std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
@@ -99,6 +103,8 @@ double table_setting_number(std::span<const TableSetting> settings, const TableF
 
 /// The tool that the options name. Throws InputError.
 const Tool& tool_of(const Machine& machine, const TableFormatOptions& options);
+/// Errors that tables must correct: those identified, and those that the active tables correct.
+ErrorField errors_to_correct(const FitResult& result, const TableFormatOptions& options);
 /// Where the specific lines cross.
 AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options);
 /// The ideal compensation that a format samples.

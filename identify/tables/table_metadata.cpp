@@ -183,7 +183,9 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
   add_run(out, result, options);
   for (const std::string_view key : recordable_conditions()) {
     const auto recorded = options.record.conditions.find(std::string(key));
-    out.add(key, recorded == options.record.conditions.end() ? kNotRecorded : recorded->second);
+    const bool known = key == "active_compensations" && !result.active_compensations.empty();
+    const std::string_view otherwise = known ? std::string_view(result.active_compensations) : kNotRecorded;
+    out.add(key, recorded == options.record.conditions.end() ? otherwise : recorded->second);
   }
   return out.text();
 }

@@ -10,6 +10,9 @@ namespace {
 constexpr std::array<std::string_view, 6> kConditions = {
     "machine_state", "load", "feed", "ambient_temperature", "component_temperatures", "active_compensations"};
 
+constexpr int kSuperimposedCells = 5;
+constexpr double kLostBySuperimposing = 0.2e-6;  // m
+
 template <class Names>
 std::string listed(const Names& names) {
   std::string text;
@@ -37,6 +40,39 @@ void check_settings(const TableFormat& format, const TableFormatOptions& options
   }
 }
 
+/// What the active tables correct must be something that the new ones hold.
+void check_active_tables(const TableFormat& format, const FitResult& result,
+                         const TableFormatOptions& options) {
+  if (!options.active) return;
+  if (format.indivisible)
+    throw InputError({},
+                     std::string(format.name) + " cannot be superimposed: its tables are one identification",
+                     "superimpose in neutral-csv or in the controller's format");
+  const CompensationTables& active = *options.active;
+  const Machine& machine = result.machine;
+  const Compensation same(machine, lines_of(machine, options), options.type,
+                          [&active](const AxisPosition& position, const ApproachDirection& direction) {
+                            return Eigen::Vector3d(-active.correction(position, direction));
+                          });
+  const Eigen::Vector3d at_home = active.correction(home_of(machine), kTowardsPlus);
+  double lost = 0.0;
+  for (const AxisPosition& position : grid_positions(machine, kSuperimposedCells)) {
+    for (const std::int8_t sign : {-1, 1}) {
+      ApproachDirection direction{};
+      direction.fill(sign);
+      lost = std::max(
+          lost, (same.correction(position, direction) - active.correction(position, direction) + at_home)
+                    .cwiseAbs()
+                    .maxCoeff());
+    }
+  }
+  if (lost > kLostBySuperimposing)
+    throw InputError({},
+                     "the active tables correct up to " + std::to_string(lost * 1e6) + " um that " +
+                         options.type.name() + " does not hold",
+                     "give --type with all that is active, L-VOL holds everything");
+}
+
 }  // namespace
 
 std::span<const std::string_view> recordable_conditions() { return kConditions; }
@@ -54,6 +90,7 @@ void check_table_options(const TableFormat& format, const FitResult& result,
     throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
   check_settings(format, options);
   tool_of(result.machine, options);
+  check_active_tables(format, result, options);
 }
 
 std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
@@ -88,13 +125,22 @@ const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
                    "its tools are " + listed(names));
 }
 
+ErrorField errors_to_correct(const FitResult& result, const TableFormatOptions& options) {
+  const ErrorField identified = identified_error_field(result, tool_of(result.machine, options).offset);
+  if (!options.active) return identified;
+  return [identified, active = *options.active](const AxisPosition& position,
+                                                const ApproachDirection& direction) {
+    return Eigen::Vector3d(identified(position, direction) - active.correction(position, direction));
+  };
+}
+
 AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options) {
   return options.lines.value_or(middle_of_travel(machine));
 }
 
 Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options) {
   return {result.machine, lines_of(result.machine, options), options.type,
-          identified_error_field(result, tool_of(result.machine, options).offset)};
+          errors_to_correct(result, options)};
 }
 
 void require_points(const TableFormat& format, const Axis& axis, std::size_t points) {

@@ -116,18 +116,19 @@ ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& poi
 VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
                             const CompensationTables& tables) {
   const Machine& machine = result.machine;
-  const ErrorField errors = identified_error_field(result, tool_of(machine, options).offset);
+  const ErrorField errors = errors_to_correct(result, options);
+  const ErrorField measured = identified_error_field(result, tool_of(machine, options).offset);
   const AxisPosition lines = lines_of(machine, options);
   const Compensation ideal(machine, lines, options.type, errors);
   const ErrorField exported = corrected(errors, tables);
   const std::vector<VolumePoint> points = volume_points(machine, kVolumeCells);
 
   VolumeCheck check;
-  check.before = error_left(machine, points, errors);
+  check.before = error_left(machine, points, measured);
   check.ideal = error_left(machine, points, corrected(errors, ideal));
   check.exported = error_left(machine, points, exported);
   for (const CompensationPart part : kCompensationParts) {
-    const Compensation of_before(machine, lines, part, errors), of_exported(machine, lines, part, exported);
+    const Compensation of_before(machine, lines, part, measured), of_exported(machine, lines, part, exported);
     check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
                            error_left(machine, points, part_of(of_exported))});
   }

@@ -44,7 +44,8 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const ErrorField& errors);
 
-/// Errors as identified (error_field.h) in the volume of the options' tool.
+/// Errors as identified (error_field.h) in the volume of the options' tool. Where tables were active,
+/// `before` is the machine with them, as it was measured, and the new ones replace them.
 VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
                             const CompensationTables& tables);
 

@@ -59,6 +59,8 @@ struct Campaign {
   std::string file;
   Machine machine;
   std::vector<Setup> setups;
+  std::string active_compensations =
+      {};  ///< of the control while it was measured, in words; empty = not stated
 
   std::size_t reading_count() const;  ///< observations: rows times channels, over all setups
 };

@@ -5,8 +5,9 @@
 namespace volcal::cli {
 
 // One line per study, in the order of the help.
-#define VOLCAL_STUDIES(STUDY) \
-  STUDY(closed_loop_study)    \
+#define VOLCAL_STUDIES(STUDY)       \
+  STUDY(closed_loop_study)          \
+  STUDY(compensation_study_command) \
   STUDY(criticism_study)
 
 #define VOLCAL_DECLARE(name) const Command& name();

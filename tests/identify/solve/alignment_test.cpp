@@ -53,9 +53,9 @@ TEST(Alignment, SquarenessOfXToYIsMinusThatOfYToX) {
 // EBY = 12 urad/m y. Zero at y = 0.5 m it was 6 urad there, which Z, carried by Y, took part in: 6 urad
 // towards +x, EB0Z.
 TEST(Alignment, AnglesAtTheNewOriginBecomeSquarenessOfTheAxesCarried) {
-  const FitResult result =
-      result_with(machine_of("w X' b Y Z t"),
-                  {.functions = {{"EBY", [](double q) { return 12e-6 * q; }}}, .locations = {{"EB0Z", 0.0}}}, 4);
+  const FitResult result = result_with(
+      machine_of("w X' b Y Z t"),
+      {.functions = {{"EBY", [](double q) { return 12e-6 * q; }}}, .locations = {{"EB0Z", 0.0}}}, 4);
   Alignment alignment = to_datum(AxisName::X, AxisName::Y);
   alignment.origin = AxisPosition{0.0, 0.5, 0.0};
   const FitResult aligned = align_result(result, alignment).result;
@@ -68,11 +68,11 @@ TEST(Alignment, AnglesAtTheNewOriginBecomeSquarenessOfTheAxesCarried) {
 // Z leans by 20 urad towards +x and the spindle by 5 urad more: along the spindle Z moves by 5 urad towards
 // -x, which EXZ keeps; X, which was along x, is turned by 25 urad about y against the frame.
 TEST(Alignment, AlongTheSpindleTheSlopeOfZStaysInItsStraightness) {
-  FitResult result = result_with(machine_of("w X' b Y Z t"),
-                                 {.functions = {{"EXZ", [](double) { return 0.0; }},
-                                                {"EYZ", [](double) { return 0.0; }}},
-                                  .locations = {{"EB0Z", 20e-6}}},
-                                 4);
+  FitResult result =
+      result_with(machine_of("w X' b Y Z t"),
+                  {.functions = {{"EXZ", [](double) { return 0.0; }}, {"EYZ", [](double) { return 0.0; }}},
+                   .locations = {{"EB0Z", 20e-6}}},
+                  4);
   Alignment alignment = to_datum(AxisName::Z, AxisName::X);
   alignment.spindle_tilt = Eigen::Vector2d(0.0, 5e-6);
   const AlignedResult aligned = align_result(result, alignment);

@@ -1,0 +1,27 @@
+#pragma once
+/// Folders of table files: which format they have, and the files as the simulated control (sim/control.h)
+/// takes them. The format's own reader says whether the files are right; what they mean is then read a second
+/// time from the controllers' documents, apart from it: values as they stand in the file, with the sign that
+/// the control gives them.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/tables/table_format.h"
+#include "volcal/sim/control.h"
+
+namespace volcal {
+
+struct TablesFolder {
+  const TableFormat* format = nullptr;
+  std::vector<TableFile> files;
+};
+
+/// Format by the names of the files. Throws InputError for a folder without tables.
+TablesFolder read_tables_folder(const std::string& folder);
+
+/// Throws InputError with file, line and remedy for files that the format does not allow.
+sim::ControlTables control_tables(const TableFormat& format, std::span<const TableFile> files);
+
+}  // namespace volcal

@@ -1,0 +1,111 @@
+/// Results turned to another machine coordinate system by the program.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+#include "tests/support/simulated_campaign.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+class AlignedResults : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    simulated_.simulate(8,
+                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 3]\n"
+                        "[validation]\npoints = 20\ntools = [\"short\", \"side_x\"]\n",
+                        2, 1);
+    const auto run = simulated_.fit("--noise white");
+    ASSERT_EQ(run.exit_code, 0) << run.errors;
+  }
+  std::string path(const std::string& name) const { return simulated_.path(name); }
+  auto align(const std::string& options) const {
+    return run_program("align " + path("result") + " " + options + " -o " + path("aligned"));
+  }
+  nlohmann::json json_of(const std::string& command) const {
+    const auto run = run_program(command + " --json");
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output);
+  }
+
+ private:
+  testing::SimulatedCampaign simulated_;
+};
+
+/// Readings that depend on several tools and stations are predicted as well as before, with the same u.
+TEST_F(AlignedResults, PredictTheSameReadings) {
+  const auto aligned = align("--primary Z --secondary X --origin X=100,Y=-50,Z=-200");
+  ASSERT_EQ(aligned.exit_code, 0) << aligned.errors;
+  EXPECT_THAT(aligned.output, HasSubstr("primary Z, secondary X, origin X=100 Y=-50 Z=-200 mm"));
+  for (const char* campaign : {"campaign/campaign.toml", "campaign/truth/campaign.toml"}) {
+    const auto before = json_of("validate " + path("result") + " " + path(campaign));
+    const auto after = json_of("validate " + path("aligned") + " " + path(campaign));
+    for (const char* figure : {"rms_after_um", "max_after_um", "coverage95", "reduced_chi2"})
+      EXPECT_NEAR(after.at(figure).get<double>(), before.at(figure).get<double>(),
+                  0.01 * before.at(figure).get<double>())
+          << campaign << " " << figure;
+  }
+}
+
+TEST_F(AlignedResults, AreReadByTheOtherCommands) {
+  ASSERT_EQ(align("--align spindle --spindle-tilt A=12,B=-5").exit_code, 0);
+  for (const char* file :
+       {"result.json", "residuals.csv", "error_tables.csv", "identified.toml", "machine.toml"})
+    EXPECT_TRUE(std::filesystem::exists(path("aligned") + "/" + file)) << file;
+  EXPECT_EQ(content(path("aligned/residuals.csv")), content(path("result/residuals.csv")));
+  EXPECT_THAT(content(path("aligned/machine.toml")), HasSubstr("primary = \"Z\""));
+  EXPECT_THAT(content(path("aligned/error_tables.csv")), HasSubstr("EB0X"));
+  const auto tables = run_program("tables " + path("aligned") + " -o " + path("tables"));
+  ASSERT_EQ(tables.exit_code, 0) << tables.errors;
+  EXPECT_THAT(content(path("tables/metadata.csv")), HasSubstr("alignment,\"primary Z, secondary X"));
+  EXPECT_THAT(content(path("tables/metadata.csv")), HasSubstr("along the spindle"));
+}
+
+/// tables with the options writes what tables of the aligned result writes.
+TEST_F(AlignedResults, AreWhatTablesMakeOnTheirWay) {
+  const std::string options = "--primary Y --secondary Z --origin Z=-100";
+  ASSERT_EQ(align(options).exit_code, 0);
+  const std::string format = " --format neutral-csv --step 100 -o ";
+  ASSERT_EQ(run_program("tables " + path("result") + " " + options + format + path("one")).exit_code, 0);
+  ASSERT_EQ(run_program("tables " + path("aligned") + format + path("two")).exit_code, 0);
+  EXPECT_EQ(content(path("one/correction_grid.csv")), content(path("two/correction_grid.csv")));
+}
+
+/// The error that any datum leaves and finds after the best rigid motion is one.
+TEST_F(AlignedResults, LeaveTheErrorInTheVolumeAsItIs) {
+  const std::string tables = "tables " + path("result") + " --format linuxcnc-grid --step 150 --dry-run ";
+  const double before = json_of(tables).at("error_left").at("before").at("rms_um");
+  for (const char* options : {"--primary Y --secondary X", "--align spindle", "--origin X=0,Y=0,Z=-300"}) {
+    const double after = json_of(tables + options).at("error_left").at("before").at("rms_um");
+    EXPECT_NEAR(after, before, 1e-6) << options;
+  }
+}
+
+TEST_F(AlignedResults, RefuseWhatCannotBeDone) {
+  const auto refuses = [&](const std::string& options, const char* reason) {
+    const auto run = align(options);
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(reason)) << options;
+    EXPECT_FALSE(std::filesystem::exists(path("aligned"))) << options;
+  };
+  refuses("", "nothing is to be aligned");
+  refuses("--primary X --secondary X", "primary and secondary axis are the same");
+  refuses("--primary A", "--primary");
+  refuses("--origin X=9000", "outside the travel");
+  refuses("--primary X --secondary Y --align spindle", "make Z the primary axis");
+  refuses("--spindle-tilt A=1", "--align spindle");
+  refuses("--align spindle --spindle-tilt A=x", "is no tilt");
+  refuses("--align spindle --spindle-tilt A=20000", "10 mrad");
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,140 @@
+/// Measure, identify, compensate, measure again, superimpose: the program on a machine that applies its
+/// tables.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "tests/support/program.h"
+#include "tests/support/simulated_campaign.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+class CompensatedCampaign : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    simulated_.simulate(8,
+                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [5, 4, 4]\n"
+                        "[validation]\npoints = 60\n",
+                        3, 3);
+    ASSERT_EQ(simulated_.fit("--noise white").exit_code, 0);
+  }
+  std::string path(const std::string& name) const { return simulated_.path(name); }
+  void run(const std::string& command) const {
+    const auto run = run_program(command);
+    ASSERT_EQ(run.exit_code, 0) << command << "\n" << run.errors;
+  }
+  /// RMS of the volumetric error of a campaign's machine at its fresh points, um.
+  double volumetric_rms(const std::string& campaign) const {
+    const auto run =
+        run_program("validate " + path("result") + " " + path(campaign) + "/truth/campaign.toml --json");
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output).at("rms_before_um");
+  }
+
+  testing::SimulatedCampaign simulated_;
+};
+
+TEST_F(CompensatedCampaign, IsMeasuredAgainIdentifiedAndSuperimposed) {
+  run("tables " + path("result") + " --format neutral-csv --type L-POS -o " + path("positioning"));
+  run("simulate " + path("study.toml") + " --compensation " + path("positioning") + " -o " + path("second"));
+  EXPECT_THAT(content(path("second/campaign.toml")),
+              HasSubstr("active_compensations = \"neutral-csv tables of"));
+  EXPECT_LT(volumetric_rms("second"), 0.98 * volumetric_rms("campaign"));
+
+  run("fit " + path("second/campaign.toml") + " --model " + path("model.toml") + " --noise white -o " +
+      path("result-2"));
+  run("tables " + path("result-2") + " -o " + path("native"));
+  EXPECT_THAT(content(path("native/metadata.csv")), HasSubstr("active_compensations,neutral-csv tables of"));
+
+  const auto refused =
+      run_program("tables " + path("result-2") + " --format neutral-csv --type L-STR --superimpose " +
+                  path("positioning") + " -o " + path("volume"));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("L-STR does not hold"));
+  const auto native = run_program("tables " + path("result-2") + " --superimpose " + path("positioning") +
+                                  " -o " + path("volume"));
+  EXPECT_EQ(native.exit_code, 2);
+  EXPECT_THAT(native.errors, HasSubstr("csv cannot be superimposed"));
+
+  run("tables " + path("result-2") + " --format neutral-csv --superimpose " + path("positioning") + " -o " +
+      path("volume"));
+  run("simulate " + path("study.toml") + " --compensation " + path("volume") + " -o " + path("third"));
+  EXPECT_LT(volumetric_rms("third"), 1.0);
+}
+
+TEST_F(CompensatedCampaign, ShowsStepsAndAWrongTool) {
+  run("tables " + path("result") + " --format linuxcnc-grid -o " + path("tables"));
+  run("simulate " + path("study.toml") + " --compensation " + path("tables") + " -o " + path("after"));
+  run("simulate " + path("study.toml") + " --compensation " + path("tables") + " --least-increment 5 -o " +
+      path("steps"));
+  run("simulate " + path("study.toml") + " --compensation " + path("tables") +
+      " --wrong-tool-length 300 -o " + path("tool"));
+  const double after = volumetric_rms("after");
+  EXPECT_LT(after, 1.0);
+  // Each component is off by up to half a step, uniformly: 5 um / sqrt(12) of each, sqrt(3) of all.
+  EXPECT_NEAR(volumetric_rms("steps"), std::hypot(after, 2.5), 0.5);
+  EXPECT_GT(volumetric_rms("tool"), 2.0 * after);
+  EXPECT_THAT(content(path("steps/campaign.toml")), HasSubstr("least increment 5 um"));
+}
+
+TEST_F(CompensatedCampaign, IsAskedForByTheStudyToo) {
+  run("tables " + path("result") + " --format sinumerik -o " + path("tables"));
+  run("simulate " + path("study.toml") + " --compensation " + path("tables") + " -o " + path("by-option"));
+  std::ofstream(path("study.toml"), std::ios::app) << "[compensation]\ntables = \"tables\"\n";
+  run("simulate " + path("study.toml") + " -o " + path("by-study"));
+  for (const char* file : {"truth/truth_short.csv", "laser-tracer_1.csv"}) {
+    std::error_code error;
+    if (!std::filesystem::exists(path("by-study/") + file, error)) continue;
+    EXPECT_EQ(content(path(std::string("by-option/") + file)),
+              content(path(std::string("by-study/") + file)));
+  }
+  EXPECT_NEAR(volumetric_rms("by-option"), volumetric_rms("by-study"), 1e-9);
+  const auto missing =
+      run_program("simulate " + path("study.toml") + " --compensation " + path("none") + " -o " + path("x"));
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.errors, HasSubstr("there is no such folder"));
+  const auto foreign = run_program("simulate " + path("study.toml") + " --compensation " + path("result") +
+                                   " -o " + path("x"));
+  EXPECT_EQ(foreign.exit_code, 2);
+  EXPECT_THAT(foreign.errors, HasSubstr("holds no tables"));
+}
+
+/// docs/studies.md has all formats on full campaigns.
+TEST(CompensationStudy, EveryFormatLeavesWhatItsIdealLeaves) {
+  const auto run = run_program("study compensation -n 1 --seed 5 --small --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  const auto& summary = json.at("summary");
+  EXPECT_GE(summary.at("least_before_um").get<double>(), 15.0);
+  EXPECT_LE(summary.at("worst_ratio").get<double>(), 1.2);
+  EXPECT_LE(summary.at("volumetric_left_um").get<double>(), 1.0);
+  std::set<std::string> formats;
+  for (const auto& row : json.at("rows")) {
+    formats.insert(row.at("format").get<std::string>());
+    if (!row.contains("read_after_um")) continue;
+    EXPECT_LT(row.at("read_after_um").get<double>(), row.at("read_before_um").get<double>()) << row.dump();
+  }
+  EXPECT_EQ(formats.size(), 10U);
+}
+
+TEST(CompensationStudy, DoesNotDependOnTheNumberOfThreads) {
+  const std::string study = "study compensation -n 2 --small --format sinumerik --json --threads ";
+  const auto one = run_program(study + "1");
+  ASSERT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_EQ(one.output, run_program(study + "2").output);
+}
+
+}  // namespace
+}  // namespace volcal

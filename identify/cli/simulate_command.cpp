@@ -77,7 +77,7 @@ std::function<int()> define_simulate(CLI::App& app) {
       ->needs(compensation);
   app.add_option("--wrong-tool-length", arguments->wrong_tool_length_mm,
                  "every tool is longer by this than the control and the campaign file say, mm (11.2 d)")
-      ->check(CLI::Range(-1000.0, 1000.0));
+      ->check(CLI::Range(-90.0, 90.0));
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_simulate(*arguments); };
 }

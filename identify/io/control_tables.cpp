@@ -108,7 +108,14 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
     const double value = std::stod(cells.at(5)) * kMicrometre;
     if (const auto location = LocationSymbol::parse(cells.at(0))) {
-      if (!is_rotary(location->axis)) model.locations[*location] = value;
+      if (is_rotary(location->axis)) continue;
+      const auto squareness = metadata.machine.datum.squareness();
+      if (std::ranges::find(squareness, *location) == squareness.end() ||
+          !metadata.machine.has_axis(location->axis))
+        throw InputError({"compensation_tables.csv", 0},
+                         location->name() + " is no squareness of the datum in metadata.csv",
+                         "take metadata.csv of the same run");
+      model.locations[*location] = value;
       continue;
     }
     const ErrorSymbol symbol = *ErrorSymbol::parse(cells.at(0));
@@ -151,13 +158,14 @@ sim::ControlTables neutral_control(std::span<const TableFile> files) {
 sim::ControlTables linuxcnc_control(std::span<const TableFile> files) {
   AxisTables axes(sim::TableValue::Correction);
   double unit = kMillimetre;
-  std::size_t joint = 0;
+  std::optional<std::size_t> joint;
   std::map<std::size_t, std::pair<std::string, int>> comp;
   for (const Words& line : lines_of_words(content_of(files, "compensation.ini"), " \t=")) {
+    if (line[0].front() == '[') joint.reset();
     if (line[0].starts_with("[JOINT_")) joint = static_cast<std::size_t>(line[0][7] - '0');
     if (line[0] == "LINEAR_UNITS") unit = line.at(1) == "inch" ? kInch : kMillimetre;
-    if (line[0] == "COMP_FILE") comp[joint].first = line.at(1);
-    if (line[0] == "COMP_FILE_TYPE") comp[joint].second = std::stoi(line.at(1));
+    if (joint && line[0] == "COMP_FILE") comp[*joint].first = line.at(1);
+    if (joint && line[0] == "COMP_FILE_TYPE") comp[*joint].second = std::stoi(line.at(1));
   }
   for (const auto& [number, file] : comp) {
     const AxisName axis = kLinearAxes.at(number);
@@ -273,7 +281,10 @@ sim::ControlTables isg_control(std::span<const TableFile> files) {
 sim::ControlTables etalon_control(std::span<const TableFile> files) {
   AxisTables axes(sim::TableValue::Error);
   ErrorSymbol symbol;
-  for (const Words& line : lines_of_words(content_of(files, "volcomp.txt"), " \t[]")) {
+  for (Words line : lines_of_words(content_of(files, "volcomp.txt"), " \t[]")) {
+    line.erase(std::ranges::find_if(line, [](const std::string& word) { return word.starts_with("//"); }),
+               line.end());
+    if (line.empty()) continue;
     if (const auto named = ErrorSymbol::parse(line[0])) symbol = *named;
     if (line.size() != 2 || line[0].find_first_not_of("+-.0123456789eE") != std::string::npos) continue;
     const double error = std::stod(line[1]) * kMillimetre;
@@ -288,8 +299,15 @@ sim::ControlTables etalon_control(std::span<const TableFile> files) {
 /// Assignments of a SINUMERIK file as words: variable, indices, value. Comments are left out.
 std::vector<Words> sinumerik_words(const std::string& text) {
   std::vector<Words> assignments;
-  for (Words& line : lines_of_words(text, " \t[],=()\"")) {
-    if (line[0].front() == '$') assignments.push_back(std::move(line));
+  for (Words line : lines_of_words(text, " \t[],=()\"")) {
+    const auto comment = std::ranges::find_if(
+        line, [](const std::string& word) { return word.find(';') != std::string::npos; });
+    if (comment != line.end()) {
+      comment->erase(comment->find(';'));
+      line.erase(comment->empty() ? comment : comment + 1, line.end());
+    }
+    if (line.size() > 1 && line[0].front() == 'N') line.erase(line.begin());  // block number
+    if (!line.empty() && line[0].front() == '$') assignments.push_back(std::move(line));
   }
   return assignments;
 }

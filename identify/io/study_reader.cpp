@@ -127,7 +127,7 @@ sim::ValidationSettings read_validation(const TomlTable& table, const Machine& m
 void read_compensation(const TomlTable& table, const std::string& file, sim::Study& study) {
   double least_increment = 0.0;
   read_number(table, "least_increment_um", least_increment);
-  read_number(table, "wrong_tool_length_mm", study.wrong_tool_length, {-1.0, 1.0});
+  read_number(table, "wrong_tool_length_mm", study.wrong_tool_length, {-0.09, 0.09});
   if (const auto tables = table.text("tables"))
     study.compensation = active_compensation(resolve_path(file, *tables), least_increment);
 }

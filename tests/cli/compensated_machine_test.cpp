@@ -25,9 +25,9 @@ class CompensatedCampaign : public ::testing::Test {
  protected:
   void SetUp() override {
     simulated_.simulate(8,
-                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [5, 4, 4]\n"
+                        "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [6, 5, 5]\n"
                         "[validation]\npoints = 60\n",
-                        3, 3);
+                        3, 6);
     ASSERT_EQ(simulated_.fit("--noise white").exit_code, 0);
   }
   std::string path(const std::string& name) const { return simulated_.path(name); }
@@ -79,13 +79,13 @@ TEST_F(CompensatedCampaign, ShowsStepsAndAWrongTool) {
   run("simulate " + path("study.toml") + " --compensation " + path("tables") + " -o " + path("after"));
   run("simulate " + path("study.toml") + " --compensation " + path("tables") + " --least-increment 5 -o " +
       path("steps"));
-  run("simulate " + path("study.toml") + " --compensation " + path("tables") +
-      " --wrong-tool-length 300 -o " + path("tool"));
+  run("simulate " + path("study.toml") + " --compensation " + path("tables") + " --wrong-tool-length 90 -o " +
+      path("tool"));
   const double after = volumetric_rms("after");
   EXPECT_LT(after, 1.0);
   // Each component is off by up to half a step, uniformly: 5 um / sqrt(12) of each, sqrt(3) of all.
   EXPECT_NEAR(volumetric_rms("steps"), std::hypot(after, 2.5), 0.5);
-  EXPECT_GT(volumetric_rms("tool"), 2.0 * after);
+  EXPECT_GT(volumetric_rms("tool"), 1.2 * after);
   EXPECT_THAT(content(path("steps/campaign.toml")), HasSubstr("least increment 5 um"));
 }
 

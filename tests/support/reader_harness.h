@@ -9,6 +9,7 @@
 #include "tests/support/schema_samples.h"
 #include "volcal/identify/io/campaign_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/io/csv_table.h"
 #include "volcal/identify/io/machine_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -79,12 +80,19 @@ inline std::string packed_files(const std::vector<TableFile>& files) {
 inline bool accepts_tables(const std::string& text, std::size_t format_index) {
   return accepts([&] {
     const auto formats = table_formats();
-    const CompensationTables tables = formats[format_index % formats.size()]->read(unpacked_files(text));
+    const TableFormat& format = *formats[format_index % formats.size()];
+    const std::vector<TableFile> files = unpacked_files(text);
+    const CompensationTables tables = format.read(files);
+    const auto control = sim::command_correction({control_tables(format, files), 0.0, {}});
     for (const int direction : {-1, 0, 1}) {
       ApproachDirection approach{};
       approach.fill(static_cast<std::int8_t>(direction));
       if (!tables.correction({0.1, -0.2, 0.3, 0.0, 0.0, 0.0}, approach).allFinite())
         throw std::logic_error("a correction is not finite");
+      sim::MachineState state;
+      state.position = {0.1, -0.2, 0.3, 0.0, 0.0, 0.0};
+      state.direction = approach;
+      if (!control(state).allFinite()) throw std::logic_error("the simulated control adds what is not finite");
     }
   });
 }

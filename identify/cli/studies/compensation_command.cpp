@@ -51,6 +51,12 @@ CompensationSummary summary_of(const CompensationRows& rows) {
   return summary;
 }
 
+/// "-" where the ideal compensation leaves nothing to compare with.
+std::string ratio_to(double ideal, double applied) {
+  constexpr double kNothing = 0.05e-6;  // m
+  return ideal < kNothing ? "-" : fixed_number(applied / ideal, 2);
+}
+
 std::string rows_text(const CompensationArguments& arguments, const CompensationRows& rows) {
   TextTable table(
       {{"structure", Align::Left},
@@ -73,7 +79,7 @@ std::string rows_text(const CompensationArguments& arguments, const Compensation
     table.add_row({row.structure == structure ? "" : row.structure, row.format, row.type,
                    fixed_number(row.before / kMicro, 2), fixed_number(row.ideal / kMicro, 2),
                    fixed_number(row.ideal_format / kMicro, 2), fixed_number(row.applied / kMicro, 2),
-                   fixed_number(row.applied / row.ideal, 2), fixed_number(row.applied / row.ideal_format, 2),
+                   ratio_to(row.ideal, row.applied), ratio_to(row.ideal_format, row.applied),
                    fixed_number(row.read_before / kMicro, 2), fixed_number(row.read_after / kMicro, 2),
                    row.variant});
     structure = row.structure;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <set>
 #include <sstream>
@@ -69,7 +70,7 @@ TEST(ControlTables, SinumerikByHand) {
   const std::vector<TableFile> encoder = {
       {"AX_EEC.INI",
        "%_N_AX_EEC_INI\nCHANDATA(1)\n$AA_ENC_COMP[0,0,X1]=0\n$AA_ENC_COMP[0,1,X1]=0.010\n$AA_ENC_COMP" +
-           axis + "M17\n"}};
+           axis + "N40 $AA_ENC_COMP_IS_MODULO[0,X1]=0 ; no turn\nM17\n"}};
   EXPECT_NEAR(added_um("sinumerik", encoder, kMiddleOfX, 1).x(), -5.0, 1e-9) << "positive moves towards -";
 }
 

@@ -92,7 +92,8 @@ inline bool accepts_tables(const std::string& text, std::size_t format_index) {
       sim::MachineState state;
       state.position = {0.1, -0.2, 0.3, 0.0, 0.0, 0.0};
       state.direction = approach;
-      if (!control(state).allFinite()) throw std::logic_error("the simulated control adds what is not finite");
+      if (!control(state).allFinite())
+        throw std::logic_error("the simulated control adds what is not finite");
     }
   });
 }

@@ -123,7 +123,7 @@ struct FitResult {
   double reference_temperature_degC = 20.0;
   bool temperature_is_campaign_mean = false;
   std::string active_compensations;  ///< while the campaign was measured, in words; empty = not stated
-  std::string alignment;  ///< coordinate system that the result was turned to (alignment.h); empty = the fit's
+  std::string alignment;             ///< frame that it was turned to (alignment.h); empty = the fit's own
 
   double sigma0 = 0.0;  ///< sqrt(chi2 / dof) with the stated sigma
   double chi2 = 0.0;

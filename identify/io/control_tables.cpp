@@ -419,6 +419,11 @@ TablesFolder read_tables_folder(const std::string& folder) {
   return tables;
 }
 
+bool control_reads(const TableFormat& format) {
+  const auto& formats = control_formats();
+  return std::ranges::find(formats, format.name, &ControlFormat::format) != formats.end();
+}
+
 sim::ControlTables control_tables(const TableFormat& format, std::span<const TableFile> files) {
   format.read(files);
   const auto& formats = control_formats();

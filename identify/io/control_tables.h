@@ -21,7 +21,11 @@ struct TablesFolder {
 /// Format by the names of the files. Throws InputError for a folder without tables.
 TablesFolder read_tables_folder(const std::string& folder);
 
-/// Throws InputError with file, line and remedy for files that the format does not allow.
+/// Whether the simulated control reads a format: one function and one line of control_tables.cpp.
+bool control_reads(const TableFormat& format);
+
+/// Throws InputError with file, line and remedy for files that the format does not allow, and for a format
+/// that the simulated control does not read.
 sim::ControlTables control_tables(const TableFormat& format, std::span<const TableFile> files);
 
 }  // namespace volcal

@@ -83,7 +83,8 @@ inline bool accepts_tables(const std::string& text, std::size_t format_index) {
     const TableFormat& format = *formats[format_index % formats.size()];
     const std::vector<TableFile> files = unpacked_files(text);
     const CompensationTables tables = format.read(files);
-    const auto control = sim::command_correction({control_tables(format, files), 0.0, {}});
+    const auto control = sim::command_correction(
+        {control_reads(format) ? control_tables(format, files) : sim::ControlTables{}, 0.0, {}});
     for (const int direction : {-1, 0, 1}) {
       ApproachDirection approach{};
       approach.fill(static_cast<std::int8_t>(direction));

@@ -98,8 +98,9 @@ class CompensatedMachine {
   }
 
   bool wanted(const TableFormat& format) const {
-    return options_.formats.empty() ||
-           std::ranges::find(options_.formats, format.name) != options_.formats.end();
+    return control_reads(format) &&
+           (options_.formats.empty() ||
+            std::ranges::find(options_.formats, format.name) != options_.formats.end());
   }
 
   /// Each alone where the format can do that, and all together, which comes last.

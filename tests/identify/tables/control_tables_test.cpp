@@ -88,6 +88,7 @@ TEST(ControlTables, EtalonExchangeAndFirmwareByHand) {
 /// Two readers that know nothing of each other agree on every format and type.
 TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
   for (const TableFormat* format : table_formats()) {
+    if (!control_reads(*format)) continue;
     for (const CompensationTypeInfo& info : compensation_types()) {
       if (!testing::holds(*format, info.type)) continue;
       const auto files = testing::sample_tables(*format, info.type);
@@ -107,6 +108,7 @@ TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
 
 TEST(ControlTables, AFolderTellsItsFormat) {
   for (const TableFormat* format : table_formats()) {
+    if (!control_reads(*format)) continue;
     testing::ScratchFolder scratch;
     for (const TableFile& file : testing::sample_tables(*format))
       std::ofstream(scratch.path() / file.name) << file.content;
@@ -302,8 +304,10 @@ class MistakenFiles : public ::testing::TestWithParam<const TableFormat*> {
 };
 
 TEST_P(MistakenFiles, WrongSignUnitOrColumnShowsOnTheMachine) {
-  const ValueCells& where = *std::ranges::find_if(
+  const auto* found = std::ranges::find_if(
       kValueCells, [](const ValueCells& cells) { return cells.format == GetParam()->name; });
+  if (found == std::end(kValueCells)) GTEST_SKIP() << "no mistakes are listed for this format";
+  const ValueCells& where = *found;
   const auto with = [&](const CellChange& change) {
     std::vector<TableFile> files = right_files();
     for (TableFile& file : files) {
@@ -331,7 +335,7 @@ TEST_P(MistakenFiles, ExchangedNamesShowOnTheMachine) {
 }
 
 TEST_P(MistakenFiles, TablesOfAnotherToolShowOnTheMachine) {
-  if (!GetParam()->supported.has(CompensationPart::Angular)) return;
+  if (!control_reads(*GetParam()) || !GetParam()->supported.has(CompensationPart::Angular)) return;
   expect_seen(write_tables(*GetParam(), result_, options("side_y")), "for another tool");
 }
 

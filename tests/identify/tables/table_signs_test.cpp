@@ -124,6 +124,23 @@ TEST(SignByHand, EtalonExchangeHoldsErrorsInMm) {
   EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("1000.000000 0.008000000\n}"));
 }
 
+/// What Y does to X stands under Y and X, not the other way round.
+TEST(SignByHand, CausingAndCorrectedAxisStandInTheirPlaces) {
+  const auto neutral = files_of("neutral-csv", leaning_axis(), CompensationPart::Squareness);
+  EXPECT_THAT(content_of(neutral, "axis_corrections.csv"), HasSubstr("Y,X,1000,30,30\n"));
+  const auto etalon = files_of("etalon-exchange", leaning_axis(), CompensationPart::Squareness);
+  EXPECT_THAT(content_of(etalon, "volcomp.txt"),
+              HasSubstr("[EXY]\nGridpoints = {\n0.000000 0.000000000\n500.000000 -0.015000000\n"
+                        "1000.000000 -0.030000000\n}"));
+  const auto isg = files_of("isg-csv", leaning_axis(), CompensationPart::Squareness);
+  EXPECT_THAT(content_of(isg, "volcomp.csv"), HasSubstr("Y EXY EZY\n"));
+  EXPECT_THAT(content_of(isg, "volcomp.csv"), HasSubstr("1000.000000 -0.030000000 0.000000000\n"));
+  const auto grid = files_of("isg-csv", long_axis(), CompensationType::volumetric());
+  EXPECT_THAT(content_of(grid, "volcomp.csv"), HasSubstr("X Y Z EXX EYY EZZ\n"));
+  EXPECT_THAT(content_of(grid, "volcomp.csv"),
+              HasSubstr("1000.000000 0.000000 0.000000 0.008000000 0.000000000 0.000000000\n"));
+}
+
 TEST(SignByHand, SinumerikEncoderTablesHoldErrorsInMm) {
   const auto files = files_of("sinumerik", long_axis(), CompensationPart::Positioning);
   EXPECT_THAT(content_of(files, "AX_EEC.INI"), HasSubstr("$AA_ENC_COMP[0,2,X1]=0.008000\n"));

@@ -16,8 +16,9 @@
 namespace volcal::sim {
 
 /// Tracking interferometer or tracker at several stations: jittered grids over the whole travel, each
-/// position met from both directions. Without stations and runs: four stations around the volume and eight
-/// runs with the machine's first three tools (fewer if it has fewer).
+/// position met from both directions; or, of a run that has them, positions as given. Without stations and
+/// runs: four stations around the volume and eight runs with the machine's first three tools (fewer if it has
+/// fewer).
 struct Tracking {
   struct Station {
     std::string name;
@@ -26,6 +27,7 @@ struct Tracking {
   struct Run {
     std::string station;
     std::string tool;
+    std::vector<CommandedPoint> points = {};  ///< in place of a grid
   };
   std::string instrument = "laser-tracer";  ///< or "laser-tracker"
   std::vector<Station> stations;

@@ -82,9 +82,14 @@ class TrackingPlanner {
     plan.seconds_per_reading = settings_.seconds_per_reading;
     plan.noise = settings_.noise;
     RandomStream random(context_.seed, "setup " + plan.name);
-    plan.points = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, random);
     RandomStream elsewhere(context_.seed, "unseen positions of " + plan.name);
-    plan.unseen = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, elsewhere);
+    if (run.points.empty()) {
+      plan.points = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, random);
+      plan.unseen = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, elsewhere);
+    } else {
+      plan.points = run.points;
+      plan.unseen = points_between(run.points, elsewhere);
+    }
     plan.truth.station = station.position_w;
     plan.truth.length_scale = length_scale_;
     if (settings_.instrument == "laser-tracer") {

@@ -8,6 +8,7 @@ namespace volcal::cli {
 #define VOLCAL_COMMANDS(COMMAND) \
   COMMAND(init_command)          \
   COMMAND(simulate_command)      \
+  COMMAND(plan_command)          \
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \
   COMMAND(validate_command)      \

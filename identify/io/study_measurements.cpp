@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "volcal/identify/io/run_points.h"
 #include "volcal/identify/io/study_reader.h"
 #include "volcal/model/description/units.h"
 
@@ -94,6 +95,14 @@ void read_line_settings(const TomlTable& table, Settings& settings) {
   read(table, "reading_s", settings.seconds_per_reading);
 }
 
+/// Positions of a run in a file of their own: columns of the machine's axes, dir_x ..., line and run as in
+/// the readings of a campaign (run_points.h).
+std::vector<sim::CommandedPoint> read_points(const TomlTable& run) {
+  const auto file = run.text("points");
+  if (!file) return {};
+  return read_run_points(resolve_path(run.place().file, *file), run.place("points"));
+}
+
 sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string& instrument) {
   sim::Tracking settings;
   settings.instrument = instrument;
@@ -101,7 +110,7 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
     settings.stations.push_back({station.required_text("name"), station.required_vector3("position_mm")});
   }
   for (const TomlTable& run : table.tables("runs")) {
-    settings.runs.push_back({run.required_text("station"), run.required_text("tool")});
+    settings.runs.push_back({run.required_text("station"), run.required_text("tool"), read_points(run)});
   }
   read(table, "revisits", settings.revisits, 0);
   read_grid(table, settings.grid);

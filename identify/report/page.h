@@ -1,6 +1,6 @@
 #pragma once
-/// Sections of the reports, of a result, a diagnosis and a Monte Carlo study. A new section is one file in
-/// pages/ with a builder, one line in pages.cpp, and a renderer of the same kind with one line in
+/// Sections of the reports, of a result, a diagnosis, a Monte Carlo study and a plan. A new section is one
+/// file in pages/ with a builder, one line in pages.cpp, and a renderer of the same kind with one line in
 /// web/src/pages.js.
 
 #include <nlohmann/json.hpp>
@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
+#include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/volume_error.h"
 
@@ -66,6 +67,18 @@ std::span<const MonteCarloPage> montecarlo_pages();
 
 Json uncertainties_page(const MonteCarloPageInput& input);
 Json budget_page(const MonteCarloPageInput& input);
+
+/// What a section of a plan's report is made from.
+struct PlanPageInput {
+  const CampaignPlan& plan;
+};
+
+using PlanPage = PageOf<PlanPageInput>;
+std::span<const PlanPage> plan_pages();
+
+Json plan_layout_page(const PlanPageInput& input);
+Json plan_errors_page(const PlanPageInput& input);
+Json plan_detectable_page(const PlanPageInput& input);
 
 using DiagnosisPage = PageOf<DiagnosisInput>;
 std::span<const DiagnosisPage> diagnosis_pages();

@@ -37,10 +37,17 @@ constexpr std::array kMonteCarloPages = {
     MonteCarloPage{"budget", "Where the uncertainty comes from", budget_page},
 };
 
+constexpr std::array kPlanPages = {
+    PlanPage{"plan_layout", "The plan", plan_layout_page},
+    PlanPage{"plan_errors", "Every error", plan_errors_page},
+    PlanPage{"detectable", "Smallest detectable effects", plan_detectable_page},
+};
+
 }  // namespace
 
 std::span<const Page> pages() { return kPages; }
 std::span<const DiagnosisPage> diagnosis_pages() { return kDiagnosisPages; }
 std::span<const MonteCarloPage> montecarlo_pages() { return kMonteCarloPages; }
+std::span<const PlanPage> plan_pages() { return kPlanPages; }
 
 }  // namespace volcal::report

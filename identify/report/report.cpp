@@ -119,4 +119,13 @@ std::string report_html(const MonteCarloResult& study, const Machine& machine, c
   return filled_page(machine.name + " \u2013 volcal Monte Carlo", report_json(study, machine, options));
 }
 
+std::string report_json(const CampaignPlan& plan, const ReportOptions& options) {
+  return document(plan.settings.machine.name, "Which campaign to measure, and what it would tell", options,
+                  report::plan_pages(), report::PlanPageInput{plan});
+}
+
+std::string report_html(const CampaignPlan& plan, const ReportOptions& options) {
+  return filled_page(plan.settings.machine.name + " \u2013 volcal plan", report_json(plan, options));
+}
+
 }  // namespace volcal

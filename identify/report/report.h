@@ -1,6 +1,6 @@
 #pragma once
-/// The reports of a result, of a diagnosis and of a Monte Carlo study: each one self-contained HTML page with
-/// interactive plots, readable without a network.
+/// The reports of a result, of a diagnosis, of a Monte Carlo study and of a plan: each one self-contained
+/// HTML page with interactive plots, readable without a network.
 ///
 /// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
+#include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/description/campaign.h"
 
@@ -41,5 +42,9 @@ std::string report_json(const MonteCarloResult& study, const Machine& machine,
                         const ReportOptions& options = {});
 std::string report_html(const MonteCarloResult& study, const Machine& machine,
                         const ReportOptions& options = {});
+
+/// The same for a campaign plan.
+std::string report_json(const CampaignPlan& plan, const ReportOptions& options = {});
+std::string report_html(const CampaignPlan& plan, const ReportOptions& options = {});
 
 }  // namespace volcal

@@ -1,5 +1,5 @@
-/// docs/guides/from-a-campaign-to-tables.md quotes the program: its lines are those that the program prints,
-/// and its code is the one that tests/consumer runs.
+/// Guides quote the program: their lines are those that the program prints, and the code of
+/// docs/guides/from-a-campaign-to-tables.md is the one that tests/consumer runs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,10 +28,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// Lines of the fenced block of the guide that begins with `fence` and holds the line `with`.
-std::vector<std::string> block_of_guide(const std::string& fence, const std::string& with) {
+std::vector<std::string> block_of_guide(const std::string& fence, const std::string& with,
+                                        const std::string& guide = "from-a-campaign-to-tables.md") {
   std::vector<std::string> block;
   bool open = false, inside = false;
-  for (const std::string& line : lines_of(content(kSource / "docs/guides/from-a-campaign-to-tables.md"))) {
+  for (const std::string& line : lines_of(content(kSource / "docs/guides" / guide))) {
     if (line.starts_with("```")) {
       for (const std::string& each : block) {
         if (inside && each.find(with) != std::string::npos) return block;
@@ -77,6 +78,16 @@ TEST(Guide, QuotesWhatTheProgramPrints) {
   comparison.replace(0, result.size(), "out/demo/result");
   expect_quoted(block_of_guide("```", "no failure found"), comparison);
   expect_quoted(block_of_guide("```", "Circular tests"), comparison);
+}
+
+TEST(Guide, PlansTheCampaignThatItQuotes) {
+  const testing::ScratchFolder scratch;
+  const std::string guide = "plan-a-campaign.md", machine = (kSource / "datasets/demo/machine.toml").string();
+  expect_quoted(block_of_guide("```", "may be off", guide),
+                run("plan " + machine + " --stations 4 --readings 960"));
+  const auto one_tool = testing::run_program("plan " + machine + " --tools short --readings 480");
+  EXPECT_EQ(one_tool.exit_code, 1) << one_tool.errors;
+  expect_quoted(block_of_guide("```", "makes visible", guide), one_tool.output);
 }
 
 TEST(Guide, ShowsTheProgramThatTheConsumerTestRuns) {

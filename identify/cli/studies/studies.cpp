@@ -8,7 +8,8 @@ namespace volcal::cli {
 #define VOLCAL_STUDIES(STUDY)       \
   STUDY(closed_loop_study)          \
   STUDY(compensation_study_command) \
-  STUDY(criticism_study)
+  STUDY(criticism_study)            \
+  STUDY(planning_study_command)
 
 #define VOLCAL_DECLARE(name) const Command& name();
 #define VOLCAL_ADDRESS(name) &(name)(),

@@ -13,6 +13,8 @@ import { renderNoiseModel } from './pages/noise_model.js';
 import { renderNuisance } from './pages/nuisance.js';
 import { renderObservability } from './pages/observability.js';
 import { renderOutliers } from './pages/outliers.js';
+import { renderPlanErrors } from './pages/plan_errors.js';
+import { renderPlanLayout } from './pages/plan_layout.js';
 import { renderResidualVariables } from './pages/residual_variables.js';
 import { renderResidualVectors } from './pages/residual_vectors.js';
 import { renderResiduals } from './pages/residuals.js';
@@ -47,4 +49,6 @@ export const renderers = {
   noise_model: renderNoiseModel,
   uncertainties: renderUncertainties,
   budget: renderBudget,
+  plan_layout: renderPlanLayout,
+  plan_errors: renderPlanErrors,
 };

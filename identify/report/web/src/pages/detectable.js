@@ -14,7 +14,7 @@ const columns = [
 ];
 
 export function renderDetectable(body, data) {
-  body.append(note(`MDB: the amplitude that is found with 80 % probability at the family-wise threshold, one line per effect of the catalogue that could act here, at the given model. In the volume: what an effect of that size, undetected, would move the functional point by over the measured positions (effects on the instrument alone have no figure). ${data.not_visible} of ${data.rows.length} are not visible in these readings: less than 2 % of them survives the projection.`));
+  body.append(note(`MDB: the amplitude that is found with 80 % probability at the family-wise threshold, one line per effect of the catalogue that could act here, ${data.when}. In the volume: what an effect of that size, undetected, would move the functional point by over the measured positions (effects on the instrument alone have no figure). ${data.not_visible} of ${data.rows.length} are not visible in these readings: less than 2 % of them survives the projection.`));
   const frame = el('div', {});
   const kinds = [...new Set(data.rows.map((row) => row.kind))];
   let visible = 'all';

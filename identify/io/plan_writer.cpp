@@ -1,0 +1,205 @@
+#include "volcal/identify/io/plan_writer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/io/toml_writer.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+using PlanJson = nlohmann::ordered_json;
+
+PlanJson in_unit(double si, double unit) {
+  return std::isfinite(si) ? PlanJson(si / unit) : PlanJson(nullptr);
+}
+
+PlanJson millimetres(const Eigen::Vector3d& place) {
+  return {place.x() / kMetrePerMillimetre, place.y() / kMetrePerMillimetre, place.z() / kMetrePerMillimetre};
+}
+
+const char* name_of(PlanTarget target) {
+  switch (target) {
+    case PlanTarget::Volumetric:
+      return "volumetric";
+    case PlanTarget::Worst:
+      return "worst";
+    case PlanTarget::Symbol:
+      return "symbol";
+    case PlanTarget::Separate:
+      return "separate";
+  }
+  return "";
+}
+
+PlanJson budget_json(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  PlanJson json = {{"instrument", settings.instrument}, {"stations", settings.budget.stations}};
+  if (settings.budget.readings) json["readings"] = *settings.budget.readings;
+  if (settings.budget.time) json["time_h"] = *settings.budget.time / kSecondsPerHour;
+  for (const std::size_t tool : tools_of(settings))
+    json["tools"].push_back(settings.machine.tools[tool].name);
+  json["extends"] = settings.existing != nullptr;
+  return json;
+}
+
+PlanJson layout_json(const CampaignPlan& plan) {
+  PlanJson stations = PlanJson::array(), runs = PlanJson::array();
+  const PlanLayout& layout = plan.searched.layout;
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
+    PlanJson station = {{"name", layout.station_names[i]},
+                        {"position_mm", millimetres(layout.stations_w[i])}};
+    if (i < plan.searched.station_tolerance.size())
+      station["may_be_off_mm"] = plan.searched.station_tolerance[i] / kMetrePerMillimetre;
+    stations.push_back(std::move(station));
+  }
+  for (const PlanRun& run : layout.runs) {
+    const std::string name = run_name(layout, run, plan.settings.machine);
+    Setup named;
+    named.name = name;
+    runs.push_back({{"setup", name},
+                    {"station", layout.station_names[run.station]},
+                    {"tool", plan.settings.machine.tools[run.tool].name},
+                    {"positions", run.positions.size()},
+                    {"readings", 2 * run.positions.size()},
+                    {"points", "campaign/" + readings_file_name(named)}});
+  }
+  PlanJson json = {{"stations", std::move(stations)}, {"runs", std::move(runs)}};
+  for (const Eigen::Vector3d& place : plan.searched.as_good_w)
+    json["stations_as_good_mm"].push_back(millimetres(place));
+  json["pool_positions"] = plan.searched.pool;
+  json["positions_converged"] = plan.searched.converged;
+  return json;
+}
+
+PlanJson errors_json(const ExpectedCampaign& campaign) {
+  PlanJson errors = PlanJson::array();
+  for (const Observability& error : campaign.result.rank.errors) {
+    PlanJson json = {{"symbol", error.symbol},
+                     {"visible", error.visible},
+                     {"visible_fraction", error.visible_fraction},
+                     {"effective_parameters", error.effective_parameters}};
+    const auto symbol = ErrorSymbol::parse(error.symbol);
+    const auto location = LocationSymbol::parse(error.symbol);
+    if (symbol || location) {
+      json["unit"] = edge_unit(symbol ? symbol->component : location->component);
+      json["u"] = error.visible ? in_unit(error.u_rms, kMicro) : PlanJson(nullptr);
+    }
+    if (!error.visible) {
+      json["reason"] = error.reason;
+      json["remedy"] = error.remedy;
+    }
+    errors.push_back(std::move(json));
+  }
+  return errors;
+}
+
+PlanJson effects_json(const ExpectedCampaign& campaign) {
+  PlanJson effects = PlanJson::array();
+  for (const DetectableEffect& effect : campaign.detectable) {
+    effects.push_back({{"kind", effect.name.kind},
+                       {"target", effect.name.target},
+                       {"driver", effect.name.driver},
+                       {"shape", effect.name.shape},
+                       {"label", effect.label},
+                       {"visible", effect.visible},
+                       {"visible_fraction", effect.visible_fraction},
+                       {"unit", effect.unit},
+                       {"mdb", in_unit(effect.visible ? effect.mdb : NAN, effect.si_per_unit)},
+                       {"volumetric_um", in_unit(effect.visible ? effect.volumetric : NAN, kMicro)}});
+  }
+  return effects;
+}
+
+PlanJson campaign_json(const ExpectedCampaign& campaign) {
+  return {{"name", campaign.name},
+          {"setups", campaign.campaign.setups.size()},
+          {"readings", campaign.campaign.reading_count()},
+          {"time_h", in_unit(campaign.duration, kSecondsPerHour)},
+          {"u_volumetric_rms_um", in_unit(campaign.volumetric.rms, kMicro)},
+          {"u_volumetric_largest_um", in_unit(campaign.volumetric.largest, kMicro)},
+          {"u_worst_length_um", in_unit(campaign.worst_length, kMicro)},
+          {"worst_length_at", campaign.worst_length_at},
+          {"u_worst_angle_urad", in_unit(campaign.worst_angle, kMicro)},
+          {"worst_angle_at", campaign.worst_angle_at},
+          {"not_visible", campaign.invisible()},
+          {"errors", errors_json(campaign)},
+          {"effects", effects_json(campaign)}};
+}
+
+}  // namespace
+
+std::string plan_json(const CampaignPlan& plan) {
+  PlanJson json = {{"format", kPlanFormat},
+                   {"machine", plan.settings.machine.name},
+                   {"minimised", name_of(plan.settings.target)}};
+  if (plan.settings.target == PlanTarget::Symbol) json["symbol"] = plan.settings.symbol;
+  json["budget"] = budget_json(plan);
+  json["layout"] = layout_json(plan);
+  if (plan.searched.textbook > 0.0)
+    json["target_to_textbook"] = std::sqrt(plan.searched.value / plan.searched.textbook);
+  json["campaigns"].push_back(campaign_json(plan.plan));
+  if (plan.settings.existing == nullptr) json["campaigns"].push_back(campaign_json(plan.textbook));
+  if (plan.given) json["campaigns"].push_back(campaign_json(*plan.given));
+  json["options"] = PlanJson::array();
+  for (const PlanOption& option : plan.options) {
+    json["options"].push_back({{"words", option.words},
+                               {"new_station", option.new_station},
+                               {"new_tool", option.new_tool},
+                               {"readings", option.readings},
+                               {"u_volumetric_rms_um", in_unit(option.volumetric_rms, kMicro)},
+                               {"makes_visible", option.made_visible},
+                               {"still_not_visible", option.still_invisible}});
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string plan_study_toml(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  std::string stations, runs, known, left_out;
+  for (const Setup& setup : plan.plan.campaign.setups) {
+    const auto place = setup.options.vector("station");
+    if (setup.instrument != settings.instrument || !place) {
+      left_out += "# not simulated: setup " + setup.name + " of the campaign that is extended\n";
+      continue;
+    }
+    const std::string name = setup.options.text("station").value_or(setup.name);
+    if (known.find("|" + name + "|") == std::string::npos) {
+      known += "|" + name + "|";
+      stations += fmt::format("[[measurements.stations]]\nname = {}\nposition_mm = [{}, {}, {}]\n",
+                              toml_text(name), edge_number(place->x(), kMetrePerMillimetre),
+                              edge_number(place->y(), kMetrePerMillimetre),
+                              edge_number(place->z(), kMetrePerMillimetre));
+    }
+    runs += fmt::format("[[measurements.runs]]\nstation = {}\ntool = {}\npoints = {}\n", toml_text(name),
+                        toml_text(settings.machine.tools[setup.tool].name),
+                        toml_text("campaign/" + readings_file_name(setup)));
+  }
+  const PlanNoise& noise = settings.noise;
+  std::string angle;
+  if (settings.instrument == "laser-tracker") {
+    angle = ", angle_urad = " + edge_number(noise.angle, kRadianPerMicroradian);
+  }
+  return fmt::format(
+      "# The plan measured on a random machine: volcal simulate study.toml -o simulated\n"
+      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n"
+      "[[measurements]]\nkind = \"{}\"\nreading_s = {}\n"
+      "noise = {{ constant_um = {}, per_metre_um = {}, repeatability_um = {}{} }}\n{}{}",
+      settings.seed, edge_number(settings.costs.run, 1.0), left_out, settings.instrument,
+      edge_number(settings.costs.reading, 1.0), edge_number(noise.constant, kMicro),
+      edge_number(noise.per_metre, kMicro), edge_number(noise.repeatability, kMicro), angle, stations, runs);
+}
+
+void write_plan_campaign(const CampaignPlan& plan, const AtomicFolder& folder) {
+  folder.write("machine.toml", machine_toml(plan.settings.machine));
+  folder.write("study.toml", plan_study_toml(plan));
+  std::filesystem::create_directories(folder.path("campaign"));
+  write_campaign(plan.plan.campaign, folder.path("campaign"), "../machine.toml");
+}
+
+}  // namespace volcal

@@ -1,0 +1,146 @@
+#include "volcal/identify/planning/campaign_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volcal/identify/planning/expected_effects.h"
+#include "volcal/identify/planning/plan_options.h"
+#include "volcal/identify/tables/error_tables.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kReportedVolume = 5;  // points per axis
+
+std::string place_of(const ErrorTableRow& row) {
+  if (!row.axis) return row.symbol;
+  const bool rotary = is_rotary(*row.axis);
+  return fmt::format("{} at {:.0f} {}", row.symbol,
+                     row.position / (rotary ? kRadianPerDegree : kMetrePerMillimetre), rotary ? "deg" : "mm");
+}
+
+void find_worst_values(ExpectedCampaign& expected) {
+  for (const ErrorTableRow& row : error_table(expected.result)) {
+    double& worst = row.rotation ? expected.worst_angle : expected.worst_length;
+    if (row.u <= worst) continue;
+    worst = row.u;
+    (row.rotation ? expected.worst_angle_at : expected.worst_length_at) = place_of(row);
+  }
+}
+
+double target_uncertainty(const ExpectedCampaign& expected, const PlanSettings& settings) {
+  if (settings.target != PlanTarget::Symbol) return expected.volumetric.rms;
+  for (const Observability& error : expected.result.rank.errors) {
+    if (error.symbol == settings.symbol) return error.u_rms;
+  }
+  return std::nan("");
+}
+
+/// The searches' progress within a share of the whole.
+PlanSettings with_share(PlanSettings settings, double from, double share) {
+  if (!settings.progress) return settings;
+  settings.progress = [whole = settings.progress, from, share](const std::string& stage, double done) {
+    whole(stage, from + share * done);
+  };
+  return settings;
+}
+
+void tell(const PlanSettings& settings, const std::string& stage, double done) {
+  if (settings.progress) settings.progress(stage, done);
+}
+
+}  // namespace
+
+std::vector<std::string> ExpectedCampaign::invisible() const {
+  std::vector<std::string> symbols;
+  for (const Observability& error : result.rank.errors) {
+    if (!error.visible) symbols.push_back(error.symbol);
+  }
+  return symbols;
+}
+
+ExpectedCampaign expected_campaign(const std::string& name, const Campaign& campaign,
+                                   const PlanSettings& settings, bool effects) {
+  ExpectedCampaign expected;
+  expected.name = name;
+  expected.campaign = campaign;
+  expected.result = expected_result(campaign, settings.model, settings.roughness, settings.threads);
+  expected.volumetric = volumetric_uncertainty(expected.result, own_tools(settings), kReportedVolume);
+  expected.target_u = target_uncertainty(expected, settings);
+  expected.duration = std::nan("");
+  find_worst_values(expected);
+  if (effects) expected.detectable = expected_detectable(campaign, expected.result, settings.threads);
+  return expected;
+}
+
+CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given) {
+  check_plan_settings(settings);
+  CampaignPlan plan;
+  plan.settings = settings;
+  const PlanSettings searching = with_share(settings, 0.0, 0.8);
+  const LineOfSight sight(searching);
+  const PlanProblem problem(searching);
+  plan.searched = search_plan(searching, problem, sight);
+  tell(settings, "figures", 0.8);
+  plan.plan = expected_campaign("plan", campaign_of(plan.searched.layout, settings), settings, true);
+  plan.plan.duration = duration(plan.searched.layout, settings);
+  PlanSettings same_tools = settings;
+  same_tools.budget.tools = plan.searched.tools;
+  const PlanLayout textbook = textbook_layout(same_tools, sight);
+  plan.textbook = expected_campaign("textbook", campaign_of(textbook, settings), settings, true);
+  plan.textbook.duration = duration(textbook, settings);
+  if (given != nullptr) plan.given = expected_campaign("given", *given, settings, true);
+  if (!plan.plan.invisible().empty()) {
+    tell(settings, "what would make errors visible", 0.9);
+    PlanSettings adding = settings;
+    adding.existing = &plan.plan.campaign;
+    plan.options = setup_options(adding, plan.plan).options;
+  }
+  tell(settings, "done", 1.0);
+  return plan;
+}
+
+CampaignPlan extend_campaign(const PlanSettings& settings) {
+  check_plan_settings(settings);
+  CampaignPlan plan;
+  plan.settings = settings;
+  plan.given = expected_campaign("given", *settings.existing, settings, true);
+  Campaign reached = *settings.existing;
+  ExpectedCampaign now = *plan.given;
+  const int setups = settings.budget.stations;
+  const std::size_t readings =
+      static_cast<std::size_t>(settings.budget.readings.value_or(0)) / static_cast<std::size_t>(setups);
+  for (int setup = 0; setup < setups; ++setup) {
+    PlanSettings adding = with_share(plan.settings, 0.9 * setup / setups, 0.9 / setups);
+    adding.existing = &reached;
+    adding.budget.readings = static_cast<int>(readings);
+    const SetupOptions found = setup_options(adding, now);
+    if (found.options.empty()) break;
+    if (plan.options.empty()) plan.options = found.options;
+    plan.settings.machine = found.machine;
+    plan.settings.imagined_tools = found.imagined_tools;
+    adding.machine = found.machine;
+    adding.imagined_tools = found.imagined_tools;
+    reached.machine = found.machine;
+    PlanLayout added = with_chosen_positions(adding, found.best);
+    now = expected_campaign("plan", campaign_of(added, adding), plan.settings, false);
+    const ExpectedCampaign even =
+        expected_campaign("plan", campaign_of(found.best, adding), plan.settings, false);
+    if (even.invisible().size() < now.invisible().size()) {
+      added = found.best;
+      now = even;
+    }
+    append(added, plan.searched.layout);
+    reached = now.campaign;
+  }
+  plan.plan = expected_campaign("plan", reached, plan.settings, true);
+  plan.plan.duration = duration(plan.searched.layout, plan.settings);
+  tell(settings, "done", 1.0);
+  return plan;
+}
+
+}  // namespace volcal

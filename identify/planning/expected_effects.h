@@ -1,0 +1,17 @@
+#pragma once
+/// The smallest amplitudes of every effect of the catalogue that a campaign would show, before it is
+/// measured: what criticism lists after it (criticism/detectable.h), from the expected result and independent
+/// noise.
+
+#include <vector>
+
+#include "volcal/identify/criticism/detectable.h"
+
+namespace volcal {
+
+/// `result` must be expected_result() of this campaign. Effects with a shape that is scanned (a period, a
+/// time) are taken at the middle one.
+std::vector<DetectableEffect> expected_detectable(const Campaign& campaign, const FitResult& result,
+                                                  int threads);
+
+}  // namespace volcal

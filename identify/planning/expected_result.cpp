@@ -1,0 +1,169 @@
+#include "volcal/identify/planning/expected_result.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/planning/plan_problem.h"
+#include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/solve/normal_equations.h"
+#include "volcal/identify/solve/rank.h"
+#include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/stated_sigma.h"
+#include "volcal/identify/solve/summaries.h"
+#include "volcal/identify/stats/channels.h"
+#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/tables/error_tables.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kUnseenAmplitude = 1e-4;  // m or rad, as in the fit
+
+/// One prediction, in the order of the fit's stages.
+class Expectation {
+ public:
+  Expectation(const Campaign& campaign, const ModelSpec& spec, const FunctionRoughnessGuess& roughness,
+              int threads)
+      : campaign_(campaign),
+        spec_(resolve_knots(spec, campaign)),
+        model_(campaign, spec_),
+        index_(model_),
+        parameters_(model_.initial_parameters()),
+        datum_(model_.layout(), campaign.machine, parameters_),
+        z_(datum_.reduced(parameters_)),
+        sigma_(stated_sigma(index_, parameters_)) {
+    use_single_threaded_blas();
+    find_information(thread_count(threads));
+    find_prior(roughness);
+  }
+
+  FitResult run() {
+    const auto factor = cholesky_lower(information_ + prior_.precision);
+    if (!factor) throw std::runtime_error("the expected normal matrix is not positive definite");
+    const Eigen::MatrixXd covariance = inverse_from_cholesky(*factor);
+    result_.machine = campaign_.machine;
+    result_.layout = model_.layout();
+    result_.parameters = parameters_;
+    result_.covariance = datum_.expand_covariance(covariance);
+    result_.sigma0 = 1.0;
+    result_.rank = rank_.report;
+    result_.status = rank_.deficient ? FitStatus::RankDeficient : FitStatus::Ok;
+    result_.functions = function_summaries(campaign_, spec_, datum_, terms_, covariance);
+    result_.identified = identified_model(spec_, model_.layout(), parameters_);
+    result_.adjustment =
+        std::make_shared<const Adjustment>(Adjustment{spec_, z_, base_prior_, terms_, sigma_});
+    list_residuals();
+    complete_observability();
+    return std::move(result_);
+  }
+
+ private:
+  void find_information(int threads) {
+    std::vector<double> weight = sigma_;
+    for (double& each : weight) each = 1.0 / (each * each);
+    for (const std::size_t left_out : index_.left_out()) weight[left_out] = 0.0;
+    NormalAccumulator accumulator(index_, weight, nullptr, threads);
+    information_ = datum_.reduce_matrix(accumulator.accumulate(parameters_).matrix);
+  }
+
+  void find_prior(const FunctionRoughnessGuess& roughness) {
+    base_prior_ = stated_priors(model_.layout(), datum_);
+    const GaussianPrior wide = wide_prior(model_, datum_, z_);
+    rank_ = analyse_rank(model_, datum_, information_ + base_prior_.precision, wide);
+    if (rank_.report.rank < rank_.report.parameters) base_prior_.precision += wide.precision;
+    terms_ = assumed_smoothing(model_, datum_, roughness);
+    const auto is_visible = [this](const SmoothingTerm& term) {
+      return std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
+    };
+    const auto unseen = std::stable_partition(terms_.begin(), terms_.end(), is_visible);
+    std::vector<SmoothingTerm> held(unseen, terms_.end());
+    terms_.erase(unseen, terms_.end());
+    for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
+    add_smoothing(held, base_prior_);
+    base_prior_.mean = z_;
+    prior_ = base_prior_;
+    add_smoothing(terms_, prior_);
+  }
+
+  void list_residuals() {
+    std::size_t observation = 0;
+    for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
+      const Setup& source = campaign_.setups[setup];
+      SetupSummary& summary = result_.setups.emplace_back();
+      summary.name = source.name;
+      summary.instrument = source.instrument;
+      summary.tool = campaign_.machine.tools[source.tool].name;
+      summary.reading_unit = residual_unit(source, 0);
+      for (std::size_t row = 0; row < source.readings.size(); ++row) {
+        for (int channel = 0; channel < model_.bound(setup).channels(); ++channel) {
+          ResidualRecord record;
+          record.setup = setup;
+          record.row = row;
+          record.channel = channel;
+          record.sigma = sigma_[observation++];
+          result_.residuals.push_back(record);
+          ++summary.observations;
+        }
+      }
+    }
+    for (const std::size_t left_out : index_.left_out()) {
+      result_.residuals[left_out].removed = result_.residuals[left_out].left_out = true;
+    }
+  }
+
+  void complete_observability() {
+    for (Observability& figure : result_.rank.errors) {
+      if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
+      for (const FunctionSummary& function : result_.functions) {
+        if (function.symbol.name() == figure.symbol)
+          figure.effective_parameters = function.effective_parameters;
+      }
+      if (figure.visible) figure.u_rms = mean_uncertainty(campaign_, result_, figure.symbol);
+    }
+  }
+
+  const Campaign& campaign_;
+  ModelSpec spec_;
+  MeasurementModel model_;
+  ReadingIndex index_;
+  Eigen::VectorXd parameters_;
+  DatumSpace datum_;
+  Eigen::VectorXd z_;
+  std::vector<double> sigma_;
+  Eigen::MatrixXd information_;
+  GaussianPrior base_prior_;
+  GaussianPrior prior_;
+  std::vector<SmoothingTerm> terms_;
+  RankAnalysis rank_;
+  FitResult result_;
+};
+
+}  // namespace
+
+FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
+                          const FunctionRoughnessGuess& roughness, int threads) {
+  return Expectation(campaign, model, roughness, threads).run();
+}
+
+VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std::vector<Tool>& tools,
+                                             int per_axis) {
+  VolumetricUncertainty out;
+  double count = 0.0;
+  for (const AxisPosition& position : grid_positions(result.machine, per_axis)) {
+    for (const Tool& tool : tools) {
+      const Eigen::MatrixXd rows = volumetric_error_rows(result, position, tool).topRows(3);
+      const double variance = (rows * result.covariance).cwiseProduct(rows).sum();
+      out.rms += variance;
+      out.largest = std::max(out.largest, variance);
+      count += 1.0;
+    }
+  }
+  out.rms = std::sqrt(out.rms / std::max(1.0, count));
+  out.largest = std::sqrt(out.largest);
+  return out;
+}
+
+}  // namespace volcal

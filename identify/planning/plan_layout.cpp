@@ -1,0 +1,228 @@
+#include "volcal/identify/planning/plan_layout.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include "volcal/model/instruments/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kResting = 1e-12;
+constexpr double kProgrammedSteps = 1e6;  // per metre
+constexpr double kPause = 600.0;          // s, between setups where nothing is said
+
+std::array<std::int8_t, kAxisCount> approach(const AxisPosition& from, const AxisPosition& to,
+                                             std::array<std::int8_t, kAxisCount> before) {
+  for (std::size_t k = 0; k < kAxisCount; ++k) {
+    const double move = to[k] - from[k];
+    if (std::abs(move) > kResting) before[k] = static_cast<std::int8_t>(move > 0.0 ? 1 : -1);
+  }
+  return before;
+}
+
+double move_time(const AxisPosition& from, const AxisPosition& to, double feed) {
+  double longest = 0.0;
+  for (const AxisName axis : kLinearAxes)
+    longest = std::max(longest, std::abs(to[index_of(axis)] - from[index_of(axis)]));
+  return longest / feed;
+}
+
+double run_duration(const PlanRun& run, const PlanSettings& settings) {
+  double time = 0.0;
+  const AxisPosition* last = nullptr;
+  const std::vector<PlanReading> readings = readings_of(run);
+  for (const PlanReading& reading : readings) {
+    time += settings.costs.reading;
+    if (last != nullptr) time += move_time(*last, reading.position, settings.costs.feed);
+    last = &reading.position;
+  }
+  return time;
+}
+
+/// Uniform in -1 ... 1, the same with every standard library.
+double even(std::mt19937_64& random) { return 2.0 * (static_cast<double>(random() >> 11U) * 0x1p-53) - 1.0; }
+
+class SetupMaker {
+ public:
+  SetupMaker(const PlanLayout& layout, const PlanSettings& settings)
+      : layout_(layout), settings_(settings), chain_(settings.machine) {}
+
+  Setup make(const PlanRun& run, bool both, double start) const {
+    Setup setup;
+    setup.name = run_name(layout_, run, settings_.machine);
+    setup.instrument = settings_.instrument;
+    setup.tool = run.tool;
+    setup.options.set("station", layout_.station_names[run.station]);
+    setup.options.set("station", layout_.stations_w[run.station]);
+    state_noise(setup);
+    fill(run, both, start, setup);
+    return setup;
+  }
+
+ private:
+  void state_noise(Setup& setup) const {
+    setup.has_noise = true;
+    setup.noise.set("constant", settings_.noise.constant);
+    setup.noise.set("per_metre", settings_.noise.per_metre);
+    if (settings_.instrument == "laser-tracker") setup.noise.set("angle", settings_.noise.angle);
+    setup.repeatability = settings_.noise.repeatability;
+  }
+
+  void fill(const PlanRun& run, bool both, double start, Setup& setup) const {
+    Readings& readings = setup.readings;
+    const bool angles = settings_.instrument == "laser-tracker";
+    readings.value.resize(angles ? 3 : 1);
+    double time = start;
+    for (const PlanReading& reading : readings_of(run, both)) {
+      for (const Axis& axis : settings_.machine.axes) {
+        const std::size_t k = index_of(axis.name);
+        readings.position[k].push_back(reading.position[k]);
+        readings.direction[k].push_back(reading.direction[k]);
+      }
+      const Eigen::Vector3d beam =
+          chain_.nominal_point_w(reading.position, settings_.machine.tools[run.tool].offset) -
+          layout_.stations_w[run.station];
+      readings.value[0].push_back(beam.norm());
+      if (angles) {
+        readings.value[1].push_back(std::atan2(beam.y(), beam.x()));
+        readings.value[2].push_back(std::atan2(beam.z(), std::hypot(beam.x(), beam.y())));
+      }
+      readings.line.push_back(reading.line);
+      readings.run.push_back(reading.run);
+      readings.time.push_back(time);
+      readings.source_line.push_back(static_cast<std::int64_t>(readings.source_line.size()) + 2);
+      time += settings_.costs.reading;
+    }
+  }
+
+  const PlanLayout& layout_;
+  const PlanSettings& settings_;
+  KinematicChain chain_;
+};
+
+double end_of_existing(const Campaign& campaign) {
+  double end = 0.0;
+  for (const Setup& setup : campaign.setups) {
+    for (const double time : setup.readings.time) end = std::max(end, time);
+  }
+  return end + kPause;
+}
+
+}  // namespace
+
+std::vector<PlanPosition> in_path_order(std::vector<PlanPosition> positions) {
+  std::ranges::sort(positions, {}, [](const PlanPosition& each) {
+    const auto [i, j, k] = each.cell;
+    const int row = k % 2 == 0 ? j : -j;
+    const int column = (j + k) % 2 == 0 ? i : -i;
+    return std::tuple(k, row, column, each.position);
+  });
+  return positions;
+}
+
+std::size_t PlanLayout::positions() const {
+  std::size_t count = 0;
+  for (const PlanRun& run : runs) count += run.positions.size();
+  return count;
+}
+
+std::vector<PlanReading> readings_of(const PlanRun& run, bool both) {
+  const std::vector<PlanPosition> ordered = in_path_order(run.positions);
+  std::vector<PlanReading> path;
+  std::array<std::int8_t, kAxisCount> direction{};
+  direction.fill(1);
+  std::int32_t line = -1;
+  for (std::size_t i = 0; i < ordered.size(); ++i) {
+    const bool new_row = i == 0 || ordered[i].cell[1] != ordered[i - 1].cell[1] ||
+                         ordered[i].cell[2] != ordered[i - 1].cell[2];
+    if (new_row) ++line;
+    if (i > 0) direction = approach(ordered[i - 1].position, ordered[i].position, direction);
+    path.push_back({ordered[i].position, direction, line, 0});
+  }
+  if (!both) return path;
+  for (std::size_t i = ordered.size(); i-- > 0;) {
+    PlanReading reading = path[i];
+    for (std::int8_t& each : reading.direction) each = static_cast<std::int8_t>(-each);
+    reading.line = 2 * line + 1 - reading.line;
+    reading.run = 1;
+    path.push_back(reading);
+  }
+  return path;
+}
+
+double duration(const PlanLayout& layout, const PlanSettings& settings) {
+  double time = settings.costs.station * static_cast<double>(layout.stations_w.size());
+  for (const PlanRun& run : layout.runs) time += settings.costs.run + run_duration(run, settings);
+  return time;
+}
+
+std::string run_name(const PlanLayout& layout, const PlanRun& run, const Machine& machine) {
+  return layout.station_names[run.station] + "_" + machine.tools[run.tool].name;
+}
+
+Campaign campaign_of(const PlanLayout& layout, const PlanSettings& settings, bool both) {
+  Campaign campaign;
+  campaign.machine = settings.machine;
+  double start = 0.0;
+  if (settings.existing != nullptr) {
+    campaign.setups = settings.existing->setups;
+    start = end_of_existing(*settings.existing);
+  }
+  const SetupMaker maker(layout, settings);
+  for (const PlanRun& run : layout.runs) {
+    if (run.positions.empty()) continue;
+    campaign.setups.push_back(maker.make(run, both, start));
+    start += settings.costs.run + run_duration(run, settings);
+  }
+  return campaign;
+}
+
+std::vector<PlanPosition> grid_over_travel(const Machine& machine, const Eigen::Vector3i& per_axis,
+                                           double jitter, std::uint64_t seed, std::uint64_t stream) {
+  std::seed_seq mixed{seed, stream};
+  std::mt19937_64 random(mixed);
+  std::vector<PlanPosition> positions;
+  for (int k = 0; k < per_axis.z(); ++k) {
+    for (int j = 0; j < per_axis.y(); ++j) {
+      for (int i = 0; i < per_axis.x(); ++i) {
+        PlanPosition each;
+        each.cell = {i, j, k};
+        for (const Axis& axis : machine.axes) {
+          double& q = each.position[index_of(axis.name)];
+          q = axis.home;
+          if (is_rotary(axis.name)) continue;
+          const int d = direction_of(axis.name);
+          const double step = axis.travel() / (per_axis[d] - 1);
+          const int place = each.cell[static_cast<std::size_t>(d)];
+          q = axis.travel_min + step * (place + jitter * even(random));
+          q = std::clamp(std::round(q * kProgrammedSteps) / kProgrammedSteps, axis.travel_min,
+                         axis.travel_max);
+        }
+        positions.push_back(each);
+      }
+    }
+  }
+  return positions;
+}
+
+Eigen::Vector3i even_grid(const Machine& machine, std::size_t positions) {
+  Eigen::Vector3i counts = Eigen::Vector3i::Ones();
+  double product = 1.0, moving = 0.0;
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name)) continue;
+    product *= std::cbrt(axis.travel());
+    moving += 1.0;
+  }
+  const double factor = std::pow(static_cast<double>(positions) / product, 1.0 / std::max(1.0, moving));
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name)) continue;
+    const double even_count = factor * std::cbrt(axis.travel());
+    counts[direction_of(axis.name)] = std::max(3, static_cast<int>(std::lround(even_count)));
+  }
+  return counts;
+}
+
+}  // namespace volcal

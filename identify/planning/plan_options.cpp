@@ -1,0 +1,296 @@
+#include "volcal/identify/planning/plan_options.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/stats/threads.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kSideways = 0.1;   // m
+constexpr double kSameSpot = 1e-3;  // m or so: tools that stand alike
+constexpr int kUsualReadings = 240;
+constexpr double kOptionJitter = 0.3;
+constexpr std::uint64_t kOptionStream = 3000000;
+constexpr std::size_t kLeastSeen = 8;
+constexpr double kFinerPool = 6.0;
+constexpr int kOptionSites = 5;
+constexpr std::size_t kMostOptions = 12;
+
+struct Place {
+  std::string name;
+  Eigen::Vector3d station_w;
+  bool is_new = false;
+};
+
+std::string in_mm(const Eigen::Vector3d& place) {
+  return fmt::format("[{:.0f}, {:.0f}, {:.0f}] mm", place.x() / kMetrePerMillimetre,
+                     place.y() / kMetrePerMillimetre, place.z() / kMetrePerMillimetre);
+}
+
+/// As long as the longest, and to the side of the spindle.
+Tool sideways_tool(const Machine& machine, const Eigen::Vector3d& spindle_w) {
+  Tool tool =
+      *std::ranges::max_element(machine.tools, {}, [](const Tool& each) { return each.offset.norm(); });
+  int along = 0;
+  spindle_w.cwiseAbs().maxCoeff(&along);
+  tool.offset[(along + 1) % 3] += kSideways;
+  tool.offset_sigma = 0.0;
+  tool.name = "sideways";
+  while (machine.tool_index(tool.name)) tool.name += "_";
+  return tool;
+}
+
+/// Everything that could be added, judged one by one.
+class OptionSearch {
+ public:
+  OptionSearch(PlanSettings settings, const ExpectedCampaign& now)
+      : settings_(std::move(settings)), now_(now) {
+    settings_.progress = nullptr;
+    own_machine_ = settings_.machine;
+    own_imagined_ = settings_.imagined_tools;
+    positions_ = static_cast<std::size_t>(settings_.budget.readings.value_or(kUsualReadings)) / 2;
+    existing_ = *settings_.existing;
+    if (!now.invisible().empty()) {
+      settings_.machine.tools.push_back(sideways_tool(settings_.machine, LineOfSight(settings_).spindle_w()));
+      ++settings_.imagined_tools;
+      existing_.machine = settings_.machine;
+    }
+    settings_.existing = &existing_;
+    settings_.budget.stations = 1;
+    settings_.budget.tools.clear();
+    for (std::size_t tool = 0; tool < settings_.machine.tools.size(); ++tool)
+      settings_.budget.tools.push_back(tool);
+  }
+
+  SetupOptions run() {
+    const LineOfSight sight(settings_);
+    const PlanProblem problem(settings_);
+    std::vector<PlanLayout> layouts = at_known_places(sight);
+    for (PlanLayout& layout : at_new_places(sight, problem)) layouts.push_back(std::move(layout));
+    std::vector<Judged> judged(layouts.size());
+    run_parallel(layouts.size(), thread_count(settings_.threads),
+                 [&](std::size_t i) { judged[i] = judge(layouts[i], problem); });
+    std::ranges::stable_sort(judged, {}, [](const Judged& each) {
+      return std::pair(each.option.still_invisible.size(), each.value);
+    });
+    return summary(judged);
+  }
+
+ private:
+  struct Judged {
+    PlanOption option;
+    PlanLayout layout;
+    double value = 0.0;
+  };
+
+  PlanLayout layout_of(const Place& place, std::size_t tool, const LineOfSight& sight) const {
+    PlanLayout layout;
+    layout.stations_w = {place.station_w};
+    layout.station_names = {place.name};
+    PlanRun run{0, tool, {}};
+    for (std::size_t asked = positions_; asked <= 4 * positions_ + 64; asked += 1 + asked / 8) {
+      run.positions = grid_over_travel(settings_.machine, even_grid(settings_.machine, asked), kOptionJitter,
+                                       settings_.seed, kOptionStream + tool);
+      std::erase_if(run.positions, [&](const PlanPosition& each) {
+        return !sight.sees(place.station_w, each.position, tool);
+      });
+      if (run.positions.size() < positions_) continue;
+      std::vector<PlanPosition> even;
+      for (std::size_t k = 0; k < positions_; ++k)
+        even.push_back(run.positions[(2 * k + 1) * run.positions.size() / (2 * positions_)]);
+      run.positions = std::move(even);
+      break;
+    }
+    if (run.positions.size() >= kLeastSeen) layout.runs.push_back(std::move(run));
+    return layout;
+  }
+
+  std::vector<Place> known_places() const {
+    std::vector<Place> places;
+    for (const Setup& setup : existing_.setups) {
+      const auto at = setup.options.vector("station");
+      const std::string name = setup.options.text("station").value_or(setup.name);
+      if (!at || setup.instrument != settings_.instrument) continue;
+      if (std::ranges::find(places, name, &Place::name) == places.end()) places.push_back({name, *at, false});
+    }
+    return places;
+  }
+
+  bool is_measured(const std::string& station, std::size_t tool) const {
+    return std::ranges::any_of(existing_.setups, [&](const Setup& setup) {
+      return setup.options.text("station").value_or(setup.name) == station &&
+             (settings_.machine.tools[setup.tool].offset - settings_.machine.tools[tool].offset).norm() <
+                 kSameSpot;
+    });
+  }
+
+  std::vector<PlanLayout> at_known_places(const LineOfSight& sight) const {
+    std::vector<PlanLayout> layouts;
+    for (const Place& place : known_places()) {
+      for (std::size_t tool = 0; tool < settings_.machine.tools.size(); ++tool) {
+        if (is_measured(place.name, tool)) continue;
+        PlanLayout layout = layout_of(place, tool, sight);
+        if (!layout.runs.empty()) layouts.push_back(std::move(layout));
+      }
+    }
+    return layouts;
+  }
+
+  std::string new_name() const {
+    std::set<std::string> used;
+    for (const Setup& setup : existing_.setups) {
+      used.insert(setup.name);
+      used.insert(setup.options.text("station").value_or(""));
+    }
+    int number = 1;
+    while (used.contains("P" + std::to_string(number))) ++number;
+    return "P" + std::to_string(number);
+  }
+
+  /// Every tool at the site that is best for it.
+  std::vector<PlanLayout> at_new_places(const LineOfSight& sight, const PlanProblem& problem) const {
+    std::vector<Eigen::Vector3d> sites;
+    const Eigen::AlignedBox3d& region = sight.stations_w();
+    for (int i = 0; i < kOptionSites * kOptionSites * kOptionSites; ++i) {
+      const Eigen::Vector3d cell(i % kOptionSites, i / kOptionSites % kOptionSites,
+                                 i / (kOptionSites * kOptionSites));
+      const Eigen::Vector3d site = region.min() + (cell / (kOptionSites - 1)).cwiseProduct(region.sizes());
+      if (sight.can_stand(site)) sites.push_back(site);
+    }
+    std::vector<PlanLayout> layouts;
+    for (std::size_t tool = 0; tool < settings_.machine.tools.size(); ++tool) {
+      std::vector<PlanLayout> all(sites.size());
+      std::vector<double> values(sites.size(), std::numeric_limits<double>::infinity());
+      run_parallel(sites.size(), thread_count(settings_.threads), [&](std::size_t i) {
+        all[i] = layout_of({new_name(), sites[i], true}, tool, sight);
+        if (!all[i].runs.empty()) values[i] = problem.value(all[i]);
+      });
+      if (values.empty()) continue;
+      const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());
+      if (std::isfinite(values[best])) layouts.push_back(std::move(all[best]));
+    }
+    return layouts;
+  }
+
+  Judged judge(const PlanLayout& layout, const PlanProblem& problem) const {
+    PlanSettings settings = settings_;
+    settings.threads = 1;
+    const ExpectedCampaign with = expected_campaign("option", campaign_of(layout, settings), settings, false);
+    Judged judged;
+    judged.layout = layout;
+    judged.value = problem.value(layout);
+    PlanOption& option = judged.option;
+    const PlanRun& run = layout.runs.front();
+    const Tool& tool = settings.machine.tools[run.tool];
+    option.new_tool = run.tool >= own_machine_.tools.size();
+    const std::vector<Place> known = known_places();
+    option.new_station = std::ranges::find(known, layout.station_names.front(), &Place::name) == known.end();
+    const std::string tool_words =
+        option.new_tool ? "a tool of offset " + in_mm(tool.offset) : "tool " + tool.name;
+    option.words = option.new_station ? fmt::format("a further station at {} with {}",
+                                                    in_mm(layout.stations_w.front()), tool_words)
+                                      : fmt::format("{} at {}", tool_words, layout.station_names.front());
+    option.readings = layout.readings();
+    option.volumetric_rms = with.volumetric.rms;
+    option.still_invisible = with.invisible();
+    for (const std::string& symbol : now_.invisible()) {
+      if (std::ranges::find(option.still_invisible, symbol) == option.still_invisible.end())
+        option.made_visible.push_back(symbol);
+    }
+    return judged;
+  }
+
+  SetupOptions summary(const std::vector<Judged>& judged) const {
+    SetupOptions out;
+    out.machine = own_machine_;
+    out.imagined_tools = own_imagined_;
+    if (judged.empty()) return out;
+    for (const Judged& each : judged) {
+      if (out.options.size() < kMostOptions) out.options.push_back(each.option);
+    }
+    out.best = judged.front().layout;
+    if (judged.front().option.new_tool) {
+      out.machine = settings_.machine;
+      out.imagined_tools = settings_.imagined_tools;
+    }
+    return out;
+  }
+
+  PlanSettings settings_;
+  const ExpectedCampaign& now_;
+  Machine own_machine_;
+  std::size_t own_imagined_ = 0;
+  Campaign existing_;
+  std::size_t positions_ = 0;
+};
+
+}  // namespace
+
+SetupOptions setup_options(const PlanSettings& settings, const ExpectedCampaign& now) {
+  return OptionSearch(settings, now).run();
+}
+
+PlanLayout with_chosen_positions(const PlanSettings& settings, const PlanLayout& layout) {
+  PlanSettings own = settings;
+  own.budget.stations = 1;
+  own.budget.tools.clear();
+  own.progress = nullptr;
+  for (const PlanRun& run : layout.runs) own.budget.tools.push_back(run.tool);
+  Campaign existing = *settings.existing;
+  existing.machine = settings.machine;
+  own.existing = &existing;
+  const LineOfSight sight(own);
+  const PlanProblem problem(own);
+  PlanLayout fine = layout;
+  for (PlanRun& run : fine.runs) {
+    const auto asked = static_cast<std::size_t>(kFinerPool * static_cast<double>(run.positions.size()));
+    run.positions = grid_over_travel(settings.machine, even_grid(settings.machine, asked), kOptionJitter,
+                                     settings.seed, run.tool);
+    std::erase_if(run.positions, [&](const PlanPosition& each) {
+      return !sight.sees(fine.stations_w[run.station], each.position, run.tool);
+    });
+    run.positions = in_path_order(std::move(run.positions));
+  }
+  const PlanProblem::Pool pool = problem.pool_of(fine);
+  ExchangeOptions options;
+  options.threads = thread_count(settings.threads);
+  const std::size_t count = std::min(layout.positions(), pool.pool.candidates());
+  const ExchangeResult exchanged = exchange_design(pool.pool, pool.base, problem.criterion(), count, options);
+  std::size_t candidate = 0;
+  for (PlanRun& run : fine.runs) {
+    std::vector<PlanPosition> taken;
+    for (const PlanPosition& position : run.positions) {
+      if (exchanged.taken[candidate++] > 0) taken.push_back(position);
+    }
+    run.positions = std::move(taken);
+  }
+  return fine;
+}
+
+void append(const PlanLayout& more, PlanLayout& layout) {
+  std::vector<std::size_t> place;
+  for (std::size_t i = 0; i < more.stations_w.size(); ++i) {
+    const auto known = std::ranges::find(layout.station_names, more.station_names[i]);
+    place.push_back(static_cast<std::size_t>(known - layout.station_names.begin()));
+    if (known != layout.station_names.end()) continue;
+    layout.station_names.push_back(more.station_names[i]);
+    layout.stations_w.push_back(more.stations_w[i]);
+  }
+  for (PlanRun run : more.runs) {
+    run.station = place[run.station];
+    layout.runs.push_back(std::move(run));
+  }
+}
+
+}  // namespace volcal

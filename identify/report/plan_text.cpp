@@ -1,0 +1,249 @@
+#include "volcal/identify/report/plan_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/report/detectable_groups.h"
+#include "volcal/identify/report/text_tables.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kPerMicrometre = 1e6;
+constexpr double kPerMillimetre = 1e3;
+constexpr double kCoverageOfU = 2.0;
+
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string hours(double seconds) {
+  return std::isfinite(seconds) ? fixed_number(seconds / kSecondsPerHour, 2) : "-";
+}
+
+std::string tolerance_text(double tolerance) {
+  return tolerance > 0.0 ? fixed_number(tolerance * kPerMillimetre, 0) : "< 10";
+}
+
+/// Plan, what it is compared with, the user's own.
+std::vector<const ExpectedCampaign*> compared(const CampaignPlan& plan) {
+  std::vector<const ExpectedCampaign*> all = {&plan.plan};
+  if (plan.settings.existing == nullptr) all.push_back(&plan.textbook);
+  if (plan.given) all.push_back(&*plan.given);
+  return all;
+}
+
+std::string head(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  const PlanBudget& budget = settings.budget;
+  std::string text = fmt::format("{} ({})\n", settings.machine.name, settings.machine.structure.code);
+  text += fmt::format("minimised: {}\n", target_words(settings));
+  text += fmt::format("budget: {} {}stations of {}", budget.stations, settings.existing ? "further " : "",
+                      settings.instrument);
+  if (budget.readings) text += fmt::format(", {} readings", count_number(*budget.readings));
+  if (budget.time) text += fmt::format(", {} h", hours(*budget.time));
+  text += "\n";
+  return text;
+}
+
+std::string layout_table(const CampaignPlan& plan) {
+  const PlanLayout& layout = plan.searched.layout;
+  TextTable table({{"station", Align::Left},
+                   {"x [mm]"},
+                   {"y [mm]"},
+                   {"z [mm]"},
+                   {"may be off [mm]"},
+                   {"readings by tool", Align::Left}},
+                  "Stations, workpiece coordinates");
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
+    std::string runs;
+    for (const PlanRun& run : layout.runs) {
+      if (run.station != i) continue;
+      runs += fmt::format("{}{} {}", runs.empty() ? "" : ", ", plan.settings.machine.tools[run.tool].name,
+                          2 * run.positions.size());
+    }
+    const Eigen::Vector3d at = layout.stations_w[i] * kPerMillimetre;
+    const bool known = i < plan.searched.station_tolerance.size();
+    table.add_row({layout.station_names[i], fixed_number(at.x(), 0), fixed_number(at.y(), 0),
+                   fixed_number(at.z(), 0), known ? tolerance_text(plan.searched.station_tolerance[i]) : "-",
+                   runs});
+  }
+  std::string text = table.text();
+  if (!plan.searched.as_good_w.empty()) {
+    std::vector<std::string> places;
+    for (const Eigen::Vector3d& at : plan.searched.as_good_w) {
+      places.push_back(fmt::format("[{:.0f}, {:.0f}, {:.0f}]", at.x() * kPerMillimetre,
+                                   at.y() * kPerMillimetre, at.z() * kPerMillimetre));
+    }
+    text += fmt::format("  as good within {:.1f} %: {} mm\n",
+                        std::max(0.1, 100.0 * (plan.searched.as_good_ratio - 1.0)), joined_words(places));
+  }
+  return text;
+}
+
+std::string figures_table(const CampaignPlan& plan) {
+  TextTable table({{"campaign", Align::Left},
+                   {"stations"},
+                   {"setups"},
+                   {"readings"},
+                   {"time [h]"},
+                   {"u volume, RMS [um]"},
+                   {"largest [um]"},
+                   {"worst length in tables [um]"},
+                   {"worst angle [urad]"},
+                   {"not visible", Align::Left}},
+                  "What it would tell (standard uncertainties)");
+  for (const ExpectedCampaign* each : compared(plan)) {
+    std::vector<std::string> stations;
+    for (const Setup& setup : each->campaign.setups) {
+      const std::string station = setup.options.text("station").value_or("");
+      if (!station.empty() && std::ranges::find(stations, station) == stations.end())
+        stations.push_back(station);
+    }
+    const std::vector<std::string> hidden = each->invisible();
+    table.add_row({each->name, count_number(static_cast<long long>(stations.size())),
+                   count_number(static_cast<long long>(each->campaign.setups.size())),
+                   count_number(static_cast<long long>(each->campaign.reading_count())),
+                   hours(each->duration), fixed_number(each->volumetric.rms * kPerMicrometre, 3),
+                   fixed_number(each->volumetric.largest * kPerMicrometre, 3),
+                   fixed_number(each->worst_length * kPerMicrometre, 3),
+                   fixed_number(each->worst_angle * kPerMicrometre, 3),
+                   hidden.empty() ? "-" : joined_words(hidden)});
+  }
+  return table.text();
+}
+
+const Observability* error_of(const ExpectedCampaign& campaign, const std::string& symbol) {
+  for (const Observability& error : campaign.result.rank.errors) {
+    if (error.symbol == symbol) return &error;
+  }
+  return nullptr;
+}
+
+std::string errors_table(const CampaignPlan& plan) {
+  std::vector<TextColumn> columns = {{"error", Align::Left}, {"unit", Align::Left}};
+  const std::vector<const ExpectedCampaign*> all = compared(plan);
+  for (const ExpectedCampaign* each : all) columns.push_back({"U " + each->name});
+  columns.push_back({"less by [%]"});
+  columns.push_back({"visible fraction"});
+  columns.push_back({"parameters seen"});
+  TextTable table(columns,
+                  "Every error: U (k = 2), root mean square over the travel; observability with the plan");
+  for (const Observability& error : plan.plan.result.rank.errors) {
+    const auto symbol = ErrorSymbol::parse(error.symbol);
+    const auto location = LocationSymbol::parse(error.symbol);
+    const bool angle = symbol     ? is_rotation(symbol->component)
+                       : location ? is_rotation(location->component)
+                                  : false;
+    if (!symbol && !location) continue;
+    std::vector<std::string> cells = {error.symbol, angle ? "urad" : "um"};
+    for (const ExpectedCampaign* each : all) {
+      const Observability* own = error_of(*each, error.symbol);
+      cells.push_back(own == nullptr  ? "-"
+                      : !own->visible ? "not visible"
+                                      : fixed_number(kCoverageOfU * own->u_rms * kPerMicrometre, 3));
+    }
+    const Observability* before = error_of(*all[1], error.symbol);
+    const bool both = before != nullptr && before->visible && error.visible;
+    cells.push_back(both ? fixed_number(100.0 * (1.0 - error.u_rms / before->u_rms), 1) : "-");
+    cells.push_back(fixed_number(error.visible_fraction, 3));
+    cells.push_back(fixed_number(error.effective_parameters, 1));
+    table.add_row(cells);
+  }
+  return table.text();
+}
+
+std::string detectable_table(const CampaignPlan& plan) {
+  TextTable table({{"effect", Align::Left},
+                   {"effects"},
+                   {"not visible"},
+                   {"MDB, easiest"},
+                   {"hardest"},
+                   {"unit", Align::Left},
+                   {"hardest one", Align::Left}},
+                  "Smallest amplitudes that would be found (80 % power, 0.5 % risk over the catalogue); all "
+                  "in plan.json");
+  for (const report::DetectableGroup& group : report::detectable_groups(plan.plan.detectable)) {
+    const auto cell = [&](const DetectableEffect* effect) {
+      return effect == nullptr ? "-" : short_number(effect->mdb / group.si_per_unit, 3);
+    };
+    table.add_row({group.kind, count_number(static_cast<long long>(group.effects)),
+                   count_number(static_cast<long long>(group.not_visible)), cell(group.easiest),
+                   cell(group.hardest), group.unit, group.hardest == nullptr ? "-" : group.hardest->label});
+  }
+  return table.text();
+}
+
+std::string invisible_text(const CampaignPlan& plan) {
+  std::string text;
+  for (const std::string& sentence : plan.plan.result.rank.invisible) text += "  " + sentence + "\n";
+  return text.empty() ? "" : "\nWhat this budget cannot determine\n" + text;
+}
+
+std::string options_table(const CampaignPlan& plan) {
+  TextTable table({{"one setup more", Align::Left},
+                   {"readings"},
+                   {"u volume, RMS [um]"},
+                   {"makes visible", Align::Left},
+                   {"still not visible", Align::Left}},
+                  "What one setup more would bring, best first");
+  for (const PlanOption& option : plan.options) {
+    table.add_row({option.words, count_number(static_cast<long long>(option.readings)),
+                   fixed_number(option.volumetric_rms * kPerMicrometre, 3),
+                   option.made_visible.empty() ? "-" : joined_words(option.made_visible),
+                   option.still_invisible.empty() ? "-" : joined_words(option.still_invisible)});
+  }
+  return table.empty() ? "" : "\n" + table.text();
+}
+
+std::string verdict(const CampaignPlan& plan) {
+  const double ratio = target_ratio(plan);
+  const std::string other = plan.settings.existing != nullptr ? "what there is" : "the textbook layout";
+  return fmt::format("Against {}: {} {:.1f} % {}\n", other, target_words(plan.settings),
+                     100.0 * std::abs(1.0 - ratio), ratio <= 1.0 ? "less" : "more");
+}
+
+}  // namespace
+
+std::string target_words(const PlanSettings& settings) {
+  switch (settings.target) {
+    case PlanTarget::Volumetric:
+      return "volumetric uncertainty, RMS of the vector";
+    case PlanTarget::Worst:
+      return "largest uncertainty of a table value, rotations by their lever";
+    case PlanTarget::Symbol:
+      return "uncertainty of " + settings.symbol;
+    case PlanTarget::Separate:
+      break;
+  }
+  std::vector<std::string> names;
+  for (const EffectSpec& effect : settings.separate)
+    names.push_back(full_name(find_effect(effect.kind)->make(effect, {})->name()));
+  return "amplitude at which " + joined_words(names) + " are told apart";
+}
+
+const ExpectedCampaign& compared_with(const CampaignPlan& plan) {
+  return plan.settings.existing != nullptr ? *plan.given : plan.textbook;
+}
+
+double target_ratio(const CampaignPlan& plan) {
+  const bool by_search =
+      plan.settings.target == PlanTarget::Separate || plan.settings.target == PlanTarget::Worst;
+  if (by_search && plan.searched.textbook > 0.0)
+    return std::sqrt(plan.searched.value / plan.searched.textbook);
+  return plan.plan.target_u / compared_with(plan).target_u;
+}
+
+std::string plan_text(const CampaignPlan& plan) {
+  return head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) + "\n" +
+         errors_table(plan) + "\n" + detectable_table(plan) + invisible_text(plan) + options_table(plan);
+}
+
+}  // namespace volcal

@@ -1,0 +1,105 @@
+/// volcal plan as a user runs it: files, a round trip by simulation and fit, what is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+
+namespace volcal {
+namespace {
+
+using testing::content;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+const std::string kMachine = std::string(VOLCAL_SOURCE_DIR) + "/datasets/demo/machine.toml";
+
+nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(content(file)); }
+
+std::string model_of_two_pieces(const std::filesystem::path& folder) {
+  const std::string path = (folder / "model.toml").string();
+  std::ofstream(path) << "format = \"volcal-model-1\"\nmachine = \"" << kMachine
+                      << "\"\n[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 2 }\n";
+  return path;
+}
+
+/// The files are measured by `simulate`, and the fit states what the plan predicted, within what 320 readings
+/// tell of the noise.
+TEST(Plan, IsSimulatedAndFitted) {
+  const testing::ScratchFolder scratch;
+  const std::string plan = (scratch.path() / "plan").string(), model = model_of_two_pieces(scratch.path());
+  const auto planned = run_program("plan " + kMachine + " --model " + model + " --readings 320 -o " + plan);
+  ASSERT_EQ(planned.exit_code, 0) << planned.errors;
+  EXPECT_THAT(planned.output, HasSubstr("Against the textbook layout: volumetric uncertainty"));
+  for (const char* file : {"plan.json", "plan.txt", "study.toml", "machine.toml", "campaign/campaign.toml"})
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(plan) / file)) << file;
+  const nlohmann::json json = json_of(std::filesystem::path(plan) / "plan.json");
+  EXPECT_EQ(json["format"], "volcal-plan-1");
+  EXPECT_EQ(json["campaigns"][0]["readings"], 320);
+  EXPECT_EQ(json["campaigns"][0]["errors"].size(), 21U);
+  EXPECT_FALSE(json["campaigns"][0]["effects"].empty());
+
+  const std::string measured = (scratch.path() / "measured").string();
+  const std::string result = (scratch.path() / "result").string();
+  const auto simulated = run_program("simulate " + plan + "/study.toml -o " + measured);
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+  EXPECT_THAT(simulated.output, HasSubstr("320 readings"));
+  // What the random machine has beyond two pieces inflates the noise of the fit; u follows it.
+  const auto fitted =
+      run_program("fit " + measured + "/campaign.toml --model " + model + " --noise white -o " + result);
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+  const auto with = run_program("plan " + kMachine + " --model " + model + " --readings 320 --with " +
+                                measured + "/campaign.toml --json");
+  ASSERT_EQ(with.exit_code, 0) << with.errors;
+  const nlohmann::json compared = nlohmann::json::parse(with.output);
+  ASSERT_EQ(compared["campaigns"].size(), 3U);
+  EXPECT_NEAR(compared["campaigns"][2]["u_volumetric_rms_um"].get<double>() /
+                  compared["campaigns"][0]["u_volumetric_rms_um"].get<double>(),
+              1.0, 0.05);  // the same positions; stations are guessed 5 mm off
+}
+
+TEST(Plan, RefusesBadInput) {
+  const auto refused = [](const std::string& arguments, const std::string& words) {
+    const auto run = run_program("plan " + arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments;
+    EXPECT_THAT(run.errors, HasSubstr(words)) << arguments;
+  };
+  refused(kMachine, "neither readings nor time are limited");
+  refused(kMachine + " --readings 100 --tools longest", "no tool longest");
+  refused(kMachine + " --readings 100 --tool-count 9", "more tools than there are");
+  refused(kMachine + " --readings 100 --minimise EXQ", "is no error of this machine");
+  refused(kMachine + " --readings 100 --minimise separate:reversal:EXX", "cannot be told apart");
+  refused(kMachine + " --readings 100 --minimise separate:reversal:EXX,nonsense:Y", "no kind of effect");
+  refused(kMachine + " --readings 100 --extend", "nothing to extend");
+  refused(kMachine + " --readings 100 --range-mm 900,300", "not the smaller one");
+  refused(kMachine + " --readings 100 --region-mm 500,100,0,1,0,1", "above its upper one");
+  refused(kMachine + " --readings 100 --region-mm 0,10,0,10,-300,-290", "nowhere");
+  refused(kMachine + " --readings 3", "--readings");
+  refused("nowhere.toml --readings 100", "nowhere.toml");
+}
+
+TEST(Plan, PointsOfARunAreReadWithTheirErrors) {
+  const testing::ScratchFolder scratch;
+  const auto study = [&](const std::string& points) {
+    std::ofstream(scratch.path() / "points.csv") << points;
+    std::ofstream(scratch.path() / "study.toml")
+        << "format = \"volcal-study-1\"\nmachine = \"" << kMachine
+        << "\"\n[[measurements]]\nkind = \"laser-tracer\"\n[[measurements.stations]]\nname = \"P1\"\n"
+           "position_mm = [-600.0, 0.0, -400.0]\n[[measurements.runs]]\nstation = \"P1\"\ntool = \"short\"\n"
+           "points = \"points.csv\"\n";
+    return run_program("simulate " + (scratch.path() / "study.toml").string() + " -o " +
+                       (scratch.path() / "out").string());
+  };
+  EXPECT_THAT(study("x_mm,y_mm,z_mm,dir_x\n0,0,-100,1\n10,20,-30,-1\n").output, HasSubstr("2 readings"));
+  EXPECT_THAT(study("x_mm,y_mm\n0,0\n").errors, HasSubstr("column z_mm is missing"));
+  EXPECT_THAT(study("x_mm,y_mm,z_mm,dir_x\n0,0,0,3\n").errors, HasSubstr("points.csv:2"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,211 @@
+/// Plans against what a fit of a simulated campaign states, and what a plan must find.
+
+#include "volcal/identify/planning/campaign_plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/study.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+ModelSpec few_knots() {
+  ModelSpec model;
+  model.default_function.knots = KnotChoice::IntervalCount;
+  model.default_function.intervals = 3;
+  return model;
+}
+
+/// 500 x 400 x 330 mm, few readings: quick.
+PlanSettings small_plan() {
+  PlanSettings settings;
+  settings.machine = sim::reference_machines()[3];
+  settings.model = few_knots();
+  settings.budget.readings = 360;
+  settings.threads = 2;
+  return settings;
+}
+
+sim::Study study_of(const PlanLayout& layout, const PlanSettings& settings) {
+  sim::Tracking tracking;
+  tracking.noise.constant = settings.noise.constant;
+  tracking.noise.per_metre = settings.noise.per_metre;
+  tracking.noise.repeatability = settings.noise.repeatability;
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i)
+    tracking.stations.push_back({layout.station_names[i], layout.stations_w[i]});
+  for (const PlanRun& run : layout.runs) {
+    tracking.runs.push_back({layout.station_names[run.station], settings.machine.tools[run.tool].name, {}});
+    for (const PlanReading& reading : readings_of(run)) {
+      sim::CommandedPoint point;
+      point.position = reading.position;
+      point.direction = reading.direction;
+      point.line = reading.line;
+      point.run = reading.run;
+      tracking.runs.back().points.push_back(point);
+    }
+  }
+  sim::Study study;
+  study.machine = settings.machine;
+  study.seed = 5;
+  study.truth.perfect = true;  // outside no basis: chi2 is that of the noise
+  study.measurements.emplace_back().settings = tracking;
+  return study;
+}
+
+TEST(CampaignPlan, PredictsTheUncertaintyThatTheFitStates) {
+  const PlanSettings settings = small_plan();
+  const LineOfSight sight(settings);
+  const PlanLayout layout = textbook_layout(settings, sight);
+  const FitResult expected = expected_result(campaign_of(layout, settings), settings.model, {}, 1);
+  FitOptions white;
+  white.variance_components = false;
+  white.noise = NoisePolicy::White;
+  const sim::SimulatedCampaign simulated = sim::simulate(study_of(layout, settings));
+  const FitResult fitted = fit(simulated.campaign, settings.model, white);
+  ASSERT_EQ(expected.rank.errors.size(), fitted.rank.errors.size());
+  for (std::size_t i = 0; i < fitted.rank.errors.size(); ++i) {
+    const Observability &ours = expected.rank.errors[i], &theirs = fitted.rank.errors[i];
+    EXPECT_EQ(ours.symbol, theirs.symbol);
+    EXPECT_NEAR(ours.u_rms / theirs.u_rms, 1.0, 0.02) << ours.symbol;
+    EXPECT_NEAR(ours.visible_fraction, theirs.visible_fraction, 0.02) << ours.symbol;
+  }
+  EXPECT_NEAR(volumetric_uncertainty(expected, settings.machine.tools, 4).rms /
+                  volumetric_uncertainty(fitted, settings.machine.tools, 4).rms,
+              1.0, 0.01);
+}
+
+TEST(CampaignPlan, BeatsTheTextbookWithinItsLimits) {
+  const PlanSettings settings = small_plan();
+  const CampaignPlan plan = plan_campaign(settings, nullptr);
+  EXPECT_LT(plan.plan.volumetric.rms, 0.85 * plan.textbook.volumetric.rms);
+  EXPECT_LE(plan.plan.campaign.reading_count(), 360U);
+  EXPECT_EQ(plan.searched.layout.stations_w.size(), 4U);
+  EXPECT_THAT(plan.plan.invisible(), IsEmpty());
+  const LineOfSight sight(settings);
+  for (const Eigen::Vector3d& station : plan.searched.layout.stations_w)
+    EXPECT_TRUE(sight.can_stand(station));
+  for (const PlanRun& run : plan.searched.layout.runs) {
+    for (const PlanPosition& each : run.positions) {
+      EXPECT_TRUE(sight.sees(plan.searched.layout.stations_w[run.station], each.position, run.tool));
+      for (const Axis& axis : settings.machine.axes) {
+        EXPECT_GE(each.position[index_of(axis.name)], axis.travel_min);
+        EXPECT_LE(each.position[index_of(axis.name)], axis.travel_max);
+      }
+    }
+  }
+  EXPECT_FALSE(plan.plan.detectable.empty());
+}
+
+TEST(CampaignPlan, DoesNotDependOnThreads) {
+  PlanSettings one = small_plan();
+  one.budget.readings = 160;
+  PlanSettings three = one;
+  one.threads = 1;
+  three.threads = 3;
+  const auto stations = [](const PlanSettings& settings) {
+    return search_plan(settings, PlanProblem(settings), LineOfSight(settings)).layout;
+  };
+  const PlanLayout a = stations(one), b = stations(three);
+  ASSERT_EQ(a.runs.size(), b.runs.size());
+  for (std::size_t i = 0; i < a.stations_w.size(); ++i) EXPECT_EQ(a.stations_w[i], b.stations_w[i]);
+  for (std::size_t r = 0; r < a.runs.size(); ++r) {
+    ASSERT_EQ(a.runs[r].positions.size(), b.runs[r].positions.size());
+    for (std::size_t k = 0; k < a.runs[r].positions.size(); ++k)
+      EXPECT_EQ(a.runs[r].positions[k].position, b.runs[r].positions[k].position);
+  }
+}
+
+TEST(CampaignPlan, KeepsToTheTime) {
+  PlanSettings settings = small_plan();
+  settings.budget.readings.reset();
+  settings.budget.time = 2.5 * 3600.0;
+  const SearchedPlan plan = search_plan(settings, PlanProblem(settings), LineOfSight(settings));
+  EXPECT_LE(duration(plan.layout, settings), 2.5 * 3600.0);
+  EXPECT_GT(duration(plan.layout, settings), 2.0 * 3600.0);
+}
+
+TEST(CampaignPlan, MinimisesTheErrorThatIsNamed) {
+  PlanSettings settings = small_plan();
+  settings.budget.readings = 200;
+  const CampaignPlan volumetric = plan_campaign(settings, nullptr);
+  settings.target = PlanTarget::Symbol;
+  settings.symbol = "EXX";
+  const CampaignPlan named = plan_campaign(settings, nullptr);
+  EXPECT_LT(named.plan.target_u, named.textbook.target_u);
+  const auto u_of = [](const CampaignPlan& plan) {
+    for (const Observability& error : plan.plan.result.rank.errors) {
+      if (error.symbol == "EXX") return error.u_rms;
+    }
+    return std::nan("");
+  };
+  EXPECT_LT(u_of(named), u_of(volumetric));
+  settings.symbol = "EXA";
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
+}
+
+/// One tool on the spindle axis leaves the roll of the last axis invisible (docs/notation.md): only a
+/// sideways tool shows it.
+TEST(CampaignPlan, FindsTheToolThatMakesARollVisible) {
+  PlanSettings settings = small_plan();
+  settings.machine.tools = {{"short", {0.0, 0.0, -0.15}, 0.0}};
+  const LineOfSight sight(settings);
+  const Campaign measured = campaign_of(textbook_layout(settings, sight), settings);
+  const ExpectedCampaign before = expected_campaign("given", measured, settings, false);
+  ASSERT_THAT(before.invisible(), Contains("ECZ"));
+  settings.existing = &measured;
+  settings.budget.stations = 1;
+  settings.budget.readings = 120;
+  const CampaignPlan plan = extend_campaign(settings);
+  EXPECT_THAT(plan.plan.invisible(), Not(Contains("ECZ")));
+  ASSERT_FALSE(plan.options.empty());
+  EXPECT_TRUE(plan.options.front().new_tool);
+  EXPECT_THAT(plan.options.front().made_visible, Contains("ECZ"));
+  EXPECT_EQ(plan.settings.machine.tools.size(), 2U);
+  EXPECT_GT(std::abs(plan.settings.machine.tools.back().offset.x()) +
+                std::abs(plan.settings.machine.tools.back().offset.y()),
+            0.05);
+}
+
+/// From two stations several errors cannot be told from where the stations stand; the plan asks for a third.
+TEST(CampaignPlan, FindsTheStationThatIsMissing) {
+  PlanSettings settings = small_plan();
+  settings.budget.stations = 2;
+  const LineOfSight sight(settings);
+  const Campaign measured = campaign_of(textbook_layout(settings, sight), settings);
+  const std::size_t hidden = expected_campaign("given", measured, settings, false).invisible().size();
+  ASSERT_GT(hidden, 0U);
+  settings.existing = &measured;
+  settings.budget.readings = 240;
+  const CampaignPlan plan = extend_campaign(settings);
+  EXPECT_LT(plan.plan.invisible().size(), hidden);
+  EXPECT_TRUE(plan.options.front().new_station);
+}
+
+TEST(CampaignPlan, RefusesWhatMakesNoPlan) {
+  PlanSettings settings = small_plan();
+  settings.budget.readings.reset();
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
+  settings = small_plan();
+  settings.machine.tools.clear();
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
+  settings = small_plan();
+  settings.budget.tool_count = 7;
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
+  settings = small_plan();
+  settings.surroundings.stations_w =
+      Eigen::AlignedBox3d(Eigen::Vector3d(0.2, 0.2, 0.0), Eigen::Vector3d(0.3, 0.3, 0.1));
+  EXPECT_THROW(plan_campaign(settings, nullptr), InputError);
+}
+
+}  // namespace
+}  // namespace volcal

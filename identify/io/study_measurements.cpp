@@ -2,6 +2,7 @@
 
 #include "volcal/identify/io/run_points.h"
 #include "volcal/identify/io/study_reader.h"
+#include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

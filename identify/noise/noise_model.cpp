@@ -132,6 +132,7 @@ void Whitener::set_parameters(std::span<const NoiseParameters> parameters) {
   for (Track& track : tracks_) {
     NoiseParameters noise = parameters[track.group];
     if (!track.timed) noise.wander = 0.0;
+    track.independent = noise.wander == 0.0 && (noise.line == 0.0 || track.states == 1);
     log_determinant_ +=
         track.states == 2 ? compute_gains<2>(noise, track) : compute_gains<Eigen::Dynamic>(noise, track);
   }
@@ -184,6 +185,12 @@ double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
 
 void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width,
                       double* tile, double* state) {
+  if (track.independent) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (Eigen::Index c = 0; c < width; ++c) *tile++ *= track.scale[i];
+    }
+    return;
+  }
   double* const wander = state;
   for (std::size_t i = begin; i < end; ++i) {
     const Step& step = track.steps[i];
@@ -283,6 +290,11 @@ Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
 }
 
 void Whitener::filter_adjoint(const Track& track, Eigen::VectorXd& column) {
+  if (track.independent) {
+    for (std::size_t i = 0; i < track.steps.size(); ++i)
+      column[static_cast<Eigen::Index>(track.steps[i].observation)] *= track.scale[i];
+    return;
+  }
   std::vector<double> adjoint(static_cast<std::size_t>(track.states), 0.0);
   for (std::size_t i = track.steps.size(); i-- > 0;) {
     const Step& step = track.steps[i];

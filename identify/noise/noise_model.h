@@ -106,6 +106,7 @@ class Whitener {
     std::size_t group = 0;
     int states = 1;
     bool timed = false;
+    bool independent = false;  ///< neither wander nor line offsets: whitening only divides
     std::size_t first = std::numeric_limits<std::size_t>::max();  ///< lowest and highest observation
     std::size_t last = 0;
     std::vector<double> decay;  ///< of the wander since the step before

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/solve/campaign_noise.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/resolution.h"

@@ -1,12 +1,14 @@
 // Times draws of a Monte Carlo study on the reference problem, by path: linear draws beside the matrix
-// product alone, nonlinear ones beside full refits of the same draws. Every figure is the median of
-// interleaved rounds. Prints a table.
+// product alone, nonlinear ones beside full refits of the same draws. Rounds are
+// interleaved. Prints the rates of every round as JSON.
 //
 //   montecarlo_bench [--threads N] [--rounds N]
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -22,16 +24,13 @@
 namespace volcal::bench {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr Eigen::Index kLinearBatch = 250;  // draws, as in a study
 constexpr int kLinearBatches = 80;
 constexpr int kChordBatches = 20;
 constexpr Eigen::Index kChordBatch = 25;
 constexpr Eigen::Index kRefits = 4;  // of one thread
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
 
 /// Draws per second of each row, by round.
 struct Rates {
@@ -42,7 +41,7 @@ class Bench {
  public:
   explicit Bench(int threads)
       : threads_(thread_count(threads)),
-        problem_(reference_problem({12, 11, 6})),
+        problem_(reference_problem({11, 9, 8})),
         result_(fit(problem_.campaign, problem_.model, white_noise())),
         repeated_(problem_.campaign, result_, {}),
         set_(quantities_of(result_, 3)),
@@ -71,22 +70,18 @@ class Bench {
     }));
   }
 
-  void print(const Rates& rates) const {
-    const double linear = median(rates.linear), product = median(rates.product), chord = median(rates.chord),
-                 refit = median(rates.refit);
-    fmt::print(
-        "{} readings, {} parameters, {} quantities and {} components in the volume, {} threads, {}\n\n",
-        repeated_.observations(), repeated_.parameters(), projection_.quantities(),
-        columns() - projection_.quantities(), threads_, blas_core());
-    fmt::print("| Draws | per second | ratio |\n|---|---:|---:|\n");
-    fmt::print(
-        "| linear, random numbers and sizes of the volume included | {:.0f} | {:.2f} of the product |\n",
-        linear, linear / product);
-    fmt::print("| the matrix product alone (DGEMM) | {:.0f} | |\n", product);
-    fmt::print("| chord steps | {:.0f} | {:.0f} times refits |\n", chord, chord / refit);
-    fmt::print("| full refits, warm start | {:.1f} | |\n", refit);
-    fmt::print("\n10^6 linear draws take {:.1f} s, 10^5 by chord steps {:.1f} s; peak memory {:.0f} MB\n",
-               1e6 / linear, 1e5 / chord, static_cast<double>(peak_memory()) / 1e6);
+  Json json(const Rates& rates) const {
+    return {{"readings", repeated_.observations()},
+            {"parameters", repeated_.parameters()},
+            {"quantities", projection_.quantities()},
+            {"components", columns() - projection_.quantities()},
+            {"threads", threads_},
+            {"blas", blas_core()},
+            {"linear_per_s", rates.linear},
+            {"product_per_s", rates.product},
+            {"chord_per_s", rates.chord},
+            {"refit_per_s", rates.refit},
+            {"peak_bytes", peak_memory()}};
   }
 
  private:
@@ -128,7 +123,7 @@ int run(int count, char** values) {
   Bench bench(threads);
   Rates rates;
   for (int i = 0; i < std::max(1, rounds); ++i) bench.round(rates);
-  bench.print(rates);
+  std::cout << bench.json(rates) << '\n';
   return 0;
 }
 

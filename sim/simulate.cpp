@@ -116,7 +116,8 @@ class StudyReadout : public Readout {
   Campaign read(const TruthMachine& truth, const Interference& interference, bool noise_free) const {
     Campaign campaign;
     campaign.machine = study_.machine;
-    const MeasuringConditions conditions{truth, study_.environment, tool_offsets_, study_.seed,
+    const std::uint64_t noise_seed = study_.noise_seed.value_or(study_.seed);
+    const MeasuringConditions conditions{truth, study_.environment, tool_offsets_, noise_seed,
                                          false, noise_free,         &interference};
     double time = 0.0;
     for (const SetupPlan& plan : plans_) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct Study {
   std::string file;  ///< where it was read from; empty when made in memory
   Machine machine;
   std::uint64_t seed = 1;
+  /// Of the noise of the readings alone, to measure the same machine in the same way again; absent = seed.
+  std::optional<std::uint64_t> noise_seed = {};
   TruthSettings truth;
   Environment environment;
   std::vector<Measurement> measurements;

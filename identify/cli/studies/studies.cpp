@@ -6,6 +6,7 @@ namespace volcal::cli {
 
 // One line per study, in the order of the help.
 #define VOLCAL_STUDIES(STUDY)       \
+  STUDY(agreement_study)            \
   STUDY(closed_loop_study)          \
   STUDY(compensation_study_command) \
   STUDY(criticism_study)            \

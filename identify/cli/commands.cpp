@@ -8,11 +8,11 @@ namespace volcal::cli {
 #define VOLCAL_COMMANDS(COMMAND) \
   COMMAND(init_command)          \
   COMMAND(simulate_command)      \
-  COMMAND(plan_command)          \
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \
   COMMAND(validate_command)      \
   COMMAND(montecarlo_command)    \
+  COMMAND(plan_command)          \
   COMMAND(diagnose_command)      \
   COMMAND(extend_command)        \
   COMMAND(align_command)         \

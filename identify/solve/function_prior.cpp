@@ -213,7 +213,7 @@ Eigen::VectorXd FunctionPriors::expected_squares(const PriorShape& prior, double
   const Eigen::VectorXd known = (coefficients * mean).cwiseAbs2() +
                                 (coefficients * covariance).cwiseProduct(coefficients).rowwise().sum();
   const Eigen::VectorXd open = prior.spectrum - gain.cwiseProduct(across).rowwise().sum();
-  return lambda * known + open;
+  return (lambda * known + open).cwiseMax(0.0);  // below by rounding alone
 }
 
 }  // namespace volcal

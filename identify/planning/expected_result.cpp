@@ -20,8 +20,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kUnseenAmplitude = 1e-4;  // m or rad, as in the fit
-
 /// One prediction, in the order of the fit's stages.
 class Expectation {
  public:
@@ -56,7 +54,7 @@ class Expectation {
     result_.adjustment =
         std::make_shared<const Adjustment>(Adjustment{spec_, z_, base_prior_, terms_, sigma_});
     list_residuals();
-    complete_observability();
+    complete_observability(campaign_, result_);
     return std::move(result_);
   }
 
@@ -73,16 +71,9 @@ class Expectation {
     base_prior_ = stated_priors(model_.layout(), datum_);
     const GaussianPrior wide = wide_prior(model_, datum_, z_);
     rank_ = analyse_rank(model_, datum_, information_ + base_prior_.precision, wide);
-    if (rank_.report.rank < rank_.report.parameters) base_prior_.precision += wide.precision;
+    hold_undetermined(rank_, wide, base_prior_);
     terms_ = assumed_smoothing(model_, datum_, roughness);
-    const auto is_visible = [this](const SmoothingTerm& term) {
-      return std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
-    };
-    const auto unseen = std::stable_partition(terms_.begin(), terms_.end(), is_visible);
-    std::vector<SmoothingTerm> held(unseen, terms_.end());
-    terms_.erase(unseen, terms_.end());
-    for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
-    add_smoothing(held, base_prior_);
+    hold_invisible(rank_, terms_, base_prior_);
     base_prior_.mean = z_;
     prior_ = base_prior_;
     add_smoothing(terms_, prior_);
@@ -111,17 +102,6 @@ class Expectation {
     }
     for (const std::size_t left_out : index_.left_out()) {
       result_.residuals[left_out].removed = result_.residuals[left_out].left_out = true;
-    }
-  }
-
-  void complete_observability() {
-    for (Observability& figure : result_.rank.errors) {
-      if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
-      for (const FunctionSummary& function : result_.functions) {
-        if (function.symbol.name() == figure.symbol)
-          figure.effective_parameters = function.effective_parameters;
-      }
-      if (figure.visible) figure.u_rms = mean_uncertainty(campaign_, result_, figure.symbol);
     }
   }
 

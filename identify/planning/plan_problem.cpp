@@ -95,20 +95,6 @@ std::vector<SmoothingTerm> assumed_smoothing(const MeasurementModel& model, cons
   return terms;
 }
 
-GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum) {
-  GaussianPrior prior = GaussianPrior::none(datum.size());
-  for (const auto& block : datum.blocks()) {
-    const ParameterBlock& source = layout.blocks[block.block];
-    for (int k = 0; k < block.size; ++k) {
-      const double sigma = source.prior_sigma[k];
-      if (sigma == 0.0) continue;
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / (sigma * sigma);
-      prior.mean[block.offset + k] = source.prior_mean[k];
-    }
-  }
-  return prior;
-}
-
 /// A campaign's model on the nominal machine.
 struct PlanProblem::Linearised {
   MeasurementModel model;

@@ -27,9 +27,6 @@ namespace volcal {
 std::vector<SmoothingTerm> assumed_smoothing(const MeasurementModel& model, const DatumSpace& datum,
                                              const FunctionRoughnessGuess& guess);
 
-/// Priors of the blocks' parameters where they have some; none elsewhere.
-GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum);
-
 class PlanProblem {
  public:
   /// Throws InputError where the model does not fit the machine or the target is not in the model. The

@@ -25,8 +25,6 @@ namespace {
 
 constexpr double kFurthestStationMiss = 1.0;  // m
 constexpr int kEvidenceRounds = 2;
-// m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
-constexpr double kUnseenAmplitude = 1e-4;
 constexpr int kOutlierRounds = 60;
 constexpr double kMostOutliers = 0.25;  // of a setup: beyond, the model or the stated noise is wrong
 constexpr double kSurelyAsWell = 0.7;   // of the largest |w| of a setup: leaves in the same round
@@ -145,27 +143,12 @@ class Identification {
     return options;
   }
 
-  /// Priors that the user (or an instrument's weak default) gives to blocks.
-  GaussianPrior block_priors(const DatumSpace& datum) const {
-    GaussianPrior prior = GaussianPrior::none(datum.size());
-    for (const auto& block : datum.blocks()) {
-      const ParameterBlock& source = model_.layout().blocks[block.block];
-      for (int k = 0; k < block.size; ++k) {
-        if (source.prior_sigma[k] == 0.0) continue;
-        prior.precision(block.offset + k, block.offset + k) =
-            1.0 / (source.prior_sigma[k] * source.prior_sigma[k]);
-        prior.mean[block.offset + k] = source.prior_mean[k];
-      }
-    }
-    return prior;
-  }
-
   void fit_nuisance() {
     const DatumSpace datum(
         model_.layout(), campaign_.machine, parameters_, [](ErrorSymbol) { return false; },
         [](const ParameterBlock& block) { return block.kind == ParameterKind::Nuisance; });
     Eigen::VectorXd z = datum.reduced(parameters_);
-    GaussianPrior prior = block_priors(datum);
+    GaussianPrior prior = stated_priors(model_.layout(), datum);
     // On the nominal machine a direction may be free (one station, one line): the guess holds it.
     for (int i = 0; i < datum.size(); ++i) {
       if (prior.precision(i, i) > 0.0) continue;
@@ -192,28 +175,12 @@ class Identification {
     NormalAccumulator accumulator(index_, weight, nullptr, threads_);
     const NormalEquations& sums = accumulator.accumulate(parameters_);
     result_.initial_cost = sums.cost;
-    const GaussianPrior priors = block_priors(*datum_);
+    base_prior_ = stated_priors(model_.layout(), *datum_);
     const GaussianPrior wide = wide_prior(model_, *datum_, z_);
-    rank_ = analyse_rank(model_, *datum_, datum_->reduce_matrix(sums.matrix) + priors.precision, wide);
-    base_prior_ = priors;
-    hold_undetermined(wide);
+    rank_ = analyse_rank(model_, *datum_, datum_->reduce_matrix(sums.matrix) + base_prior_.precision, wide);
+    hold_undetermined(rank_, wide, base_prior_);
     terms_ = smoothing_terms(model_, *datum_);
-    const auto is_visible = [this](const SmoothingTerm& term) {
-      return std::ranges::find(rank_.invisible_functions, term.symbol) == rank_.invisible_functions.end();
-    };
-    const auto unseen = std::stable_partition(terms_.begin(), terms_.end(), is_visible);
-    std::vector<SmoothingTerm> held(unseen, terms_.end());
-    terms_.erase(unseen, terms_.end());
-    for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
-    add_smoothing(held, base_prior_);
-  }
-
-  /// The wide prior, where there is no other, on what the readings may not determine.
-  void hold_undetermined(const GaussianPrior& wide) {
-    const bool unresolved = rank_.report.rank < rank_.report.parameters;
-    if (!unresolved) return;
-    base_prior_.mean = (base_prior_.precision.diagonal().array() > 0.0).select(base_prior_.mean, wide.mean);
-    base_prior_.precision += wide.precision;
+    hold_invisible(rank_, terms_, base_prior_);
   }
 
   GaussianPrior prior() const {
@@ -394,7 +361,7 @@ class Identification {
     summarise_whitened_residuals();
     result_.functions = function_summaries(campaign_, spec_, *datum_, terms_, reduced_covariance_);
     result_.rank = rank_.report;
-    update_observability();
+    complete_observability(campaign_, result_);
     result_.identified = identified_model(spec_, model_.layout(), parameters_);
     summarise_temperature(campaign_, result_);
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
@@ -437,18 +404,6 @@ class Identification {
       if (record.removed) continue;
       result_.noise.chi2 += std::pow(record.residual() / record.sigma, 2);
       result_.noise.dof += record.redundancy;
-    }
-  }
-
-  /// Observability with the final noise and resolution instead of the rank analysis' wide priors.
-  void update_observability() {
-    for (Observability& figure : result_.rank.errors) {
-      if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
-      for (const FunctionSummary& function : result_.functions) {
-        if (function.symbol.name() == figure.symbol)
-          figure.effective_parameters = function.effective_parameters;
-      }
-      if (figure.visible) figure.u_rms = mean_uncertainty(campaign_, result_, figure.symbol);
     }
   }
 

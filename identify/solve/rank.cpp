@@ -13,6 +13,8 @@
 namespace volcal {
 namespace {
 
+// m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
+constexpr double kUnseenAmplitude = 1e-4;
 constexpr double kWideDisplacement = 1e-3;
 constexpr double kWideRotation = 1e-3;
 constexpr double kWideSquareness = 1e-3;
@@ -373,6 +375,37 @@ RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum
                           const GaussianPrior& wide) {
   if (datum.size() == 0) return {};
   return RankAnalyser(model, datum, data, wide).run();
+}
+
+GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum) {
+  GaussianPrior prior = GaussianPrior::none(datum.size());
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = layout.blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      const double sigma = source.prior_sigma[k];
+      if (sigma == 0.0) continue;
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / (sigma * sigma);
+      prior.mean[block.offset + k] = source.prior_mean[k];
+    }
+  }
+  return prior;
+}
+
+void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior) {
+  if (rank.report.rank >= rank.report.parameters) return;
+  prior.mean = (prior.precision.diagonal().array() > 0.0).select(prior.mean, wide.mean);
+  prior.precision += wide.precision;
+}
+
+void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {
+  const auto is_visible = [&](const SmoothingTerm& term) {
+    return std::ranges::find(rank.invisible_functions, term.symbol) == rank.invisible_functions.end();
+  };
+  const auto unseen = std::stable_partition(terms.begin(), terms.end(), is_visible);
+  std::vector<SmoothingTerm> held(unseen, terms.end());
+  terms.erase(unseen, terms.end());
+  for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
+  add_smoothing(held, prior);
 }
 
 }  // namespace volcal

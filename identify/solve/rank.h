@@ -13,6 +13,7 @@
 #include "volcal/identify/solve/datum.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/result.h"
+#include "volcal/identify/solve/smoothing.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -20,6 +21,9 @@ namespace volcal {
 /// Wide prior on everything, reduced coordinates; keeps an invisible direction at zero with a stated, useless
 /// uncertainty instead of letting it take any value.
 GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z);
+
+/// Priors that the files, or an instrument's weak default, give to the blocks' parameters; none elsewhere.
+GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum);
 
 struct RankAnalysis {
   RankReport report;
@@ -30,5 +34,12 @@ struct RankAnalysis {
 /// `data`: normal matrix of the readings plus the user's priors on nuisance parameters, reduced coordinates.
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide);
+
+/// What an adjustment needs where the readings do not determine everything: adds the wide prior to `prior`,
+/// its mean where there was none.
+void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior);
+/// Takes the functions that are not visible out of `terms`; they enter `prior` with a stated roughness, since
+/// nothing tells it.
+void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior);
 
 }  // namespace volcal

@@ -61,6 +61,17 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
   return std::sqrt(sum / kPositions);
 }
 
+void complete_observability(const Campaign& campaign, FitResult& result) {
+  for (Observability& figure : result.rank.errors) {
+    if (LocationSymbol::parse(figure.symbol)) figure.effective_parameters = figure.visible ? 1.0 : 0.0;
+    for (const FunctionSummary& function : result.functions) {
+      if (function.symbol.name() == figure.symbol)
+        figure.effective_parameters = function.effective_parameters;
+    }
+    if (figure.visible) figure.u_rms = mean_uncertainty(campaign, result, figure.symbol);
+  }
+}
+
 ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
                            const Eigen::VectorXd& parameters) {
   ModelSpec identified = spec;

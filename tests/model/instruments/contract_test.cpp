@@ -136,6 +136,51 @@ TEST_P(InstrumentContract, AnalyticDerivativesEqualAutomaticOnes) {
   }
 }
 
+TEST_P(InstrumentContract, ReadingsSideBySideAreTheSameAsOneByOne) {
+  std::mt19937_64 random(6);
+  const Machine machine;
+  const InstrumentSchema& schema = GetParam().instrument->schema();
+  const volcal::Setup setup =
+      setup_from(schema, GetParam().all_keys, GetParam().choice, GetParam().column_set, random);
+  const auto bound = GetParam().instrument->bind(context_of(setup, machine, random));
+  const int local = bound->local_nuisance_size();
+  double nuisance[kMaxLocalNuisance];
+  for (double& value : nuisance) value = uniform(random, -0.2, 0.2);
+  std::vector<ToolState<double>> states(kLanes);
+  ToolStateLanes side_by_side;
+  for (int i = 0; i < kLanes; ++i) {
+    ToolState<double>& state = states[static_cast<std::size_t>(i)];
+    state.point_w = uniform_vector(random, 0.0, 1.0);
+    state.rotation_tool_side = uniform_vector(random, -1e-4, 1e-4);
+    state.rotation_workpiece_side = uniform_vector(random, -1e-4, 1e-4);
+    for (int k = 0; k < 3; ++k) {
+      side_by_side.point_w[k][i] = state.point_w[k];
+      side_by_side.rotation_tool_side[k][i] = state.rotation_tool_side[k];
+      side_by_side.rotation_workpiece_side[k][i] = state.rotation_workpiece_side[k];
+    }
+  }
+  constexpr int kFirst = 2, kCount = kRows - kFirst;
+  LinearizationLanes lanes;
+  lanes.resize(bound->channels(), bound->sees_rotation() ? kStateSize : 3, local);
+  bound->linearize_lanes(kFirst, kCount, side_by_side, nuisance, lanes);
+  for (int i = 0; i < kCount; ++i) {
+    Linearization single;
+    bound->linearize(static_cast<std::size_t>(kFirst + i), states[static_cast<std::size_t>(i)], nuisance,
+                     single);
+    for (int channel = 0; channel < bound->channels(); ++channel) {
+      EXPECT_NEAR(lanes.predicted(channel)[i], single.predicted[channel], 1e-14);
+      for (int k = 0; k < kStateSize; ++k) {
+        const double derivative = k < lanes.state_size() ? lanes.d_state(channel)[k][i] : 0.0;
+        EXPECT_NEAR(derivative, single.d_state[channel][k], 1e-14) << schema.name << " state " << k;
+      }
+      for (int k = 0; k < local; ++k) {
+        EXPECT_NEAR(lanes.d_nuisance(channel)[k][i], single.d_nuisance[channel][k], 1e-14)
+            << schema.name << " nuisance " << k;
+      }
+    }
+  }
+}
+
 TEST_P(InstrumentContract, NuisanceBlocksAreNamedAndComplete) {
   std::mt19937_64 random(6);
   const Machine machine;

@@ -19,9 +19,14 @@ struct ConstancyTest {
   double log10_p = 0.0;  ///< over both kinds of variation and the variables of its group
 };
 
+/// How far every axis has gone since it last turned round, along the readings of a setup: "travel since
+/// dir_y". A reversal that is taken up on the way, or dies away, varies with it. No variable of the scans.
+std::vector<ScanVariable> travel_since_turning(const LinearModel& model);
+
 /// The least probable one, of the effect's own variables (its drivers, the position of the axis that it
-/// moves) and of all others, each group for itself; log10_p counts both groups. `projector` holds the
-/// effect's columns. `moved`: readings' change by the effect at its estimate.
+/// moves, the travel since turning where a direction drives it) and of all others, each group for itself;
+/// log10_p counts both groups. `projector` holds the effect's columns. `moved`: readings' change by the
+/// effect at its estimate.
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector);
 

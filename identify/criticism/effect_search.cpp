@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "volcal/identify/criticism/constancy_test.h"
+#include "volcal/identify/criticism/beside_noise.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 
@@ -18,16 +18,22 @@ namespace volcal {
 const double kLog10FamilyRisk = std::log10(0.005);
 const double kLog10GenericRisk = std::log10(0.002);
 const double kLog10ConstancyRisk = std::log10(0.01);
+const double kLog10RivalRisk = std::log10(0.001);
+const double kLog10RiskBesideNoise = std::log10(0.0005);
 
 namespace {
 
-constexpr double kToldApart = 6.0;       // of the extended BIC
-constexpr double kWorthRefining = 40.0;  // the same, below the leading one
-constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, before its shape is refined
+constexpr double kToldApart = 6.0;         // of the extended BIC
+constexpr double kWorthRefining = 40.0;    // the same, below the leading one
+constexpr double kNotByChance = -2.0;      // log10 p of a family for itself, before its shape is refined
+constexpr double kWorthEstimating = 20.0;  // of a likelihood ratio: what noise estimated beside it may add
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
-constexpr double kLessProbable = 0.1;    // share of log10 p, family-wise; components cost probability
+constexpr double kMoreGain = 2.0;        // of a scan that does better than the leading name
+constexpr double kLessProbable = 0.03;   // the same, share of log10 p, family-wise
+constexpr double kLessProbableByComponents = 0.1;  // those that are not there cost probability
 constexpr int kMostChanges = 4;
+constexpr std::size_t kMostBesideNoise = 3;
 constexpr int kNoiseRounds = 2;
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
@@ -49,6 +55,9 @@ EffectSearch::EffectSearch(LinearModel& model, const std::vector<bool>& heldout,
   });
   log10_families_ = std::log10(static_cast<double>(std::max<std::size_t>(families_.size(), 1)));
   variables_ = scan_variables(model_);
+  constancy_variables_ = variables_;
+  for (ScanVariable& variable : travel_since_turning(model_))
+    constancy_variables_.push_back(std::move(variable));
 }
 
 void EffectSearch::run() {
@@ -106,17 +115,18 @@ NoiseEstimate EffectSearch::noise_with_uncertainty() const {
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_of_all_readings() const {
-  return projector_of(model_.problem().data, std::nullopt);
+  return projector_of(model_.problem().data, noise_);
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_without(std::optional<std::size_t> left_out) const {
-  return projector_of(without(model_.problem().data, heldout_), left_out);
+  return projector_of(without(model_.problem().data, heldout_), noise_, left_out);
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_of(const NoiseData& data,
+                                                      const std::vector<NoiseParameters>& noise,
                                                       std::optional<std::size_t> left_out) const {
   auto projector =
-      std::make_unique<Projector>(model_.problem(), data, noise_, options_.threads, model_.parts());
+      std::make_unique<Projector>(model_.problem(), data, noise, options_.threads, model_.parts());
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (i != left_out) append(columns, added_[i].columns);
@@ -166,8 +176,17 @@ void EffectSearch::climb() {
       first_tests_ = tests_;
       first_generic_ = generic_;
     }
-    if (static_cast<int>(added_.size()) >= options_.most || !add_leading()) return;
+    if (static_cast<int>(added_.size()) >= options_.most) return;
+    if (!add_leading() && (something_stands_out() || !add_hidden_in_noise())) return;
   }
+}
+
+bool EffectSearch::something_stands_out() const {
+  const FamilyTest* best = leading(tests_, std::nullopt);
+  return (best != nullptr && family_wise_log10_p(*best) <= kLog10FamilyRisk) ||
+         std::ranges::any_of(generic_, [this](const GenericTest& test) {
+           return family_wise_log10_p(test) <= kLog10GenericRisk;
+         });
 }
 
 /// False when nothing stands out, or something that is in no catalogue stands out more.
@@ -180,20 +199,52 @@ bool EffectSearch::add_leading() {
   return true;
 }
 
-void EffectSearch::add(const FamilyTest& test) {
-  const Family& family = families_[test.family];
-  AddedEffect effect{test, family_columns(model_, family, test.shape), {}};
-  if (const auto derivative = shape_derivative(model_, family, test.shape, test.score.amplitude)) {
-    projector_->accept(effect.columns);
-    const ProjectedColumns projected = projector_->project(*derivative);
-    if (projected.gram(0, 1)(0, 0) > std::pow(kVisibleDerivative * projected.norm[0], 2)) {
-      append(effect.columns, *derivative);
+/// Noise that was estimated without an effect can have taken it for wander: the most promising are tested
+/// with the noise estimated beside them.
+bool EffectSearch::add_hidden_in_noise() {
+  if (options_.progress) options_.progress("effects that noise may hold", 0.9);
+  const NoiseProblem problem = problem_with_added();
+  std::vector<FamilyTest> tests;
+  for (const NoiseAlternative& other : noise_without_wander(problem, *noise_estimate_, options_.threads)) {
+    const auto projector = projector_of(without(problem.data, heldout_), other.noise);
+    for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
+      if (!may_be_added(test) || test.score.lm < other.loss - kWorthEstimating) continue;
+      refine_shape(model_, families_[test.family], *projector, test);
+      test.gain -= other.loss;
+      tests.push_back(std::move(test));
     }
   }
-  added_.push_back(std::move(effect));
+  std::ranges::sort(tests, std::greater{}, &FamilyTest::gain);
+  if (tests.size() > kMostBesideNoise) tests.resize(kMostBesideNoise);
+  for (FamilyTest& test : tests) {
+    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, options_.threads, test);
+  }
+  const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
+  if (best == tests.end() || family_wise_log10_p(*best) > kLog10RiskBesideNoise) return false;
+  add(FamilyTest(*best));
+  return true;
+}
+
+void EffectSearch::add(const FamilyTest& test) {
+  added_.push_back({test, accept(test, *projector_), {}});
   find_noise();
   while (take_up_removed() > 0) find_noise();
-  add_step(family.label());
+  add_step(families_[test.family].label());
+}
+
+/// Columns of the amplitudes, and of the shape where the readings see it move, into the model of `projector`.
+Eigen::MatrixXd EffectSearch::accept(const FamilyTest& test, Projector& projector) const {
+  const Family& family = families_[test.family];
+  Eigen::MatrixXd columns = family_columns(model_, family, test.shape);
+  projector.accept(columns);
+  const auto derivative = shape_derivative(model_, family, test.shape, test.score.amplitude);
+  if (!derivative) return columns;
+  const ProjectedColumns projected = projector.project(*derivative);
+  if (projected.gram(0, 1)(0, 0) > std::pow(kVisibleDerivative * projected.norm[0], 2)) {
+    projector.accept(*derivative);
+    append(columns, *derivative);
+  }
+  return columns;
 }
 
 /// Those that are no outliers of the model reached.
@@ -268,77 +319,12 @@ bool EffectSearch::reconsider(bool may_change) {
     added_[i].test = own;
     added_[i].rivals.clear();
     for (const FamilyTest& test : tests) {
-      if (test.score.dof > 0 && !is_added(test.family) && near(own, test)) added_[i].rivals.push_back(test);
+      const bool known = is_added(test.family) || given_up_.contains(test.family);
+      if (test.score.dof > 0 && !known && near(own, test)) added_[i].rivals.push_back(test);
     }
     std::ranges::sort(added_[i].rivals, std::greater{}, &FamilyTest::gain);
   }
   return false;
-}
-
-/// Its own driver moves what an effect leaves: it has another shape, or is another effect.
-bool EffectSearch::still_moves(const std::vector<std::string>& drivers) const {
-  return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    return family_wise_log10_p(test) < kLog10GenericRisk &&
-           std::ranges::any_of(test.variables, [&](const std::string& variable) {
-             return std::ranges::find(drivers, variable) != drivers.end();
-           });
-  });
-}
-
-/// Powers of one driver that are needed together stand for a function of it that the catalogue does not hold,
-/// and a name that is less certain than what it leaves unexplained, leaves its own driver at work, or is of
-/// another size here than there, is none.
-void EffectSearch::find_no_names() {
-  std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::size_t>> by_driver;
-  for (std::size_t i = 0; i < added_.size(); ++i) {
-    const std::size_t family = added_[i].test.family;
-    const EffectName name = families_[family].name();
-    by_driver[{name.kind, name.target, name.driver}].push_back(family);
-    const std::string reason = why_no_name(i);
-    if (!reason.empty()) given_up_[family] = reason;
-  }
-  for (const auto& [key, members] : by_driver) {
-    if (members.size() < 2) continue;
-    for (const std::size_t family : members) given_up_[family] = "several powers of its driver are needed";
-  }
-}
-
-/// Empty for a name that stands.
-std::string EffectSearch::why_no_name(std::size_t added) const {
-  const AddedEffect& effect = added_[added];
-  const Family& family = families_[effect.test.family];
-  double remains = 0.0;
-  for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
-  if (remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test)) {
-    return "what it leaves stands out more than it does";
-  }
-  const auto drivers = scan_variables_of(family.name());
-  if (still_moves(drivers)) return fmt::format("{} still moves what it leaves", fmt::join(drivers, " or "));
-  if (!family.effect) return {};
-  const Eigen::Index first = first_column(added), count = family.amplitudes();
-  const Eigen::VectorXd moved = effect.columns.leftCols(count) * projector_->solution().segment(first, count);
-  const ConstancyTest constancy = least_constant(family, moved, variables_, *projector_);
-  if (constancy.log10_p > kLog10ConstancyRisk) return {};
-  return fmt::format("its amplitude varies with {} (log10 p {:.1f})", constancy.variable, constancy.log10_p);
-}
-
-/// Of the amplitudes among the projector's parameters.
-Eigen::Index EffectSearch::first_column(std::size_t added) const {
-  Eigen::Index first = projector_->parameters() - projector_->accepted();
-  for (std::size_t i = 0; i < added; ++i) first += added_[i].columns.cols();
-  return first;
-}
-
-void EffectSearch::give_up() {
-  find_no_names();
-  if (given_up_.empty()) return;
-  std::vector<FamilyTest> kept;
-  for (const AddedEffect& effect : added_) {
-    if (!given_up_.contains(effect.test.family)) kept.push_back(effect.test);
-  }
-  add_again(kept);
-  settle([] {});
-  test();
 }
 
 /// The first effect, and the changes of the model before it.
@@ -372,19 +358,25 @@ const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
                                         std::optional<std::size_t> but) const {
   const FamilyTest* best = nullptr;
   for (const FamilyTest& test : tests) {
-    if (test.score.dof == 0 || given_up_.contains(test.family) || dropped_.contains(test.family)) continue;
-    if (is_added(test.family) && test.family != but) continue;
+    if (!may_be_added(test) && (test.family != but || test.score.dof == 0)) continue;
     if (best == nullptr || test.gain > best->gain) best = &test;
   }
   return best;
 }
 
+bool EffectSearch::may_be_added(const FamilyTest& test) const {
+  return test.score.dof > 0 && !is_added(test.family) && !given_up_.contains(test.family) &&
+         !dropped_.contains(test.family);
+}
+
 /// An unlisted effect of few terms has a larger gain among the polynomials; bumps and waves make a kernel
 /// less probable than any name.
 bool EffectSearch::generic_does_better(const FamilyTest& best) const {
+  const bool components = families_[best.family].independent_components();
+  const double share = components ? kLessProbableByComponents : kLessProbable;
   return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    if (!test.kernel && test.gain > best.gain + kToldApart) return true;
-    return family_wise_log10_p(test) < (1.0 + kLessProbable) * family_wise_log10_p(best) - 1.0;
+    if (!test.kernel && test.gain > best.gain + kMoreGain) return true;
+    return family_wise_log10_p(test) < (1.0 + share) * family_wise_log10_p(best) - 1.0;
   });
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/constancy_test.h"
 #include "volcal/identify/criticism/families.h"
 #include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/criticism/ladder.h"
@@ -75,25 +76,38 @@ class EffectSearch {
   void start();
   void find_noise();
   std::unique_ptr<Projector> projector_without(std::optional<std::size_t> left_out) const;
-  std::unique_ptr<Projector> projector_of(const NoiseData& data, std::optional<std::size_t> left_out) const;
+  std::unique_ptr<Projector> projector_of(const NoiseData& data, const std::vector<NoiseParameters>& noise,
+                                          std::optional<std::size_t> left_out = std::nullopt) const;
   NoiseProblem problem_with_added() const;
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
   void climb();
+  bool something_stands_out() const;
   bool add_leading();
+  bool add_hidden_in_noise();
   void add(const FamilyTest& test);
+  Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;
   std::size_t take_up_removed();
   void add_step(const std::string& added);
   void restate_ladder();
   void settle(const std::function<void()>& after_a_change);
   bool reconsider(bool may_change);
   bool still_moves(const std::vector<std::string>& drivers) const;
+  bool leaves_more(const AddedEffect& effect) const;
   std::string why_no_name(std::size_t added) const;
   Eigen::Index first_column(std::size_t added) const;
+  ConstancyTest constancy_of(const Family& family, const Eigen::MatrixXd& columns, Eigen::Index first,
+                             const Projector& projector) const;
+  double constancy_of_rival(std::size_t added, const FamilyTest& rival) const;
   void find_no_names();
+  void leave_rivals_that_vary();
+  const FamilyTest* standing_rival(std::size_t added) const;
   void give_up();
+  void refuse_but(const std::set<std::size_t>& stood);
+  void keep(const std::vector<FamilyTest>& tests);
   void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);
+  bool may_be_added(const FamilyTest& test) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
   bool generic_does_better(const FamilyTest& best) const;
 
@@ -102,6 +116,7 @@ class EffectSearch {
   SearchOptions options_;
   std::vector<Family> families_;
   std::vector<ScanVariable> variables_;
+  std::vector<ScanVariable> constancy_variables_;
   std::optional<NoiseEstimate> noise_estimate_;
   std::vector<NoiseParameters> noise_;
   std::unique_ptr<Projector> projector_;
@@ -123,7 +138,11 @@ class EffectSearch {
 /// Family-wise risks of naming an effect, and of the generic scans (polynomials and kernels each).
 extern const double kLog10FamilyRisk;
 extern const double kLog10GenericRisk;
-/// Risk that a right name is refused because its amplitude seems to vary.
+/// Risks that a right name is refused, or left out of a set, because its amplitude seems to vary.
 extern const double kLog10ConstancyRisk;
+extern const double kLog10RivalRisk;
+/// Of effects that are tested with the noise estimated beside them: its parameters are few readings' worth,
+/// and tails are longer than those of chi-squared.
+extern const double kLog10RiskBesideNoise;
 
 }  // namespace volcal

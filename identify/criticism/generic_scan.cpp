@@ -28,17 +28,6 @@ struct Features {
   Eigen::MatrixXd waves;
 };
 
-void add_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value) {
-  const double low = value.minCoeff(), high = value.maxCoeff();
-  if (!(high - low > 1e-9 * std::max(1.0, std::abs(high)))) return;
-  value = ((value.array() - low) * (2.0 / (high - low)) - 1.0).matrix();
-  const bool two_valued = (value.array().abs() > 1.0 - 1e-9).all();
-  const double shift = two_valued ? value.mean() : 0.0;
-  value.array() -= shift;
-  const double scale = 0.5 * (high - low);
-  variables.push_back({name, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
-}
-
 bool is_beam_geometry(const std::string& variable) { return variable == "length" || variable == "elevation"; }
 
 bool is_machine_state(const std::string& variable) {
@@ -316,7 +305,7 @@ class ScanVariables {
       const auto& [setup, row, channel] = model_.observations()[i];
       value[static_cast<Eigen::Index>(i)] = of_reading(campaign_.setups[setup], setup, row);
     }
-    add_variable(variables_, name, std::move(value));
+    add_scan_variable(variables_, name, std::move(value));
   }
 
   const LinearModel& model_;
@@ -325,6 +314,17 @@ class ScanVariables {
 };
 
 }  // namespace
+
+void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value) {
+  const double low = value.minCoeff(), high = value.maxCoeff();
+  if (!(high - low > 1e-9 * std::max(1.0, std::abs(high)))) return;
+  value = ((value.array() - low) * (2.0 / (high - low)) - 1.0).matrix();
+  const bool two_valued = (value.array().abs() > 1.0 - 1e-9).all();
+  const double shift = two_valued ? value.mean() : 0.0;
+  value.array() -= shift;
+  const double scale = 0.5 * (high - low);
+  variables.push_back({name, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
+}
 
 std::vector<ScanVariable> scan_variables(const LinearModel& model) {
   ScanVariables variables(model);

@@ -25,6 +25,8 @@ struct ScanVariable {
   double scale = 1.0;
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
+/// `value` over all observations, as recorded; nothing is added where it is constant.
+void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value);
 
 /// Names of the recorded variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its
 /// driver, "tool side_x" of either, "station P1" of its target. Empty where nothing recorded stands for it.

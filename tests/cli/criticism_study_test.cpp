@@ -173,5 +173,46 @@ TEST_F(CriticismStudyFolder, CountsFalseAlarmsWithWilsonIntervals) {
   EXPECT_THAT(study("-n 1 --resume -o " + output_).output, HasSubstr("wrong name: reversal"));
 }
 
+/// Of two hidden effects one is named; the other stands in a set.
+TEST_F(CriticismStudyFolder, CountsWhatIsFoundOfTwo) {
+  ASSERT_EQ(study("-n 1 -o " + output_).exit_code, 0);
+  const auto hidden = [](const char* name) {
+    return json{{"text", name},
+                {"right", name},
+                {"signal", 12.0},
+                {"visible_fraction", 1},
+                {"rms_um", 1.0},
+                {"drivers", json::array()},
+                {"companions", json::array()},
+                {"directions", json::array()}};
+  };
+  const auto answer = [](const std::string& name, int of, double gain) {
+    return json{{"name", name},        {"hidden", of},     {"by_name", of >= 0},
+                {"resolution", false}, {"scanned", false}, {"explains", 1.0},
+                {"log10_p", -20.0},    {"gain", gain},     {"amplitudes", json::array()}};
+  };
+  json pair = kept().at(0);
+  pair["row"] = "pairs";
+  pair["index"] = 0;
+  pair["hidden"] = {hidden("a"), hidden("b")};
+  pair["verdict"] = "NAMED_MORE_REMAINS";
+  pair["named"] = json::array({answer("a", 0, 100.0)});
+  const auto outcome = [&](const std::vector<json>& set) {
+    pair["sets"] = json::array({set});
+    keep({pair});
+    const auto counted =
+        run_program("study criticism --rows pairs -n 1 --readings 400 --json --resume -o " + output_);
+    EXPECT_EQ(counted.exit_code, 0) << counted.errors;
+    return json::parse(counted.output).at("campaigns").at(0).at("outcome").get<std::string>();
+  };
+  const json b = answer("b", 1, 90.0), twin = answer("b2", 1, 90.0), other = answer("c", -1, 88.0);
+  EXPECT_EQ(outcome({b, other}), "right, in a set of up to 3");
+  EXPECT_EQ(outcome({b, twin, twin, other}), "right, in a set of up to 3 that differ");
+  EXPECT_EQ(outcome({b, other, answer("d", -1, 87.0), answer("e", -1, 86.0)}), "in a set of over 3");
+  EXPECT_EQ(outcome({other, other}), "right, more remains");
+  pair["unknown"] = json::array({{{"variables", {"x"}}, {"direction", "X"}, {"log10_p", -4.0}}});
+  EXPECT_EQ(outcome({b, other}), "right, more remains");
+}
+
 }  // namespace
 }  // namespace volcal

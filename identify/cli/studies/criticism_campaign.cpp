@@ -26,6 +26,7 @@ constexpr double kLargestRms = 40e-6;     // m: a larger effect is another kind 
 constexpr double kLargestAngle = 300e-6;  // rad, and per whatever the amplitude is taken for
 constexpr double kLargestLength = 200e-6;
 constexpr int kMostAttempts = 60;
+constexpr double kLargestShared = 0.75;  // of a squared signal, by the columns of what is hidden beside it
 constexpr double kRemainderOfTheSame = 0.02;  // share of a signal; below, no reading tells two effects apart
 constexpr std::size_t kKeptOfRanking = 5;
 
@@ -68,7 +69,8 @@ class Yardstick {
       : simulated_(sim::simulate(study)),
         result_(fitted(simulated_.campaign, {})),
         model_(simulated_.campaign, result_),
-        projector_(model_.problem(), model_.problem().data, true_noise(), 1) {}
+        smooth_(model_.problem(), model_.problem().data, true_noise(), 1),
+        free_(without_smoothing(model_), model_.problem().data, true_noise(), 1) {}
 
   /// Change of the readings by an effect that has an amplitude or an rms.
   Eigen::VectorXd change(const sim::Study& study, const sim::HiddenEffect& effect, double* amplitude) const {
@@ -77,27 +79,50 @@ class Yardstick {
     return difference(simulated_.campaign, with.campaign);
   }
 
+  /// What the functions could not take up had they any shape that their knots allow.
   struct Visible {
     double signal = 0.0;
     double fraction = 0.0;
   };
   Visible visible(const Eigen::VectorXd& change) const {
-    const ProjectedColumns projected = projector_.project(change);
+    const ProjectedColumns projected = free_.project(change);
     const double signal = std::sqrt(std::max(0.0, projected.gram(0, 1)(0, 0)));
     return {signal, projected.norm[0] > 0.0 ? signal / projected.norm[0] : 0.0};
   }
 
-  /// Least squares of a change on columns, after projection.
+  /// Least squares of a change on columns, after projection off functions as smooth as those of the machine.
   struct Explained {
     double share = 0.0;  ///< of the squared signal
     Eigen::VectorXd amplitude;
   };
   Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
+    return explained(change, columns, smooth_);
+  }
+  /// The same as `visible` sees it.
+  double share_taken(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
+    return explained(change, columns, free_).share;
+  }
+  /// Columns of a finding at its shape; none for more resolution.
+  Eigen::MatrixXd columns(const EffectFinding& finding) const {
+    if (finding.resolution) return {static_cast<Eigen::Index>(model_.size()), 0};
+    return columns(finding.spec);
+  }
+  Eigen::MatrixXd columns(const EffectSpec& spec) const {
+    std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
+    const Eigen::VectorXd shape = effect->shape_values();
+    return family_columns(model_, Family{spec, std::move(effect), std::nullopt, {shape}}, shape);
+  }
+
+  const Campaign& campaign() const { return simulated_.campaign; }
+
+ private:
+  static Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns,
+                             const Projector& projector) {
     const Eigen::Index count = columns.cols();
     if (count == 0) return {};
     Eigen::MatrixXd all(columns.rows(), count + 1);
     all << columns, change;
-    const Eigen::MatrixXd gram = projector_.project(all).gram(0, count + 1);
+    const Eigen::MatrixXd gram = projector.project(all).gram(0, count + 1);
     const Eigen::MatrixXd own = gram.topLeftCorner(count, count);
     const Eigen::VectorXd mixed = gram.topRightCorner(count, 1);
     const Eigen::VectorXd scale = own.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -109,15 +134,11 @@ class Yardstick {
     return out;
   }
 
-  /// Columns of a finding at its shape; none for more resolution.
-  Eigen::MatrixXd columns(const EffectFinding& finding) const {
-    if (finding.resolution) return {static_cast<Eigen::Index>(model_.size()), 0};
-    std::unique_ptr<Effect> effect = find_effect(finding.spec.kind)->make(finding.spec, {});
-    const Eigen::VectorXd shape = effect->shape_values();
-    return family_columns(model_, Family{finding.spec, std::move(effect), std::nullopt, {shape}}, shape);
+  static const NoiseProblem& without_smoothing(LinearModel& model) {
+    model.set_smoothing({});
+    return model.problem();
   }
 
- private:
   std::vector<NoiseParameters> true_noise() const {
     std::vector<NoiseParameters> noise;
     for (const std::string& group : model_.noise_groups()) {
@@ -132,7 +153,8 @@ class Yardstick {
   sim::SimulatedCampaign simulated_;
   FitResult result_;
   LinearModel model_;
-  Projector projector_;
+  Projector smooth_;
+  Projector free_;
 };
 
 /// An effect that shows at second order alone needs an amplitude that no machine has.
@@ -194,9 +216,8 @@ class CampaignRun {
       if (attempt % kAttemptsPerKind == 0) yardstick_ = std::make_unique<Yardstick>(plan_.study);
       hidden_ = {};
       record_.hidden.clear();
-      if (std::ranges::all_of(plan_.hidden, [this](const PlannedEffect& effect) { return add(effect); })) {
-        return true;
-      }
+      const auto added = [this](const PlannedEffect& effect) { return add(effect); };
+      if (std::ranges::all_of(plan_.hidden, added) && stand_apart()) return true;
     }
     return false;
   }
@@ -226,6 +247,27 @@ class CampaignRun {
     hidden_.changes.emplace_back(change * factor);
     hidden_.effects.push_back(std::move(effect));
     record_.hidden.push_back(std::move(record));
+    return true;
+  }
+
+  /// Effects hidden together are raised until each has its signal beside the columns of the others; false
+  /// where these take nearly all of it.
+  bool stand_apart() {
+    std::vector<double> factors(hidden_.effects.size(), 1.0);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      for (std::size_t k = 0; k < factors.size(); ++k) {
+        const auto other = right_answer(hidden_.effects[k], yardstick_->campaign()).spec;
+        if (k == i || !other) continue;
+        const double share = yardstick_->share_taken(hidden_.changes[i], yardstick_->columns(*other));
+        if (share > kLargestShared) return false;
+        factors[i] = std::max(factors[i], 1.0 / std::sqrt(1.0 - share));
+      }
+    }
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      *hidden_.effects[i].amplitude *= factors[i];
+      hidden_.changes[i] *= factors[i];
+      record_.hidden[i].rms_um *= factors[i];
+    }
     return true;
   }
 

@@ -70,5 +70,28 @@ TEST_F(Constancy, SeesWhatElseAnAmplitudeDependsOn) {
   EXPECT_LT(varies.log10_p, -4.0);
 }
 
+/// A reversal that is taken up in the first readings after the axis has turned round.
+TEST_F(Constancy, SeesAReversalThatIsTakenUpOnTheWay) {
+  std::mt19937_64 random(6);
+  const std::vector<ScanVariable> turning = travel_since_turning(model_of_nothing_hidden());
+  const auto x = std::ranges::find(turning, "travel since dir_x", &ScanVariable::name);
+  ASSERT_NE(x, turning.end());
+  const Eigen::VectorXd travelled_m = (x->centre + x->scale * x->value.array()).matrix();
+  EXPECT_NEAR(travelled_m.minCoeff(), 0.0, 1e-12);
+  const Axis& axis = model_of_nothing_hidden().campaign().machine.axis(AxisName::X);
+  EXPECT_GT(travelled_m.maxCoeff(), 0.5 * axis.travel());
+  EXPECT_LT(travelled_m.maxCoeff(), 1.01 * axis.travel());
+
+  const Eigen::VectorXd late = moved().cwiseProduct((-travelled_m.array() / 0.1).exp().matrix());
+  Projector projector = white_projector(model_of_nothing_hidden(),
+                                        white_residual(model_of_nothing_hidden(), random) - 6e-6 * late);
+  projector.accept(moved());
+  std::vector<ScanVariable> variables = variables_of_nothing_hidden();
+  variables.insert(variables.end(), turning.begin(), turning.end());
+  const ConstancyTest varies = least_constant(families_.at(0), 2e-6 * moved(), variables, projector);
+  EXPECT_EQ(varies.variable, "travel since dir_x");
+  EXPECT_LT(varies.log10_p, -4.0);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -93,6 +93,35 @@ TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
   EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains(::testing::AnyOf("x", "y")));
 }
 
+/// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
+TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
+  sim::HiddenEffect memory = hidden("direction-memory", "EYY", 1.5e-6);
+  memory.options.set("length", 0.05);
+  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({memory}, kGrid)), true);
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
+}
+
+/// On one circle a wander of a few seconds follows a servo mismatch as well as its own shape does.
+TEST(EffectSearch, FindsWhatTheNoiseHasTakenUp) {
+  sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
+  servo.options.set("axis", "X");
+  sim::Study study = hiding({servo}, kGrid);
+  sim::BallBarCircles circles;
+  circles.planes = {"XY"};
+  circles.records_feed = true;
+  study.measurements.emplace_back().settings = circles;
+  const FittedStudy fitted(study);
+  const NoiseEstimate noise = estimate_noise(fitted.model.problem());
+  const auto ball_bar = std::ranges::find(fitted.model.noise_groups(), "ball-bar");
+  ASSERT_NE(ball_bar, fitted.model.noise_groups().end());
+  const auto group = static_cast<std::size_t>(ball_bar - fitted.model.noise_groups().begin());
+  EXPECT_GT(noise.instruments[group].parameters.wander, 0.2e-6);
+  EXPECT_THAT(targets(diagnosed(fitted, true).effects), ::testing::ElementsAre("servo-mismatch XY"));
+}
+
 TEST(ScanVariables, OfAnEffect) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(scan_variables_of({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));

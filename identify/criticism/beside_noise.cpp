@@ -1,0 +1,44 @@
+#include "volcal/identify/criticism/beside_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/stats/chi_squared.h"
+
+namespace volcal {
+
+std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, const NoiseEstimate& estimate,
+                                                   int threads) {
+  const std::vector<NoiseParameters> wandering = estimate.parameters();
+  const auto wanders = [](const NoiseParameters& noise) { return noise.wander > 0.0; };
+  if (std::ranges::none_of(wandering, wanders)) return {};
+  NoiseOptions options;
+  options.threads = threads;
+  options.uncertainty = false;
+  options.wander = false;
+  const std::vector<NoiseParameters> still = estimate_noise(problem, options).parameters();
+  RestrictedLikelihood likelihood(problem, threads);
+  std::vector<NoiseAlternative> alternatives;
+  for (std::size_t group = 0; group < wandering.size(); ++group) {
+    if (!wanders(wandering[group])) continue;
+    std::vector<NoiseParameters> noise = wandering;
+    noise[group] = still[group];
+    const double loss = 2.0 * (estimate.log_likelihood - likelihood.log_likelihood(noise));
+    alternatives.push_back({std::move(noise), loss});
+  }
+  return alternatives;
+}
+
+void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
+                       const NoiseEstimate& estimate, int threads, FamilyTest& test) {
+  problem.residual -= family_columns(model, family, test.shape) * test.score.amplitude;
+  NoiseOptions options;
+  options.threads = threads;
+  options.uncertainty = false;
+  const NoiseEstimate beside = estimate_noise(problem, options, &estimate);
+  test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - estimate.log_likelihood));
+  test.score.log10_p = log10_chi_squared_exceedance(test.score.lm, test.score.dof);
+  test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));
+}
+
+}  // namespace volcal

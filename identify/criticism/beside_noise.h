@@ -1,0 +1,34 @@
+#pragma once
+/// Test of an effect with the noise estimated beside it. A wander can follow whatever changes along the path
+/// of the readings; noise that was estimated without an effect may hold it, and leave nothing to be tested.
+///
+/// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
+/// columns of the model are the same in both and G a is data, so that they can be compared
+/// (restricted_likelihood.h). By Wilks (1938, Ann. Math. Statist. 9, 60) chi-squared with the amplitudes as
+/// degrees of freedom.
+
+#include <vector>
+
+#include "volcal/identify/criticism/families.h"
+#include "volcal/identify/noise/noise_estimate.h"
+
+namespace volcal {
+
+/// Noise at which effects may stand out: at a given noise l(y - G a) is at most l(y) + LM / 2, so that LM -
+/// loss is a lower bound of the likelihood ratio.
+struct NoiseAlternative {
+  std::vector<NoiseParameters> noise;
+  double loss = 0.0;  ///< 2 (l - l here)
+};
+
+/// One per instrument that wanders: without its wander, the others as they are.
+std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, const NoiseEstimate& estimate,
+                                                   int threads);
+
+/// Sets LM to the likelihood ratio and log10 p by it; the multiplicity of scanned shapes counts. The
+/// amplitude stays that of `test`, from whatever noise it was found with: another lower bound. `estimate`:
+/// for `problem`.
+void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
+                       const NoiseEstimate& estimate, int threads, FamilyTest& test);
+
+}  // namespace volcal

@@ -4,10 +4,21 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 #include <vector>
+
+#include "volcal/model/kinematics/lanes.h"
+
+// The same source once more, for no instruction set but the baseline.
+#define box_muller baseline_box_muller
+#undef VOLCAL_VECTOR_LOOPS
+#define VOLCAL_VECTOR_LOOPS
+#include "identify/montecarlo/box_muller.cpp"  // NOLINT(bugprone-suspicious-include): compiled a second time
+#undef box_muller
 
 namespace volcal {
 namespace {
@@ -33,6 +44,19 @@ TEST(BoxMuller, IsExactToRoundingForRandomNumbers) {
   for (double& u : first) u = 1.0 - uniform(random);
   for (double& u : second) u = 1.0 - uniform(random);
   expect_normals(first, second);
+}
+
+TEST(BoxMuller, GivesTheSameBitsOnEveryInstructionSet) {
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<double> first(10'001), second(first.size());
+  for (double& u : first) u = 1.0 - uniform(random);
+  for (double& u : second) u = 1.0 - uniform(random);
+  std::vector<double> plain_first = first, plain_second = second;
+  box_muller(first.size(), first.data(), second.data());
+  baseline_box_muller(first.size(), plain_first.data(), plain_second.data());
+  EXPECT_EQ(std::memcmp(first.data(), plain_first.data(), first.size() * sizeof(double)), 0);
+  EXPECT_EQ(std::memcmp(second.data(), plain_second.data(), second.size() * sizeof(double)), 0);
 }
 
 TEST(BoxMuller, IsExactAtTheEdges) {

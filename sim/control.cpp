@@ -28,7 +28,7 @@ double table_value(const ControlAxisTable& table, const MachineState& state) {
   const auto [upper, share] = interval_of(table.position, state.position[axis]);
   const double plus = between(table.towards_plus, upper, share);
   const double minus = between(table.towards_minus, upper, share);
-  const int direction = state.direction[axis];
+  const std::int8_t direction = state.direction[axis];
   return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
 }
 

@@ -100,7 +100,7 @@ class TruthMachine {
   MachineState corrected(const MachineState& state) const;
   Eigen::Matrix4d joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d nominal_joint_transform(const Joint& joint, const MachineState& state) const;
-  Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& state) const;
+  Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& programmed) const;
   Eigen::Vector3d direction_of_travel(AxisName axis, const MachineState& state) const;
   void require_location(LocationSymbol symbol) const;
 

@@ -44,6 +44,7 @@ std::vector<AngleWithU> squareness_of(const FitResult& result) {
 
 std::vector<AngleWithU> frame_of(const AlignedResult& aligned) {
   std::vector<AngleWithU> angles;
+  angles.reserve(3);
   for (int i = 0; i < 3; ++i)
     angles.push_back({std::string("about ") + "xyz"[i], aligned.frame_rotation[i],
                       std::sqrt(std::max(0.0, aligned.frame_covariance(i, i)))});

@@ -16,7 +16,7 @@ namespace {
   constexpr std::uint64_t kTwoTo52 = 0x4330000000000000U;
   const auto bits = std::bit_cast<std::uint64_t>(x);
   double exponent = std::bit_cast<double>(bits >> 52U | kTwoTo52) - (4503599627370496.0 + 1023.0);
-  double m = std::bit_cast<double>((bits & kMantissa) | kOne);
+  auto m = std::bit_cast<double>((bits & kMantissa) | kOne);
   const bool is_large = m > std::numbers::sqrt2;
   m = is_large ? 0.5 * m : m;
   exponent = is_large ? exponent + 1.0 : exponent;

@@ -275,7 +275,7 @@ class MonteCarloStudy::Work {
   }
 
   /// Ranks on unlike processors would draw from unlike machines.
-  void require_same_numbers() {
+  void require_same_numbers() const {
     if (options_.team == nullptr) return;
     const std::string own = std::to_string(fingerprint());
     const std::vector<std::string> all = options_.team->gather(own);

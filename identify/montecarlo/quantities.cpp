@@ -184,8 +184,8 @@ VolumeSizes volume_sizes(const Eigen::Ref<const Eigen::VectorXd>& vectors) {
     squares += square;
     largest = std::max(largest, square);
   }
-  const auto points = static_cast<double>(vectors.size() / 3);
-  return {points > 0.0 ? std::sqrt(squares / points) : 0.0, std::sqrt(largest)};
+  const Eigen::Index points = vectors.size() / 3;
+  return {points > 0 ? std::sqrt(squares / static_cast<double>(points)) : 0.0, std::sqrt(largest)};
 }
 
 QuantitySet quantities_of(const FitResult& result, int grid_per_axis) {

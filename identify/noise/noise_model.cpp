@@ -183,6 +183,17 @@ double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
   return log_determinant + std::log(product);
 }
 
+void Whitener::correct_offsets(const Track& track, const Step& step, const double* gain, double scale,
+                               Eigen::Index width, const double* innovation, double* state) {
+  for (int other = 1; other < track.states; ++other) {
+    if (other == step.slot || gain[other] == 0.0) continue;
+    double* __restrict const offset = state + other * width;
+    const double* __restrict const v = innovation;
+    const double factor = gain[other] / scale;
+    for (Eigen::Index c = 0; c < width; ++c) offset[c] += factor * v[c];
+  }
+}
+
 void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width,
                       double* tile, double* state) {
   if (track.independent) {
@@ -217,12 +228,7 @@ void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Ei
         v[c] = scale * innovation;
       }
     }
-    for (int other = 1; other < track.states; ++other) {
-      if (other == step.slot || gain[other] == 0.0) continue;
-      double* __restrict const offset = state + other * width;
-      const double factor = gain[other] / scale;
-      for (Eigen::Index c = 0; c < width; ++c) offset[c] += factor * v[c];
-    }
+    correct_offsets(track, step, gain, scale, width, v, state);
   }
 }
 

@@ -122,6 +122,9 @@ class Whitener {
   /// In place on a tile of steps [begin, end): `width` values per step.
   static void filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width, double* tile,
                      double* state);
+  /// Part of filter(): offsets that are held while that of the step's own slot is seen.
+  static void correct_offsets(const Track& track, const Step& step, const double* gain, double scale,
+                              Eigen::Index width, const double* innovation, double* state);
   /// Adjoint of filter() on one whitened column: L^-T, in place.
   static void filter_adjoint(const Track& track, Eigen::VectorXd& column);
   /// Columns where a track finds its observations and leaves them.

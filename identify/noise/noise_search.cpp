@@ -429,8 +429,8 @@ Eigen::VectorXd NoiseSearch::moved(const Eigen::VectorXd& at, Eigen::Index param
 
 /// Second differences of -2 l over about half a standard uncertainty.
 void NoiseSearch::find_uncertainty(const Point& point, NoiseParameters& log_uncertainty) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  log_uncertainty = {kNone, kNone, kNone, kNone, kNone};
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  log_uncertainty = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   const std::array<double*, kParameters> targets{&log_uncertainty.white, &log_uncertainty.wander,
                                                  &log_uncertainty.tau, &log_uncertainty.line,
                                                  &log_uncertainty.per_metre};

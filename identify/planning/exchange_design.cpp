@@ -40,10 +40,9 @@ class Exchange {
       const double before = result_.value;
       if (batch > 1) {
         if (!exchange(batch)) batch /= 2;
-      } else if (!exchange(1) && !exchange_best_pair()) {
-        result_.converged = true;
-      } else if (before - result_.value < kLeastGain * before) {
-        result_.converged = true;
+      } else {
+        const bool exchanged = exchange(1) || exchange_best_pair();
+        result_.converged = !exchanged || before - result_.value < kLeastGain * before;
       }
     }
     return std::move(result_);

@@ -57,6 +57,7 @@ std::vector<DetectableEffect> expected_detectable(const Campaign& campaign, cons
   const double log10_level =
       log10_family_risk() - std::log10(static_cast<double>(std::max<std::size_t>(1, all.size())));
   std::vector<DetectableEffect> out;
+  out.reserve(tests.size());
   for (const FamilyTest& test : tests)
     out.push_back(detectable_effect(all[test.family], test, log10_level, levers));
   return out;

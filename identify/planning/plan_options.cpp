@@ -163,8 +163,9 @@ class OptionSearch {
     std::vector<Eigen::Vector3d> sites;
     const Eigen::AlignedBox3d& region = sight.stations_w();
     for (int i = 0; i < kOptionSites * kOptionSites * kOptionSites; ++i) {
-      const Eigen::Vector3d cell(i % kOptionSites, i / kOptionSites % kOptionSites,
-                                 i / (kOptionSites * kOptionSites));
+      const int x = i % kOptionSites, y = i / kOptionSites % kOptionSites,
+                z = i / (kOptionSites * kOptionSites);
+      const Eigen::Vector3d cell(x, y, z);
       const Eigen::Vector3d site = region.min() + (cell / (kOptionSites - 1)).cwiseProduct(region.sizes());
       if (sight.can_stand(site)) sites.push_back(site);
     }

@@ -257,13 +257,14 @@ Eigen::MatrixXd PlanProblem::table_functionals(const Linearised& at) const {
   std::vector<Eigen::MatrixXd> parts;
   Eigen::Index rows = 0;
   for (const ErrorSymbol symbol : layout.symbols()) {
-    parts.push_back(symbol_functionals(at, symbol.name()) * lever_of(symbol.axis, symbol.component, false));
+    parts.emplace_back(symbol_functionals(at, symbol.name()) *
+                       lever_of(symbol.axis, symbol.component, false));
     rows += parts.back().rows();
   }
   for (const ParameterBlock& block : layout.blocks) {
     if (!block.location) continue;
-    parts.push_back(symbol_functionals(at, block.location->name()) *
-                    lever_of(block.location->axis, block.location->component, true));
+    parts.emplace_back(symbol_functionals(at, block.location->name()) *
+                       lever_of(block.location->axis, block.location->component, true));
     rows += parts.back().rows();
   }
   Eigen::MatrixXd all(rows, at.datum.size());
@@ -291,7 +292,7 @@ Eigen::MatrixXd PlanProblem::effect_functionals(const Linearised& at) const {
     for (int k = 0; k < effect.amplitude_count(); ++k) {
       const Eigen::VectorXd row =
           at.datum.reduce_rows(Eigen::RowVectorXd::Unit(layout.size, effect.first_parameter + k)).transpose();
-      rows.push_back(row / std::sqrt(row.dot(covariance * row)));
+      rows.emplace_back(row / std::sqrt(row.dot(covariance * row)));
     }
   }
   Eigen::MatrixXd all(static_cast<Eigen::Index>(rows.size()), at.datum.size());
@@ -334,7 +335,7 @@ double PlanProblem::value(const PlanLayout& layout, std::size_t readings) const 
   const Campaign campaign = campaign_with_existing(layout);
   const Linearised at(campaign, model_);
   const double taken = static_cast<double>(layout.positions()) * (both_directions_ ? 2.0 : 1.0);
-  const double wanted = static_cast<double>(readings > 0 ? readings : layout.readings());
+  const auto wanted = static_cast<double>(readings > 0 ? readings : layout.readings());
   const Eigen::MatrixXd information =
       at.information(wanted / std::max(1.0, taken), thin_.setups.size()) + known(at);
   return criterion_->value(information).value_or(std::numeric_limits<double>::infinity());

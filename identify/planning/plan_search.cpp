@@ -183,6 +183,22 @@ class PlanSearch {
     return value;
   }
 
+  /// Stations with one of them a step aside, where it can stand.
+  std::vector<std::vector<Eigen::Vector3d>> aside(const std::vector<Eigen::Vector3d>& stations,
+                                                  std::size_t station, double step) const {
+    const Eigen::AlignedBox3d& region = sight_.stations_w();
+    std::vector<std::vector<Eigen::Vector3d>> sets;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        std::vector<Eigen::Vector3d> set = stations;
+        set[station][axis] = in_millimetres(set[station][axis] + sign * step);
+        set[station] = set[station].cwiseMax(region.min()).cwiseMin(region.max());
+        if (sight_.can_stand(set[station])) sets.push_back(std::move(set));
+      }
+    }
+    return sets;
+  }
+
   template <class Value>
   std::vector<Eigen::Vector3d> pattern_search(std::vector<Eigen::Vector3d> stations, double first_step,
                                               const Value& values_of, const std::string& stage, double done,
@@ -195,16 +211,7 @@ class PlanSearch {
       for (bool moved = true; moved;) {
         moved = false;
         for (std::size_t station = 0; station < stations.size(); ++station) {
-          std::vector<std::vector<Eigen::Vector3d>> sets;
-          for (int axis = 0; axis < 3; ++axis) {
-            for (const double sign : {-1.0, 1.0}) {
-              std::vector<Eigen::Vector3d> set = stations;
-              set[station][axis] = in_millimetres(set[station][axis] + sign * step);
-              const Eigen::AlignedBox3d& region = sight_.stations_w();
-              set[station] = set[station].cwiseMax(region.min()).cwiseMin(region.max());
-              if (sight_.can_stand(set[station])) sets.push_back(std::move(set));
-            }
-          }
+          const std::vector<std::vector<Eigen::Vector3d>> sets = aside(stations, station, step);
           if (sets.empty()) continue;
           const std::vector<double> values = values_of(sets);
           const auto best = static_cast<std::size_t>(std::ranges::min_element(values) - values.begin());

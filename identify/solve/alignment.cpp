@@ -34,7 +34,7 @@ Eigen::VectorXd straight_line(const Basis& basis, ErrorSymbol symbol, double val
                               double from) {
   const BasisMoments moment = moments(basis);
   const Eigen::VectorXd right = (value - slope * from) * moment.zeroth + slope * moment.first;
-  const Eigen::VectorXd coefficients = least_squares(gram(basis, 0), right).solution;
+  Eigen::VectorXd coefficients = least_squares(gram(basis, 0), right).solution;
   const std::vector<double> ends = basis.pieces();
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     for (const double q : {ends[i], 0.5 * (ends[i] + ends[i + 1]), ends[i + 1]}) {

@@ -162,7 +162,7 @@ void NormalAccumulator::add_blocks(std::size_t chunk, const Eigen::VectorXd& par
   if (what == Sums::All) {
     if (!out.pairs) {
       out.pairs.emplace(model);
-      out.rows.resize(kLanes * model.row_width());
+      out.rows.resize(std::ptrdiff_t{kLanes} * model.row_width());
     }
     out.pairs->set_zero();
   }

@@ -27,7 +27,7 @@ struct RowPair {
 /// kColumns columns of sums += down across^T, kRowAlignment rows of them; `stride`: from column to column.
 /// Sums stay in registers while the position does not change.
 template <int kColumns>
-[[gnu::always_inline]] inline void add_columns(const RowPair& pair, int stride, double* sums) {
+[[gnu::always_inline]] inline void add_columns(const RowPair& pair, std::ptrdiff_t stride, double* sums) {
   Octet sum[kColumns];
   const double* down = pair.down;
   const double* across = pair.across;
@@ -44,7 +44,7 @@ template <int kColumns>
 }
 
 /// kRowAlignment rows of sums, `columns` of them, at most 8.
-VOLCAL_VECTOR_LOOPS void add_octet(const RowPair& pair, int columns, int stride, double* sums) {
+VOLCAL_VECTOR_LOOPS void add_octet(const RowPair& pair, int columns, std::ptrdiff_t stride, double* sums) {
   switch (columns) {
     case 1:
       return add_columns<1>(pair, stride, sums);
@@ -69,10 +69,11 @@ VOLCAL_VECTOR_LOOPS void add_octet(const RowPair& pair, int columns, int stride,
 void add_products(RowPair pair, int down, int across, double* sums) {
   constexpr int kMostColumns = 8;
   const double* const first = pair.across;
+  const std::ptrdiff_t stride = down;
   for (int i = 0; i < down; i += BlockModel::kRowAlignment, pair.down += BlockModel::kRowAlignment) {
     for (int k = 0; k < across; k += kMostColumns) {
       pair.across = first + k;
-      add_octet(pair, std::min(kMostColumns, across - k), down, sums + k * down + i);
+      add_octet(pair, std::min(kMostColumns, across - k), stride, sums + k * stride + i);
     }
   }
 }
@@ -218,9 +219,9 @@ void PairSums::add_group_pair(const Pair& pair, Eigen::MatrixXd& matrix) const {
     const int row = down.index(model.tables().start(pair.down, p), 0);
     const int first = model.tables().start(pair.across, r);
     for (int slot = 0; slot < across.count(); ++slot, block += stride) {
+      std::size_t at = 0;
       for (int j = 0; j < support; ++j) {
-        for (int i = 0; i < down.count(); ++i)
-          column[static_cast<std::size_t>(j * down.count() + i)] = basis[j] * block[i];
+        for (int i = 0; i < down.count(); ++i) column[at++] = basis[j] * block[i];
       }
       for (int l = 0; l < across_support; ++l) {
         add_multiple(column.data(), across_basis[l], size, &matrix(row, across.index(first + l, slot)));

@@ -20,8 +20,8 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
 /// the layout and covariance of the result; m or rad.
 double mean_uncertainty(const Campaign& campaign, const FitResult& result, const std::string& name);
 
-/// Gives the rank report's errors the uncertainty and resolution of the result, from its layout, covariance and
-/// functions, in place of the rank analysis' wide priors.
+/// Gives the rank report's errors the uncertainty and resolution of the result, from its layout, covariance
+/// and functions, in place of the rank analysis' wide priors.
 void complete_observability(const Campaign& campaign, FitResult& result);
 
 /// `spec` with explicit knots and the values of `parameters`; can be loaded again.

@@ -124,7 +124,7 @@ Eigen::Vector3d Compensation::error_of_type(const AxisPosition& position,
   if (type_.is_volumetric()) return error;
   for (const Line& line : axes_) {
     const double q = position[index_of(line.axis)];
-    const int approach = direction[index_of(line.axis)];
+    const std::int8_t approach = direction[index_of(line.axis)];
     if (type_.has(CompensationPart::Angular)) error -= on_line(line, q, approach) - line.at_home;
     error += error_along(line, q, approach);
   }

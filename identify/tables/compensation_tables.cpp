@@ -32,7 +32,7 @@ double interpolated(const std::vector<double>& values, const Piece& piece) {
 double AxisTable::value(const AxisPosition& at, const ApproachDirection& direction) const {
   Piece piece = piece_of(position, at[index_of(input)]);
   if (beyond == BeyondEnds::Hold) piece.share = std::clamp(piece.share, 0.0, 1.0);
-  const int approach = direction[index_of(input)];
+  const std::int8_t approach = direction[index_of(input)];
   if (approach > 0) return interpolated(forward, piece);
   if (approach < 0) return interpolated(backward, piece);
   return 0.5 * (interpolated(forward, piece) + interpolated(backward, piece));

@@ -29,7 +29,7 @@ constexpr std::array<std::string_view, 10> kNotLinear = {"FOR",   "L-VOL+", "L-S
                                                          "R-POR", "R-ANG",  "R-VOL",  "R-VOL+", "R-SPEC"};
 
 CompensationType one_type(const std::string& name) {
-  const auto found = std::ranges::find(kTypes, name, &CompensationTypeInfo::name);
+  const auto* const found = std::ranges::find(kTypes, name, &CompensationTypeInfo::name);
   if (found != kTypes.end()) return found->type;
   std::string names;
   for (const CompensationTypeInfo& info : kTypes)

@@ -27,6 +27,7 @@ inline constexpr std::array<CompensationPart, 4> kCompensationParts = {
 class CompensationType {
  public:
   constexpr CompensationType() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): a part alone is a type
   constexpr CompensationType(CompensationPart part) : bits_(bit(part)) {}
   static constexpr CompensationType volumetric() { return CompensationType(kAllParts | kFrame); }
 

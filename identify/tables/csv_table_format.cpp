@@ -87,9 +87,10 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   };
   const Eigen::Vector3d at_home = error(home_of(metadata.machine), kTowardsPlus);
   CompensationTables result;
-  result.terms.push_back([error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(at_home - error(position, direction));
-  });
+  result.terms.emplace_back(
+      [error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
+        return Eigen::Vector3d(at_home - error(position, direction));
+      });
   return result;
 }
 

@@ -13,7 +13,7 @@ SkewFactors skew_factors(const FitResult& result, const TableFormatOptions& opti
 
 CompensationTables skew_tables(const SkewFactors& factors) {
   CompensationTables tables;
-  tables.terms.push_back([factors](const AxisPosition& at, const ApproachDirection& /*direction*/) {
+  tables.terms.emplace_back([factors](const AxisPosition& at, const ApproachDirection& /*direction*/) {
     const double y = at[index_of(AxisName::Y)], z = at[index_of(AxisName::Z)];
     return Eigen::Vector3d(-y * factors.xy - z * (factors.xz - factors.xy * factors.yz), -z * factors.yz,
                            0.0);

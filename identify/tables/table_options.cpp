@@ -126,7 +126,7 @@ const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
 }
 
 ErrorField errors_to_correct(const FitResult& result, const TableFormatOptions& options) {
-  const ErrorField identified = identified_error_field(result, tool_of(result.machine, options).offset);
+  ErrorField identified = identified_error_field(result, tool_of(result.machine, options).offset);
   if (!options.active) return identified;
   return [identified, active = *options.active](const AxisPosition& position,
                                                 const ApproachDirection& direction) {

@@ -159,7 +159,7 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
     }
     if (best.reached) break;
   }
-  if (best.step == 0.0 && refused) throw *refused;
+  if (best.step == 0.0 && refused) throw InputError(*refused);
   return best;
 }
 

@@ -40,7 +40,8 @@ void LinearizationLanes::resize(int channels, int state_size, int nuisance_size)
   channels_ = channels;
   state_size_ = state_size;
   nuisance_size_ = nuisance_size;
-  lanes_.resize(static_cast<std::size_t>(channels * (1 + state_size + nuisance_size)));
+  const int lanes = channels * (1 + state_size + nuisance_size);
+  lanes_.resize(static_cast<std::size_t>(lanes));
 }
 
 double BoundSetup::noise_constant(const Options& noise, int /*channel*/) const {

@@ -68,17 +68,19 @@ class LinearizationLanes {
   int channels() const { return channels_; }
   int state_size() const { return state_size_; }
   int nuisance_size() const { return nuisance_size_; }
-  Lanes& predicted(int channel) { return at(channel); }
-  const Lanes& predicted(int channel) const { return at(channel); }
+  Lanes& predicted(int channel) { return *from(channel); }
+  const Lanes& predicted(int channel) const { return *from(channel); }
   /// The derivatives of a channel to the state stand one after another, and so do those to the nuisance.
-  Lanes* d_state(int channel) { return &at(channels_ + channel * state_size_); }
-  const Lanes* d_state(int channel) const { return &at(channels_ + channel * state_size_); }
-  Lanes* d_nuisance(int channel) { return d_state(channels_) + channel * nuisance_size_; }
-  const Lanes* d_nuisance(int channel) const { return d_state(channels_) + channel * nuisance_size_; }
+  Lanes* d_state(int channel) { return from(channels_ + channel * state_size_); }
+  const Lanes* d_state(int channel) const { return from(channels_ + channel * state_size_); }
+  Lanes* d_nuisance(int channel) { return from(channels_ * (1 + state_size_) + channel * nuisance_size_); }
+  const Lanes* d_nuisance(int channel) const {
+    return from(channels_ * (1 + state_size_) + channel * nuisance_size_);
+  }
 
  private:
-  Lanes& at(int index) { return lanes_.data()[index]; }
-  const Lanes& at(int index) const { return lanes_.data()[index]; }
+  Lanes* from(int index) { return lanes_.data() + index; }
+  const Lanes* from(int index) const { return lanes_.data() + index; }
 
   int channels_ = 0;
   int state_size_ = 0;

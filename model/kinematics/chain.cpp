@@ -81,22 +81,27 @@ Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& to
   return point;
 }
 
+void KinematicChain::levers_and_rotations(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w,
+                                          Lanes* arm_s, Lanes* rotation_ws) const {
+  std::vector<JointLever> of_reading(joints_.size());
+  for (int i = 0; i < kLanes; ++i) {
+    AxisPosition at{};
+    for (const ChainJoint& joint : joints_) at[index_of(joint.axis)] = position[index_of(joint.axis)][i];
+    const Vector3d point = levers(at, tool_offset, of_reading.data());
+    for (int k = 0; k < 3; ++k) point_w[k][i] = point[k];
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+      const JointLever& lever = of_reading[joint];
+      for (int k = 0; k < 3; ++k) arm_s[3 * joint + static_cast<std::size_t>(k)][i] = lever.arm_s[k];
+      for (int k = 0; k < 9; ++k)
+        rotation_ws[9 * joint + static_cast<std::size_t>(k)][i] = lever.rotation_ws(k / 3, k % 3);
+    }
+  }
+}
+
 void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w, Lanes* arm_s,
                             Lanes* rotation_ws) const {
   if (rotation_ws != nullptr) {
-    std::vector<JointLever> of_reading(joints_.size());
-    for (int i = 0; i < kLanes; ++i) {
-      AxisPosition at{};
-      for (const ChainJoint& joint : joints_) at[index_of(joint.axis)] = position[index_of(joint.axis)][i];
-      const Vector3d point = levers(at, tool_offset, of_reading.data());
-      for (int k = 0; k < 3; ++k) point_w[k][i] = point[k];
-      for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-        const JointLever& lever = of_reading[joint];
-        for (int k = 0; k < 3; ++k) arm_s[3 * joint + static_cast<std::size_t>(k)][i] = lever.arm_s[k];
-        for (int k = 0; k < 9; ++k)
-          rotation_ws[9 * joint + static_cast<std::size_t>(k)][i] = lever.rotation_ws(k / 3, k % 3);
-      }
-    }
+    levers_and_rotations(position, tool_offset, point_w, arm_s, rotation_ws);
     return;
   }
   for (int k = 0; k < 3; ++k) point_w[k].fill(tool_offset[k]);

@@ -50,7 +50,7 @@ VOLCAL_VECTOR_LOOPS void add_cross(const Lanes* __restrict a, const Lanes* __res
 
 VOLCAL_VECTOR_LOOPS void rotate(const Lanes* __restrict rotation, const Lanes* __restrict v, bool transposed,
                                 Lanes* __restrict to) {
-  const int down = transposed ? 1 : 3, across = transposed ? 3 : 1;
+  const std::ptrdiff_t down = transposed ? 1 : 3, across = transposed ? 3 : 1;
   for (int row = 0; row < 3; ++row) {
     const Lanes* const r = rotation + down * row;
     for (int i = 0; i < kLanes; ++i) {

@@ -18,6 +18,10 @@ void take_rows(const double* first, std::ptrdiff_t stride, int size, Lanes& lane
   std::fill(lanes.value + size, lanes.value + kLanes, lanes[size - 1]);
 }
 
+std::size_t motion_index(int of_state_or_disturbance) {
+  return static_cast<std::size_t>(of_state_or_disturbance);
+}
+
 bool all_equal(const std::uint32_t* numbers, int count) {
   return std::all_of(numbers, numbers + count, [&](std::uint32_t number) { return number == *numbers; });
 }
@@ -229,7 +233,7 @@ void BlockModel::add_terms(const ReadingBlock& block, const Eigen::VectorXd& par
                            BlockLevers& levers) const {
   const CampaignBinding& binding = model_.binding();
   const auto motion = [&](const MotionTerm& term) -> Lanes& {
-    return levers.motion[static_cast<std::size_t>(6 * term.joint + term.component)];
+    return levers.motion[motion_index(6 * term.joint + term.component)];
   };
   for (const ExpansionBinding& expansion : binding.setups[block.setup].expansions) {
     add_warmed(expansion, block, levers.position[index_of(expansion.axis)], expansion.per_kelvin,
@@ -273,7 +277,7 @@ void BlockModel::move_tool(const ReadingBlock& block, const Eigen::VectorXd& par
     }
   }
   for (int k = 0; k < 3 && !binding.effects.empty(); ++k)
-    add_scaled(levers.motion[static_cast<std::size_t>(kStationDisturbance + k)], -1.0, tool.point_w[k]);
+    add_scaled(levers.motion[motion_index(kStationDisturbance + k)], -1.0, tool.point_w[k]);
   if (binding.effect_moves_tool) move_offset(levers, &levers.motion[kToolDisturbance]);
   if (binding.effect_tilts_floor) tilt_floor(levers, out);
   const int tool_error = binding.setups[block.setup].tool_error;
@@ -337,7 +341,7 @@ void BlockModel::linearize(const ReadingBlock& block, const Eigen::VectorXd& par
   out.reading.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, local_size);
   bound.linearize_lanes(block.first_row, block.size, levers.tool, nuisance, out.reading);
   for (int channel = 0; channel < bound.channels() && has_effects; ++channel) {
-    add_scaled(levers.motion[static_cast<std::size_t>(kReadingDisturbance + channel)], 1.0,
+    add_scaled(levers.motion[motion_index(kReadingDisturbance + channel)], 1.0,
                out.reading.predicted(channel));
   }
 }
@@ -397,7 +401,7 @@ void BlockModel::add_work(const ReadingBlock& block, const BlockLinearization& l
   for (int channel = 0; channel < reading.channels(); ++channel) {
     for (int k = 0; k < reading.state_size(); ++k)
       add_product(error[channel], reading.d_state(channel)[k], load[k]);
-    levers.motion[static_cast<std::size_t>(kReadingDisturbance + channel)] = error[channel];
+    levers.motion[motion_index(kReadingDisturbance + channel)] = error[channel];
   }
   find_work(linearized, load, reading.state_size() == kStateSize ? load + 3 : nullptr, levers);
   gather(block, levers, sums);
@@ -408,7 +412,7 @@ void BlockModel::add_work(const ReadingBlock& block, const BlockLinearization& l
                   });
   const int* own = own_[block.own].data();
   for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    others[*own++] += sum(levers.motion[static_cast<std::size_t>(kToolDisturbance + k)]);
+    others[*own++] += sum(levers.motion[motion_index(kToolDisturbance + k)]);
   for (int k = 0; k < reading.nuisance_size(); ++k) {
     for (int channel = 0; channel < reading.channels(); ++channel)
       others[own[k]] += dot(error[channel], reading.d_nuisance(channel)[k]);
@@ -443,7 +447,7 @@ void BlockModel::make_rows(const ReadingBlock& block, const BlockLinearization& 
   for (int k = 0; k < reading.state_size(); ++k) add_product(scale, reading.d_state(channel)[k], load[k]);
   find_work(linearized, load, reading.state_size() == kStateSize ? load + 3 : nullptr, levers);
   set_zero(&levers.motion[kReadingDisturbance], reading.channels());
-  levers.motion[static_cast<std::size_t>(kReadingDisturbance + channel)] = scale;
+  levers.motion[motion_index(kReadingDisturbance + channel)] = scale;
   const std::ptrdiff_t width = row_width();
   std::fill_n(rows, width * block.size, 0.0);
   const auto add_column = [&](std::ptrdiff_t column, const Lanes& lanes) {
@@ -462,7 +466,7 @@ void BlockModel::make_rows(const ReadingBlock& block, const BlockLinearization& 
                   });
   std::ptrdiff_t own = segment_begin_[group_count() + 1];
   for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    add_column(own++, levers.motion[static_cast<std::size_t>(kToolDisturbance + k)]);
+    add_column(own++, levers.motion[motion_index(kToolDisturbance + k)]);
   for (int k = 0; k < reading.nuisance_size(); ++k) {
     Lanes product = {};
     add_product(scale, reading.d_nuisance(channel)[k], product);

@@ -145,7 +145,7 @@ class CompensatedMachine {
       state.position = point.position;
       state.direction = point.direction;
       places.push_back(machine.nominal_point(state, tool));
-      errors.push_back(machine.point(state, tool) - places.back());
+      errors.emplace_back(machine.point(state, tool) - places.back());
     }
     return sim::rms_after_alignment(places, errors);
   }

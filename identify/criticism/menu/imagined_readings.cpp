@@ -72,11 +72,12 @@ std::vector<std::size_t> spread_rows(const Setup& setup, std::size_t count) {
       std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(static_cast<double>(count) / per_line)));
   if (wanted == 1) {  // one long line: points of it
     const std::vector<std::size_t>& rows = lines.begin()->second;
-    std::vector<std::size_t> out;
-    for (const std::size_t i : spread(rows.size(), count)) out.push_back(rows[i]);
+    std::vector<std::size_t> out = spread(rows.size(), count);
+    for (std::size_t& i : out) i = rows[i];
     return out;
   }
   std::vector<const std::vector<std::size_t>*> order;
+  order.reserve(lines.size());
   for (const auto& [id, rows] : lines) order.push_back(&rows);
   std::vector<std::size_t> out;
   for (const std::size_t i : spread(order.size(), wanted)) {

@@ -66,12 +66,16 @@ class OutputDescriptor {
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, std::uint64_t fingerprint, const std::string& state) {
+std::string checkpoint_bytes(std::uint64_t fingerprint, const std::string& state) {
   std::string bytes(kCheckpointHead);
   bytes += word_bytes(fingerprint) + state;
   bytes += word_bytes(checksum(bytes));
+  return bytes;
+}
+
+void write_checkpoint(const std::string& path, std::uint64_t fingerprint, const std::string& state) {
   const std::string temporary = path + ".part";
-  if (!OutputDescriptor(temporary).write(bytes)) fail_to_write(path);
+  if (!OutputDescriptor(temporary).write(checkpoint_bytes(fingerprint, state))) fail_to_write(path);
   std::error_code failure;
   std::filesystem::rename(temporary, path, failure);
   if (failure) fail_to_write(path);
@@ -82,30 +86,33 @@ bool has_checkpoint(const std::string& path) {
   return std::filesystem::exists(path, error);
 }
 
+std::string checkpoint_state(std::string_view bytes, const std::string& file, std::uint64_t fingerprint) {
+  if (!bytes.starts_with(kCheckpointHead)) {
+    throw InputError({file, 0}, "the file is no checkpoint of volcal montecarlo",
+                     "move it away, and leave --resume out to begin anew");
+  }
+  const std::size_t head = kCheckpointHead.size();
+  if (bytes.size() < head + 2 * kWord ||
+      word_at(bytes, bytes.size() - kWord) != checksum(bytes.substr(0, bytes.size() - kWord))) {
+    throw InputError({file, 0}, "the checkpoint is cut off or was changed",
+                     "delete it, and leave --resume out to begin anew");
+  }
+  if (word_at(bytes, head) != fingerprint) {
+    throw InputError({file, 0},
+                     "the checkpoint belongs to another study: campaign, model, seed, path or sources differ",
+                     "give the options of the run that was interrupted, or delete the file to begin anew");
+  }
+  return std::string(bytes.substr(head + kWord, bytes.size() - head - 2 * kWord));
+}
+
 std::string read_checkpoint(const std::string& path, std::uint64_t fingerprint) {
   if (!has_checkpoint(path)) {
     throw InputError({path, 0}, "there is no checkpoint to resume from",
                      "give the -o of the run that was interrupted, or leave --resume out to begin anew");
   }
   std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!bytes.starts_with(kCheckpointHead)) {
-    throw InputError({path, 0}, "the file is no checkpoint of volcal montecarlo",
-                     "move it away, and leave --resume out to begin anew");
-  }
-  const std::size_t head = kCheckpointHead.size();
-  if (bytes.size() < head + 2 * kWord ||
-      word_at(bytes, bytes.size() - kWord) !=
-          checksum(std::string_view(bytes).substr(0, bytes.size() - kWord))) {
-    throw InputError({path, 0}, "the checkpoint is cut off or was changed",
-                     "delete it, and leave --resume out to begin anew");
-  }
-  if (word_at(bytes, head) != fingerprint) {
-    throw InputError({path, 0},
-                     "the checkpoint belongs to another study: campaign, model, seed, path or sources differ",
-                     "give the options of the run that was interrupted, or delete the file to begin anew");
-  }
-  return bytes.substr(head + kWord, bytes.size() - head - 2 * kWord);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return checkpoint_state(bytes, path, fingerprint);
 }
 
 void remove_checkpoint(const std::string& path) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace volcal {
 
@@ -16,6 +17,11 @@ bool has_checkpoint(const std::string& path);
 
 /// The state. Throws InputError: no such file, another kind of file, cut off or changed, another study's.
 std::string read_checkpoint(const std::string& path, std::uint64_t fingerprint);
+
+/// The bytes of such a file.
+std::string checkpoint_bytes(std::uint64_t fingerprint, const std::string& state);
+/// The state in these bytes; `file` names them in errors. Throws InputError.
+std::string checkpoint_state(std::string_view bytes, const std::string& file, std::uint64_t fingerprint);
 
 void remove_checkpoint(const std::string& path);
 

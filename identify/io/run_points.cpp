@@ -41,8 +41,9 @@ std::vector<PointColumn> point_columns(const CsvTable& table) {
     const std::string direction = std::string("dir_") + lower_letter_of(axis);
     if (const auto index = table.find(direction)) {
       columns.push_back({*index, direction, [k](sim::CommandedPoint& point, double value) {
+                           if (value != -1.0 && value != 0.0 && value != 1.0) return false;
                            point.direction[k] = static_cast<std::int8_t>(value);
-                           return value == -1.0 || value == 0.0 || value == 1.0;
+                           return true;
                          }});
     }
   }
@@ -59,24 +60,32 @@ std::vector<PointColumn> point_columns(const CsvTable& table) {
   return columns;
 }
 
-}  // namespace
-
-std::vector<sim::CommandedPoint> read_run_points(const std::string& path, const SourcePlace& named_at) {
-  const CsvTable table = CsvTable::read(path, {}, named_at);
+std::vector<sim::CommandedPoint> run_points_of(const CsvTable& table) {
   const std::vector<PointColumn> columns = point_columns(table);
   std::vector<std::size_t> indices;
+  indices.reserve(columns.size());
   for (const PointColumn& column : columns) indices.push_back(column.index);
   const CsvColumns numbers = table.numbers(indices);
   std::vector<sim::CommandedPoint> points(numbers.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (columns[c].store(points[row], numbers.values[c][row])) continue;
-      throw InputError({path, static_cast<int>(numbers.source_line[row])},
+      throw InputError({table.file(), static_cast<int>(numbers.source_line[row])},
                        "column " + columns[c].name + " holds a value that no position, direction or line has",
                        "positions in mm and deg, directions -1, 0 or 1, lines and runs whole numbers");
     }
   }
   return points;
+}
+
+}  // namespace
+
+std::vector<sim::CommandedPoint> read_run_points(const std::string& path, const SourcePlace& named_at) {
+  return run_points_of(CsvTable::read(path, {}, named_at));
+}
+
+std::vector<sim::CommandedPoint> parse_run_points(const std::string& text, const std::string& file) {
+  return run_points_of(CsvTable::parse(text, file, {}));
 }
 
 }  // namespace volcal

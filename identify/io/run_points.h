@@ -13,5 +13,7 @@ namespace volcal {
 
 /// Throws InputError with file, line, problem and remedy. `named_at`: what names the file.
 std::vector<sim::CommandedPoint> read_run_points(const std::string& path, const SourcePlace& named_at);
+/// The same from text; `file` names it in errors.
+std::vector<sim::CommandedPoint> parse_run_points(const std::string& text, const std::string& file);
 
 }  // namespace volcal

@@ -149,6 +149,10 @@ TEST_F(CriticismStudyFolder, RefusesCampaignsOfAnotherRun) {
   const auto seed = study("-n 1 --resume --seed 2 -o " + output_);
   EXPECT_EQ(seed.exit_code, 2);
   EXPECT_THAT(seed.errors, HasSubstr("--seed 1"));
+  std::ofstream(file_, std::ios::app) << "{\"row\": 1}\n";
+  const auto damaged = study("-n 1 --resume -o " + output_);
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_THAT(damaged.errors, HasSubstr("campaigns.jsonl:6"));
   const auto row = run_program("study criticism --rows gremlins");
   EXPECT_EQ(row.exit_code, 2);
   EXPECT_THAT(row.errors, HasSubstr("gremlins"));

@@ -3,11 +3,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/hand_made_diagnosis.h"
 #include "tests/support/program_harness.h"
 #include "tests/support/reader_harness.h"
 #include "tests/support/table_samples.h"
+#include "volcal/identify/cli/studies/criticism_record.h"
 #include "volcal/identify/solve/result.h"
 
 namespace {
@@ -16,6 +19,44 @@ void write(const std::filesystem::path& folder, const std::string& fuzzer, const
            const std::string& content) {
   std::filesystem::create_directories(folder / fuzzer);
   std::ofstream(folder / fuzzer / name, std::ios::binary) << content;
+}
+
+/// What a checkpoint of a study of two quantities holds after three draws.
+std::string sample_state() {
+  volcal::StudySums sums(2);
+  Eigen::ArrayXXd t(3, 2);
+  t << 0.5, -1.0, 0.0, 2.0, -0.25, 9.0;
+  volcal::Histograms counts(2);
+  counts.add(t);
+  sums.add(volcal::Moments::of(t), counts);
+  volcal::StateWriter writer;
+  sums.visit_state(writer);
+  return writer.take();
+}
+
+volcal::cli::CampaignRecord sample_record() {
+  volcal::cli::HiddenRecord hidden;
+  hidden.text = "reversal";
+  hidden.drivers = {"dir_x"};
+  volcal::cli::AnswerRecord answer;
+  answer.name = "reversal:EXX:dir_x:step";
+  answer.amplitudes = {{1.0, 0.1, 0.2, 1.1}};
+  volcal::cli::CampaignRecord record;
+  record.row = "listed";
+  record.hidden = {hidden};
+  record.named = {answer};
+  record.sets = {{answer}};
+  record.unknown = {{{"x", "time"}, "Z", -6.5}};
+  record.noise_terms = {"white"};
+  return record;
+}
+
+std::string sample_grid() {
+  volcal::VolumetricError point;
+  point.tool = "long";
+  point.value << 1e-6, 2e-6, -3e-6, 4e-6, 5e-6, 6e-6;
+  point.u.setConstant(1e-7);
+  return volcal::spatial_grid_csv({point}, volcal::testing::harness_machine(), volcal::TableContent::Errors);
 }
 
 }  // namespace
@@ -34,6 +75,17 @@ int main(int count, char** arguments) {
   result.machine = harness_machine();
   result.identified = volcal::parse_model(sample_model(), "model.toml", result.machine);
   write(folder, "result", "sample", volcal::result_json(result));
+  write(folder, "study", "sample", sample_study());
+  write(folder, "diagnosis", "sample", volcal::diagnosis_json(hand_made_diagnosis()));
+  write(folder, "points", "sample", sample_points());
+  const std::string state = sample_state();
+  write(folder, "checkpoint", "state", state);
+  write(folder, "checkpoint", "file", volcal::checkpoint_bytes(7, state));
+  write(folder, "archive", "sample", nlohmann::json(sample_record()).dump());
+  const auto tables = volcal::result_tables(small_result(), {});
+  write(folder, "errors", "functions", std::string(1, '\0') + tables[0].content);
+  write(folder, "errors", "grid", "\1" + sample_grid());
+  write(folder, "errors", "metadata", "\2" + volcal::table_metadata_csv(small_result(), {}));
   const auto all = volcal::instruments();
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (const auto& columns : all[i]->schema().column_sets) {

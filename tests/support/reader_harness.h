@@ -3,18 +3,28 @@
 /// test.
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "tests/support/schema_samples.h"
 #include "volcal/identify/io/campaign_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/checkpoint_file.h"
 #include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/io/csv_table.h"
+#include "volcal/identify/io/diagnosis_json.h"
 #include "volcal/identify/io/machine_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/io/result_json.h"
+#include "volcal/identify/io/run_points.h"
+#include "volcal/identify/io/study_reader.h"
+#include "volcal/identify/montecarlo/draw_sums.h"
+#include "volcal/identify/montecarlo/state_bytes.h"
+#include "volcal/identify/tables/csv_tables.h"
 #include "volcal/identify/tables/table_format.h"
 #include "volcal/model/description/errors.h"
 
@@ -95,6 +105,64 @@ inline bool accepts_tables(const std::string& text, std::size_t format_index) {
       state.direction = approach;
       if (!control(state).allFinite())
         throw std::logic_error("the simulated control adds what is not finite");
+    }
+  });
+}
+
+inline bool accepts_study(const std::string& text) {
+  return accepts([&] { parse_study(text, "study.toml", harness_machine()); });
+}
+
+inline bool accepts_diagnosis(const std::string& text) {
+  return accepts([&] { diagnosis_from_json(text, "diagnosis.json"); });
+}
+
+/// What is read must be positions that a machine can be sent to.
+inline bool accepts_points(const std::string& text) {
+  return accepts([&] {
+    for (const sim::CommandedPoint& point : parse_run_points(text, "points.csv")) {
+      for (const double position : point.position) {
+        if (!std::isfinite(position)) throw std::logic_error("a position is not finite");
+      }
+    }
+  });
+}
+
+/// What an intact checkpoint holds, of a study of two quantities.
+inline bool accepts_state(const std::string& state) {
+  try {
+    StateReader reader(state);
+    StudySums(2).visit_state(reader);
+    return reader.at_end();
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
+/// The bytes as a file, and as the state in an intact one.
+inline bool accepts_checkpoint(const std::string& bytes) {
+  constexpr std::uint64_t kFingerprint = 7;
+  const std::string file = checkpoint_bytes(kFingerprint, bytes);
+  if (checkpoint_state(file, "checkpoint", kFingerprint) != bytes)
+    throw std::logic_error("the state is not what was written");
+  accepts_state(bytes);
+  return accepts([&] { accepts_state(checkpoint_state(bytes, "checkpoint", kFingerprint)); });
+}
+
+/// error_tables.csv, volumetric_grid.csv or metadata.csv.
+inline bool accepts_error_tables(const std::string& text, unsigned choice) {
+  return accepts([&] {
+    const auto content = (choice & 4U) != 0 ? TableContent::Compensations : TableContent::Errors;
+    const TableFile file{"table.csv", text};
+    switch (choice % 4U) {
+      case 0:
+        read_function_table(file, content);
+        return;
+      case 1:
+        read_spatial_grid(file, harness_machine(), content);
+        return;
+      default:
+        read_table_metadata(file);
     }
   });
 }

@@ -14,6 +14,7 @@
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/instruments/registry.h"
+#include "volcal/sim/hidden_effects.h"
 
 namespace volcal::testing {
 
@@ -57,6 +58,40 @@ inline std::string sample_campaign() {
       "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n[noise]\nrepeatability_um = 0.5\n";
   for (const Instrument* instrument : instruments()) text += sample_setup(instrument->schema());
   return text;
+}
+
+/// Every section of a study, one hidden effect per kind with every key.
+inline std::string sample_study() {
+  std::string text =
+      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = 7\npause_s = 60\n"
+      "[truth]\nkind = \"random\"\nvolumetric_rms_um = [15.5, 21.5]\nwave_scale = 0.5\n"
+      "[truth.locations_urad]\nEC0Y = 12.5\n[truth.reversals_um]\nEXX = 3\n[truth.expansions.X]\n"
+      "expansion_um_per_m_K = 10\ntemperature = \"X\"\n"
+      "[[temperatures]]\nchannel = \"X\"\nstart_degC = 20.5\ndrift_K_per_hour = 0.1\nperiod_s = 600\n"
+      "[compensation]\nleast_increment_um = 1\nwrong_tool_length_mm = 0.05\n"
+      "[validation]\npoints = 40\ntools = [\"long\"]\n";
+  for (const char* instrument : {"laser-tracer", "laser-tracker"}) {
+    text += std::string("[[measurements]]\nkind = \"") + instrument +
+            "\"\ngrid = [3, 4, 5]\njitter = 0.25\nnoise = { constant_um = 0.5, wander_um = 0.5 }\n"
+            "[[measurements.stations]]\nname = \"P1\"\nposition_mm = [-350, -300, -250]\n"
+            "[[measurements.runs]]\nstation = \"P1\"\ntool = \"long\"\n";
+  }
+  text +=
+      "[[measurements]]\nkind = \"ball-bar-circles\"\nplanes = [\"XY\"]\nradius_mm = 100\n"
+      "[[measurements]]\nkind = \"axis-lines\"\naxes = [\"X\"]\npoints = 11\n";
+  for (const char* kind : {"diagonals", "straightness-lines", "squares", "angle-lines", "point-grid"})
+    text += std::string("[[measurements]]\nkind = \"") + kind + "\"\nreading_s = 2\n";
+  for (const sim::HiddenKind& kind : sim::hidden_kinds()) {
+    text += "[[hidden]]\nkind = \"" + kind.kind + "\"\nrms_um = 0.5\n";
+    for (const KeySchema& key : kind.keys)
+      text += key.key + " = " + sample_value(key, key.key == "symbol") + "\n";
+  }
+  return text;
+}
+
+inline std::string sample_points() {
+  return "x_mm,y_mm,z_mm,c_deg,dir_x,line,run\n0,0,0,0,1,0,0\n250.5,-1e2,3,90,0,1,0\n500,400,-300,360,-1,1,"
+         "2\n";
 }
 
 /// Readings of one column set of an instrument; positions run along the body diagonal.

@@ -64,10 +64,10 @@ class Archive {
   void read() {
     std::ifstream file(path_);
     std::string line, complete;
-    while (std::getline(file, line) && !file.eof()) {
-      const auto json = nlohmann::json::parse(line, nullptr, false);
-      if (json.is_discarded()) continue;
-      add(json.get<CampaignRecord>());
+    for (int number = 1; std::getline(file, line) && !file.eof(); ++number) {
+      const auto record = record_of_line(line, {path_.string(), number});
+      if (!record) continue;
+      add(*record);
       complete += line + '\n';
     }
     file.close();

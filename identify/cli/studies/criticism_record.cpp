@@ -27,4 +27,15 @@ void from_json(const nlohmann::json& json, CampaignRecord& record) {
   record = fields;
 }
 
+std::optional<CampaignRecord> record_of_line(const std::string& line, const SourcePlace& place) {
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  try {
+    return json.get<CampaignRecord>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(place, "the line is no campaign of this study",
+                     "choose another folder, or delete the file to begin anew");
+  }
+}
+
 }  // namespace volcal::cli

@@ -8,6 +8,7 @@
 #include <random>
 #include <string>
 
+#include "tests/support/hand_made_diagnosis.h"
 #include "tests/support/reader_harness.h"
 #include "tests/support/table_samples.h"
 #include "volcal/identify/solve/result.h"
@@ -148,6 +149,23 @@ TEST(Mutation, Campaign) {
   const int accepted = try_mutants(testing::sample_campaign(), 3000, testing::accepts_campaign);
   EXPECT_GT(accepted, 30);
   EXPECT_LT(accepted, 2000);
+}
+
+TEST(Mutation, Study) {
+  const int accepted = try_mutants(testing::sample_study(), 3000, testing::accepts_study);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(accepted, 2000);
+}
+
+TEST(Mutation, PositionsOfARun) {
+  const int accepted = try_mutants(testing::sample_points(), 3000, testing::accepts_points);
+  EXPECT_GT(accepted, 30);
+  EXPECT_LT(accepted, 2500);
+}
+
+TEST(Mutation, Diagnosis) {
+  const std::string good = diagnosis_json(testing::hand_made_diagnosis());
+  EXPECT_GT(try_mutants(good, 3000, testing::accepts_diagnosis), 30);
 }
 
 TEST(Mutation, ReadingsOfEveryInstrument) {

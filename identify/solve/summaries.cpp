@@ -44,7 +44,7 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
     const int offset = result.layout.find_block(name)->offset;
     return std::sqrt(result.covariance(offset, offset));
   }
-  constexpr int kPositions = 33;
+  constexpr int kPlaces = 33;
   const auto place = *result.layout.find(*symbol);
   const FunctionGroup& group = result.layout.groups[static_cast<std::size_t>(place.group)];
   const MeasuredRange range = measured_range(campaign, symbol->axis);
@@ -53,12 +53,12 @@ double mean_uncertainty(const Campaign& campaign, const FitResult& result, const
   for (int j = 0; j < group.basis->size(); ++j) raw.push_back(group.index(j, place.slot));
   const Eigen::MatrixXd covariance = result.covariance(raw, raw);
   double sum = 0.0;
-  for (int i = 0; i < kPositions; ++i) {
+  for (int i = 0; i < kPlaces; ++i) {
     const Eigen::VectorXd row =
-        group.basis->row(range.min + (range.max - range.min) * static_cast<double>(i) / (kPositions - 1));
+        group.basis->row(range.min + (range.max - range.min) * static_cast<double>(i) / (kPlaces - 1));
     sum += row.dot(covariance * row);
   }
-  return std::sqrt(sum / kPositions);
+  return std::sqrt(sum / kPlaces);
 }
 
 void complete_observability(const Campaign& campaign, FitResult& result) {

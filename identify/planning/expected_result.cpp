@@ -15,7 +15,7 @@
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/tables/error_grid.h"
 
 namespace volcal {
 namespace {
@@ -132,10 +132,10 @@ VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std:
                                              int per_axis) {
   VolumetricUncertainty out;
   double count = 0.0;
-  for (const AxisPosition& position : grid_positions(result.machine, per_axis)) {
-    for (const Tool& tool : tools) {
-      const Eigen::MatrixXd rows = volumetric_error_rows(result, position, tool).topRows(3);
-      const double variance = (rows * result.covariance).cwiseProduct(rows).sum();
+  for (const Tool& tool : tools) {
+    const ErrorGrid errors(result, tool, axis_grid(result.machine, per_axis));
+    for (const Covariance3& covariance : errors.displacement_covariances()) {
+      const double variance = covariance.variances().sum();
       out.rms += variance;
       out.largest = std::max(out.largest, variance);
       count += 1.0;

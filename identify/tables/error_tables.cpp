@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "volcal/identify/tables/correction_positions.h"
+#include "volcal/identify/tables/error_grid.h"
 #include "volcal/model/effects/reversal_label.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -82,6 +83,11 @@ const ParameterBlock* find_tool_offset(const FitResult& result, const Tool& tool
   return result.layout.find_block("tool " + tool.name);
 }
 
+/// Per component of the tool's offset, m^2; 0 where it was estimated.
+double stated_variance(const FitResult& result, const Tool& tool) {
+  return find_tool_offset(result, tool) == nullptr ? tool.offset_sigma * tool.offset_sigma : 0.0;
+}
+
 bool outside(const FunctionSummary* summary, double q) {
   return summary != nullptr &&
          (q < summary->measured_min - kEdgeOfMeasured || q > summary->measured_max + kEdgeOfMeasured);
@@ -157,9 +163,7 @@ VolumetricError volumetric_error(const FitResult& result, const AxisPosition& po
   const auto rows = volumetric_error_rows(result, position, tool);
   error.value = rows * result.parameters;
   Eigen::Matrix<double, 6, 6> covariance = rows * result.covariance * rows.transpose();
-  if (find_tool_offset(result, tool) == nullptr && tool.offset_sigma > 0.0) {
-    covariance.topLeftCorner<3, 3>().diagonal().array() += tool.offset_sigma * tool.offset_sigma;
-  }
+  covariance.topLeftCorner<3, 3>().diagonal().array() += stated_variance(result, tool);
   error.u = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   error.extrapolated = is_extrapolated(result, position);
   return error;
@@ -172,28 +176,29 @@ bool is_extrapolated(const FitResult& result, const AxisPosition& position) {
 }
 
 std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis) {
-  std::vector<AxisPosition> positions = {AxisPosition{}};
-  for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) continue;
-    std::vector<AxisPosition> extended;
-    for (const AxisPosition& position : positions) {
-      for (int i = 0; i < per_axis; ++i) {
-        AxisPosition next = position;
-        const double share = per_axis > 1 ? static_cast<double>(i) / (per_axis - 1) : 0.5;
-        next[index_of(axis.name)] = axis.travel_min + share * axis.travel();
-        extended.push_back(next);
-      }
-    }
-    positions = std::move(extended);
-  }
-  return positions;
+  return axis_grid(machine, per_axis).positions();
 }
 
 std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
   std::vector<VolumetricError> grid;
-  const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
+  const AxisGrid axes = axis_grid(result.machine, per_axis);
+  const std::vector<AxisPosition> positions = axes.positions();
   for (const Tool& tool : result.machine.tools) {
-    for (const AxisPosition& position : positions) grid.push_back(volumetric_error(result, position, tool));
+    const ErrorGrid errors(result, tool, axes);
+    const auto displacement = sum_planes(errors.displacements());
+    const auto rotation = sum_planes(errors.rotations());
+    const auto covariance = errors.displacement_covariances();
+    const auto rotation_variance = sum_planes(errors.rotation_variances());
+    const double of_tool = stated_variance(result, tool);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      VolumetricError& error = grid.emplace_back();
+      error.position = positions[i];
+      error.tool = tool.name;
+      error.value << displacement[i], rotation[i];
+      error.u << covariance[i].variances() + Eigen::Vector3d::Constant(of_tool), rotation_variance[i];
+      error.u = error.u.cwiseMax(0.0).cwiseSqrt().eval();
+      error.extrapolated = is_extrapolated(result, positions[i]);
+    }
   }
   return grid;
 }

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "volcal/identify/tables/correction_positions.h"
+#include "volcal/identify/tables/plane_tables.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -28,6 +29,21 @@ AxisTable sampled_axis(const Compensation& ideal, AxisName input, AxisName outpu
     table.backward.push_back(value(q, both_directions ? -1 : 0));
   }
   return table;
+}
+
+/// Values at every node. `of_two_axes`: the field has no term of three axes, as corrections of identified
+/// errors; those of tables that were active may have.
+template <class Field>
+std::vector<Eigen::Vector3d> sampled(const std::array<std::vector<double>, 3>& nodes, bool of_two_axes,
+                                     const Field& field) {
+  const auto at_node = [&](std::size_t i, std::size_t j, std::size_t k) {
+    return field(AxisPosition{nodes[0][i], nodes[1][j], nodes[2][k], 0.0, 0.0, 0.0});
+  };
+  if (of_two_axes)
+    return sum_planes(sample_planes({nodes[0].size(), nodes[1].size(), nodes[2].size()}, at_node));
+  std::vector<Eigen::Vector3d> values;
+  for_each_node(nodes, [&](std::size_t, const AxisPosition& position) { values.push_back(field(position)); });
+  return values;
 }
 
 [[noreturn]] void fail_grid(const SourcePlace& place) {
@@ -67,16 +83,18 @@ CorrectionGrid sample_grid(const TableFormat& format, const FitResult& result,
   if (grid.size() > kMostGridPoints)
     throw InputError({}, "the grid would have " + std::to_string(grid.size()) + " points",
                      "give a larger --step; " + std::to_string(kMostGridPoints) + " are written at most");
-  for_each_node(grid.nodes, [&](std::size_t, const AxisPosition& position) {
-    const Eigen::Vector3d mean = ideal.correction(position, {});
-    grid.mean.push_back(mean);
-    if (!format.limits.both_directions) return;
-    for (std::size_t i = 0; i < 3; ++i) {
-      ApproachDirection towards_plus{};
-      towards_plus[i] = 1;
-      grid.half_reversal[i].push_back(ideal.correction(position, towards_plus) - mean);
-    }
-  });
+  const bool of_two_axes = !options.active;
+  grid.mean = sampled(grid.nodes, of_two_axes,
+                      [&](const AxisPosition& position) { return ideal.correction(position, {}); });
+  if (!format.limits.both_directions) return grid;
+  for (std::size_t i = 0; i < 3; ++i) {
+    ApproachDirection towards_plus{};
+    towards_plus[i] = 1;
+    grid.half_reversal[i] =
+        sampled(grid.nodes, of_two_axes, [&](const AxisPosition& position) -> Eigen::Vector3d {
+          return ideal.correction(position, towards_plus) - ideal.correction(position, {});
+        });
+  }
   return grid;
 }
 

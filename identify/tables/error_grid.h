@@ -1,0 +1,80 @@
+#pragma once
+/// Volumetric errors and their covariances on a grid of the linear axes, rotary axes at 0.
+///
+/// With a, b, c the linear axes from the workpiece to the tool and u their directions, the first-order error
+/// (chain.h) is e = F(a, b) + q_c G(a, b) + D_c(q_c),
+///   F = D_a + D_b + q_b e_a x u_b,   G = (e_a + e_b) x u_c,
+/// where D_i, e_i are linear in the parameters of one axis: displacement with the other axes at 0, rotation.
+/// Covariances of two axes' D and e are one block per pair of their nodes; everything on the grid is summed
+/// from these blocks. Equal to volumetric_error() at every node but for rounding, 1e-12 of the largest.
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+#include "volcal/identify/tables/plane_tables.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+/// Positions of the linear axes; always three axes, those that a machine lacks first, with the one node 0.
+struct AxisGrid {
+  std::array<AxisName, 3> axes{};            ///< workpiece to tool
+  std::array<std::vector<double>, 3> nodes;  ///< m
+
+  std::array<std::size_t, 3> counts() const { return {nodes[0].size(), nodes[1].size(), nodes[2].size()}; }
+  /// Of every node, the last axis fastest.
+  std::vector<AxisPosition> positions() const;
+};
+
+/// `per_axis` nodes on each linear axis, ends of the travel included.
+AxisGrid axis_grid(const Machine& machine, int per_axis);
+
+/// Of a displacement, m^2.
+struct Covariance3 {
+  double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
+
+  Eigen::Vector3d variances() const { return {xx, yy, zz}; }
+  Eigen::Matrix3d matrix() const;
+};
+
+/// Errors of one tool: of a tool whose offset was estimated with its fitted error, of another without the
+/// stated variance of its offset. `result` must outlive it.
+class ErrorGrid {
+ public:
+  ErrorGrid(const FitResult& result, const Tool& tool, AxisGrid grid);
+
+  /// ex ey ez, m, and ea eb ec, rad; workpiece coordinates.
+  PlaneTables displacements() const;
+  PlaneTables rotations() const;
+  /// At every node, the last axis fastest.
+  std::vector<Covariance3> displacement_covariances() const;
+  /// Of ea eb ec, rad^2.
+  PlaneTables rotation_variances() const;
+
+ private:
+  /// Derivatives of one axis' errors to the parameters that they depend on. What no linear axis moves (rotary
+  /// axes, a tool's offset) counts to the first axis.
+  struct AxisErrors {
+    std::vector<int> parameters;
+    Eigen::MatrixXd errors;     ///< parameters x 6 nodes: D, e
+    Eigen::MatrixXd rotations;  ///< parameters x 3 nodes: of the tool
+  };
+
+  using Rows = Eigen::MatrixXd AxisErrors::*;
+
+  AxisErrors errors_of(std::size_t axis, const Tool& tool) const;
+  /// Covariance of the parameters of two axes, times the rows of the second.
+  Eigen::MatrixXd weighted(Rows rows, std::size_t i, std::size_t j) const;
+  /// Covariances of the rows of two axes, all nodes with all nodes.
+  Eigen::MatrixXd between(Rows rows, std::size_t i, std::size_t j) const;
+  /// Of the rows of one axis, each node with itself: `count` x `count` side by side.
+  Eigen::MatrixXd at_nodes(Rows rows, std::size_t axis, Eigen::Index count) const;
+
+  const FitResult& result_;
+  AxisGrid grid_;
+  std::array<AxisErrors, 3> axes_;
+};
+
+}  // namespace volcal

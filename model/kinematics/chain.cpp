@@ -13,6 +13,17 @@ double location_sign(const JointLever& lever, Component component) {
   return lever.workpiece_side && !zero_position ? -1.0 : 1.0;
 }
 
+/// rotation_about() of a nominal angle, the same to the bit, with one sine and cosine.
+Matrix3d nominal_rotation(int direction, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const int next = (direction + 1) % 3, last = (direction + 2) % 3;
+  Matrix3d rotation = Matrix3d::Identity();
+  rotation(next, next) = rotation(last, last) = c;
+  rotation(last, next) = s;
+  rotation(next, last) = -s;
+  return rotation;
+}
+
 }  // namespace
 
 KinematicChain::KinematicChain(const Machine& machine) {
@@ -30,7 +41,7 @@ Vector3d KinematicChain::nominal_point_w(const AxisPosition& position, const Vec
     const double q = position[index_of(joint.axis)];
     const int direction = direction_of(joint.axis);
     if (is_rotary(joint.axis)) {
-      point = (rotation_about(direction, q) * (point - joint.centre) + joint.centre).eval();
+      point = (nominal_rotation(direction, q) * (point - joint.centre) + joint.centre).eval();
     } else {
       point[direction] += q;
     }
@@ -42,7 +53,7 @@ Matrix3d KinematicChain::nominal_rotation_wt(const AxisPosition& position) const
   Matrix3d rotation = Matrix3d::Identity();
   for (const ChainJoint& joint : joints_) {
     if (!is_rotary(joint.axis)) continue;
-    rotation = (rotation * rotation_about(direction_of(joint.axis), position[index_of(joint.axis)])).eval();
+    rotation = (rotation * nominal_rotation(direction_of(joint.axis), position[index_of(joint.axis)])).eval();
   }
   return rotation;
 }
@@ -60,7 +71,7 @@ Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& to
     const int direction = direction_of(joint.axis);
     if (is_rotary(joint.axis)) {
       const Vector3d radius = point - joint.centre;
-      const Vector3d turned = rotation_about(direction, lever.position) * radius;
+      const Vector3d turned = nominal_rotation(direction, lever.position) * radius;
       lever.arm_s = joint.workpiece_side ? radius : turned;
       point = turned + joint.centre;
     } else {
@@ -75,7 +86,7 @@ Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& to
     JointLever& lever = levers[i];
     lever.rotation_ws = rotation;
     if (!is_rotary(lever.axis)) continue;
-    rotation = (rotation * rotation_about(direction_of(lever.axis), lever.position)).eval();
+    rotation = (rotation * nominal_rotation(direction_of(lever.axis), lever.position)).eval();
     if (lever.workpiece_side) lever.rotation_ws = rotation;
   }
   return point;
@@ -119,21 +130,27 @@ void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, 
 
 ToolTwist KinematicChain::first_order(const AxisPosition& position, const Vector3d& tool_offset,
                                       const PoseErrors<double>& errors) const {
-  std::vector<JointLever> joint_levers(joints_.size());
-  levers(position, tool_offset, joint_levers.data());
+  JointLever joint_levers[kAxisCount];
+  levers(position, tool_offset, joint_levers);
   ToolTwist twist;
-  for (const JointLever& lever : joint_levers) {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    const JointLever& lever = joint_levers[joint];
     const auto& motion = errors.motion[index_of(lever.axis)];
     const auto& location = errors.location[index_of(lever.axis)];
+    Vector3d displacement(motion[0], motion[1], motion[2]), rotation(motion[3], motion[4], motion[5]);
+    const Vector3d orientation(location[3], location[4], location[5]);
+    if (is_rotary(lever.axis)) {
+      for (const Component component : kAllComponents) {
+        const double value = location_sign(lever, component) * location[index_of(component)];
+        (is_rotation(component) ? rotation : displacement)[direction_of(component)] += value;
+      }
+    } else {
+      displacement += lever.position * orientation.cross(Vector3d::Unit(direction_of(lever.axis)));
+    }
     Vector3d& rotation_w =
         lever.workpiece_side ? twist.rotation_workpiece_side_w : twist.rotation_tool_side_w;
-    for (const Component component : kAllComponents) {
-      const std::size_t k = index_of(component);
-      twist.displacement_w += motion_lever_w(lever, component) * motion[k];
-      twist.displacement_w += location_lever_w(lever, component) * location[k];
-      rotation_w += motion_rotation_w(lever, component) * motion[k];
-      rotation_w += location_rotation_w(lever, component) * location[k];
-    }
+    twist.displacement_w += lever.rotation_ws * (displacement + rotation.cross(lever.arm_s));
+    rotation_w += lever.rotation_ws * rotation;
   }
   return twist;
 }

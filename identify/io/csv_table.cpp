@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "volcal/identify/io/plain_number.h"
 #include "volcal/identify/io/text_file.h"
 
 namespace volcal {
@@ -39,10 +40,14 @@ class Lines {
   /// Next line that is neither blank nor a comment.
   bool advance_to_content() {
     while (advance()) {
-      const std::string_view content = trimmed(current_);
-      if (!content.empty() && content.front() != '#') return true;
+      if (is_content()) return true;
     }
     return false;
+  }
+  /// Neither blank nor a comment.
+  bool is_content() const {
+    const std::string_view content = trimmed(current_);
+    return !content.empty() && content.front() != '#';
   }
 
   std::string_view current() const { return current_; }
@@ -134,17 +139,20 @@ class CsvTable::RowReader {
       : table_(table), target_(table.header_.size(), kUnused) {
     for (std::size_t i = 0; i < columns.size(); ++i) target_[columns[i]] = i;
     result_.values.resize(columns.size());
+    row_.resize(columns.size());
   }
 
   CsvColumns read() {
     const std::string_view text(table_.text_);
     const auto body = text.substr(table_.body_);
     reserve(static_cast<std::size_t>(std::count(body.begin(), body.end(), '\n')) + 1);
-    Lines lines(text, table_.body_, table_.header_line_);
-    while (lines.advance_to_content()) {
-      line_ = lines.line();
-      read_row(lines.current());
-      result_.source_line.push_back(line_);
+    const char* at = body.data();
+    const char* const end = body.data() + body.size();
+    line_ = table_.header_line_;
+    while (at != end) {
+      ++line_;
+      const char* next = read_plain_row(at, end);
+      at = next != nullptr ? next : read_line(at, end);
     }
     if (result_.source_line.empty()) {
       throw InputError({table_.file_, static_cast<int>(table_.header_line_)},
@@ -159,6 +167,50 @@ class CsvTable::RowReader {
   void reserve(std::size_t rows) {
     for (auto& column : result_.values) column.reserve(rows);
     result_.source_line.reserve(rows);
+  }
+
+  /// Start of the next line after a row of plain numbers; null, and nothing is stored, where there is
+  /// anything else, which read_line() reads or refuses.
+  const char* read_plain_row(const char* at, const char* end) {
+    if (!starts_row(*at)) return nullptr;
+    for (std::size_t column = 0; column < target_.size(); ++column) {
+      if (column > 0) {
+        if (at == end || *at != table_.format_.delimiter) return nullptr;
+        ++at;
+      }
+      at = target_[column] == kUnused
+               ? end_of_plain_cell(at, end)
+               : read_plain_number(at, end, table_.format_.decimal, row_[target_[column]]);
+      if (at == nullptr) return nullptr;
+    }
+    if (at != end && *at == '\r') ++at;
+    if (at == end || *at != '\n') return nullptr;
+    for (std::size_t i = 0; i < row_.size(); ++i) result_.values[i].push_back(row_[i]);
+    result_.source_line.push_back(line_);
+    return at + 1;
+  }
+
+  /// Neither blank nor a comment.
+  static bool starts_row(char first) {
+    return first != '#' && first != ' ' && first != '\t' && first != '\r' && first != '\n';
+  }
+
+  const char* end_of_plain_cell(const char* at, const char* end) const {
+    while (at != end && *at != table_.format_.delimiter && *at != '\n' && *at != '\r') {
+      if (*at++ == '"') return nullptr;
+    }
+    return at;
+  }
+
+  /// Any line; returns the start of the next one.
+  const char* read_line(const char* at, const char* end) {
+    Lines lines({at, static_cast<std::size_t>(end - at)}, 0, 0);
+    lines.advance();
+    if (lines.is_content()) {
+      read_row(lines.current());
+      result_.source_line.push_back(line_);
+    }
+    return at + lines.next();
   }
 
   void read_row(std::string_view line) {
@@ -239,6 +291,7 @@ class CsvTable::RowReader {
   const CsvTable& table_;
   std::vector<std::size_t> target_;
   std::vector<std::pair<std::size_t, double>> pending_;
+  std::vector<double> row_;  ///< [asked column]
   CsvColumns result_;
   std::int64_t line_ = 0;
 };

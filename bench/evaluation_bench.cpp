@@ -315,11 +315,7 @@ Json run(const Arguments& arguments) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
+  return volcal::bench::run_program("evaluation_bench", [&] {
     std::cout << volcal::bench::run(volcal::bench::parse(count, values)) << '\n';
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "evaluation_bench: {}\n", error.what());
-    return 1;
-  }
+  });
 }

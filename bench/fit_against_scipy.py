@@ -7,7 +7,6 @@ to 1e-11. When other programs used the processors during a measurement it is rep
 (exit code 3); --noisy quotes it with a mark instead. --write puts the figures between the marks of a page.
 """
 
-import argparse
 import json
 import pathlib
 import statistics
@@ -124,11 +123,9 @@ def measured_text(bench, sizes):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = quiet_machine.parser(__doc__)
     parser.add_argument("fit_bench")
     parser.add_argument("--sizes", default=",".join(map(str, GRIDS)), help="default: %(default)s")
-    parser.add_argument("--noisy", action="store_true")
-    parser.add_argument("--write", type=pathlib.Path)
     arguments = parser.parse_args()
     sizes = [int(size) for size in arguments.sizes.split(",")]
     quiet_machine.main("fit_against_scipy",

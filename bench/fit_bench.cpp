@@ -7,7 +7,6 @@
 // x, y, z, length, sigma per reading, m, set-up by set-up).
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -197,11 +196,7 @@ Json run(const Arguments& arguments) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
+  return volcal::bench::run_program("fit_bench", [&] {
     std::cout << volcal::bench::run(volcal::bench::parse(count, values)).dump(1) << '\n';
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::cerr << "fit_bench: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

@@ -103,7 +103,7 @@ void count_projection() {
   run_counted([&] { projector.project(columns); });
 }
 
-int run(int count, char** values) {
+void run(int count, char** values) {
   const std::map<std::string, void (*)()> workloads = {{"fit", count_fit},
                                                        {"draws", count_draws},
                                                        {"grid", count_grid},
@@ -114,17 +114,11 @@ int run(int count, char** values) {
     throw std::invalid_argument("give one workload: fit, draws, grid, csv, projection");
   use_single_threaded_blas();
   found->second();
-  return 0;
 }
 
 }  // namespace
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
-    return volcal::bench::run(count, values);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "instructions_bench: {}\n", error.what());
-    return 1;
-  }
+  return volcal::bench::run_program("instructions_bench", [&] { volcal::bench::run(count, values); });
 }

@@ -1,8 +1,11 @@
 #include "measure.h"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <stdexcept>
 
@@ -36,6 +39,16 @@ void read_options(int count, char** values, int first, const OptionTable& table)
     if (found == table.end()) throw std::invalid_argument("unknown option " + option);
     if (i + 1 == count) throw std::invalid_argument(option + " needs a value");
     found->second(values[i + 1]);
+  }
+}
+
+int run_program(const char* program, const std::function<void()>& work) {
+  try {
+    work();
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}: {}\n", program, error.what());
+    return 1;
   }
 }
 

@@ -31,4 +31,7 @@ inline auto into(std::string& target) {
 /// or has no value.
 void read_options(int count, char** values, int first, const OptionTable& table);
 
+/// What main() of a benchmark returns: 0, or 1 with the error said.
+int run_program(const char* program, const std::function<void()>& work);
+
 }  // namespace volcal::bench

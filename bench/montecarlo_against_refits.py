@@ -7,7 +7,6 @@ When other programs used the processors during a measurement it is repeated, and
 --noisy quotes it with a mark instead. --write puts the figures between the marks of a page.
 """
 
-import argparse
 import pathlib
 import statistics
 import sys
@@ -58,12 +57,10 @@ def measured_text(machine, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = quiet_machine.parser(__doc__)
     parser.add_argument("montecarlo_bench")
     parser.add_argument("fit_bench")
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--noisy", action="store_true")
-    parser.add_argument("--write", type=pathlib.Path)
     arguments = parser.parse_args()
     quiet_machine.main("montecarlo_against_refits", lambda machine: measured_text(machine, arguments), MARK,
                        arguments)

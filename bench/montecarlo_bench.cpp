@@ -117,24 +117,18 @@ class Bench {
   Eigen::MatrixXd left_, right_;
 };
 
-int run(int count, char** values) {
+void run(int count, char** values) {
   int threads = 0, rounds = 5;
   read_options(count, values, 1, {{"--threads", into(threads)}, {"--rounds", into(rounds)}});
   Bench bench(threads);
   Rates rates;
   for (int i = 0; i < std::max(1, rounds); ++i) bench.round(rates);
   std::cout << bench.json(rates) << '\n';
-  return 0;
 }
 
 }  // namespace
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
-    return volcal::bench::run(count, values);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "montecarlo_bench: {}\n", error.what());
-    return 1;
-  }
+  return volcal::bench::run_program("montecarlo_bench", [&] { volcal::bench::run(count, values); });
 }

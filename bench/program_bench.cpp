@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -123,12 +122,8 @@ nlohmann::ordered_json run_program_bench(const Arguments& arguments) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  try {
+  return volcal::bench::run_program("program_bench", [&] {
     std::cout << volcal::bench::run_program_bench(volcal::bench::parse_arguments(count, values)).dump(1)
               << '\n';
-    return EXIT_SUCCESS;
-  } catch (const std::exception& error) {
-    std::cerr << "program_bench: " << error.what() << '\n';
-    return EXIT_FAILURE;
-  }
+  });
 }

@@ -9,7 +9,6 @@ is repeated, and in the end refused (exit code 3); --noisy quotes it with a mark
 between the marks of a page.
 """
 
-import argparse
 import pathlib
 import statistics
 import sys
@@ -141,7 +140,7 @@ def measured_text(machine, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = quiet_machine.parser(__doc__)
     parser.add_argument("criticism_bench")
     parser.add_argument("volcal")
     parser.add_argument("--grid", default=REFERENCE, help="positions per axis of a run; default: %(default)s")
@@ -149,8 +148,6 @@ def main():
                         help="grids of the campaigns that are diagnosed; default: %(default)s")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--noisy", action="store_true")
-    parser.add_argument("--write", type=pathlib.Path)
     arguments = parser.parse_args()
     quiet_machine.main("projection_against_numpy", lambda machine: measured_text(machine, arguments), MARK, arguments)
 

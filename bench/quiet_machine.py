@@ -4,6 +4,7 @@ A measurement during which other programs used the processors is repeated, and i
 `noisy` it is given with a mark instead.
 """
 
+import argparse
 import json
 import os
 import pathlib
@@ -137,6 +138,14 @@ def write(page, mark, text):
     begin = content.index(mark) + len(mark)
     end = content.index(END, begin)
     page.write_text(content[:begin] + "\n\n" + text + "\n\n" + content[end:])
+
+
+def parser(description):
+    """With the options that every benchmark has."""
+    options = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--noisy", action="store_true", help="give figures while other programs run, with a mark")
+    options.add_argument("--write", type=pathlib.Path, metavar="PAGE", help="put the figures into this page")
+    return options
 
 
 def main(program, measured_text, mark, arguments):

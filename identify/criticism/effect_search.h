@@ -2,8 +2,9 @@
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
 /// and no generic test does better; then every added one must stand against all others again. Several powers
 /// of one driver on one target are no name, nor is what explains less than it leaves or what varies
-/// (constancy_test.h): such are left out again. A search for one step climbs as well, so that what it names
-/// stands beside all the rest, and then keeps the first.
+/// (constancy_test.h): such are left out again, or a rival that stands takes their place. Where nothing
+/// stands out, effects are looked for that a wander has taken up (beside_noise.h). A search for one step
+/// climbs as well, so that what it names stands beside all the rest, and then keeps the first.
 
 #include <functional>
 #include <map>
@@ -141,8 +142,8 @@ extern const double kLog10GenericRisk;
 /// Risks that a right name is refused, or left out of a set, because its amplitude seems to vary.
 extern const double kLog10ConstancyRisk;
 extern const double kLog10RivalRisk;
-/// Of effects that are tested with the noise estimated beside them: its parameters are few readings' worth,
-/// and tails are longer than those of chi-squared.
+/// Of effects that are tested with the noise estimated beside them: smaller, since chi-squared holds for many
+/// readings and a wander spans few of its own lengths.
 extern const double kLog10RiskBesideNoise;
 
 }  // namespace volcal

@@ -274,11 +274,16 @@ ErrorGrid::AxisErrors ErrorGrid::errors_of(std::size_t axis, const Tool& tool) c
   return all;
 }
 
+std::array<Eigen::VectorXd, 3> ErrorGrid::along_axes(Rows rows) const {
+  std::array<Eigen::VectorXd, 3> values;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    values[axis] = (axes_[axis].*rows).transpose() * result_.parameters(axes_[axis].parameters);
+  return values;
+}
+
 PlaneTables ErrorGrid::displacements() const {
   PlaneTables tables(grid_.counts());
-  std::array<Eigen::VectorXd, 3> errors;
-  for (std::size_t i = 0; i < 3; ++i)
-    errors[i] = axes_[i].errors.transpose() * result_.parameters(axes_[i].parameters);
+  const std::array<Eigen::VectorXd, 3> errors = along_axes(&AxisErrors::errors);
   const auto displacement = [&](std::size_t axis, std::size_t node) -> Vector3d {
     return errors[axis].segment<3>(index_at(node, kErrorsOfNode));
   };
@@ -305,9 +310,7 @@ PlaneTables ErrorGrid::displacements() const {
 
 PlaneTables ErrorGrid::rotations() const {
   PlaneTables tables(grid_.counts());
-  std::array<Eigen::VectorXd, 3> rotations;
-  for (std::size_t i = 0; i < 3; ++i)
-    rotations[i] = axes_[i].rotations.transpose() * result_.parameters(axes_[i].parameters);
+  const std::array<Eigen::VectorXd, 3> rotations = along_axes(&AxisErrors::rotations);
   const auto rotation = [&](std::size_t axis, std::size_t node) -> Vector3d {
     return rotations[axis].segment<3>(index_at(node, kRotationsOfNode));
   };

@@ -63,6 +63,8 @@ class ErrorGrid {
   };
 
   using Rows = Eigen::MatrixXd AxisErrors::*;
+  /// At the nodes of every axis.
+  std::array<Eigen::VectorXd, 3> along_axes(Rows rows) const;
 
   AxisErrors errors_of(std::size_t axis, const Tool& tool) const;
   /// Covariance of the parameters of two axes, times the rows of the second.

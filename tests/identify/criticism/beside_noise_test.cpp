@@ -68,6 +68,7 @@ TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
   EXPECT_GT(alternatives[0].loss, 0.0);
   FamilyTest test = tested_at(alternatives[0].noise);
   const double bound = test.score.lm - alternatives[0].loss;
+  EXPECT_GT(bound, 0.0);
   test_beside_noise(model(), family(), problem_, noise, 1, test);
   EXPECT_GE(test.score.lm, bound - 0.1);
   EXPECT_LT(test.log10_p, tested_at(noise.parameters()).log10_p);

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <numbers>
@@ -37,21 +36,19 @@ void expect_normals(const std::vector<double>& first, const std::vector<double>&
   }
 }
 
-TEST(BoxMuller, IsExactToRoundingForRandomNumbers) {
-  std::mt19937_64 random(1);
+/// In (0, 1].
+std::vector<double> uniform_numbers(unsigned seed) {
+  std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<double> first(10'001), second(first.size());
-  for (double& u : first) u = 1.0 - uniform(random);
-  for (double& u : second) u = 1.0 - uniform(random);
-  expect_normals(first, second);
+  std::vector<double> numbers(10'001);
+  for (double& u : numbers) u = 1.0 - uniform(random);
+  return numbers;
 }
 
+TEST(BoxMuller, IsExactToRoundingForRandomNumbers) { expect_normals(uniform_numbers(1), uniform_numbers(2)); }
+
 TEST(BoxMuller, GivesTheSameBitsOnEveryInstructionSet) {
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<double> first(10'001), second(first.size());
-  for (double& u : first) u = 1.0 - uniform(random);
-  for (double& u : second) u = 1.0 - uniform(random);
+  std::vector<double> first = uniform_numbers(3), second = uniform_numbers(4);
   std::vector<double> plain_first = first, plain_second = second;
   box_muller(first.size(), first.data(), second.data());
   baseline_box_muller(first.size(), plain_first.data(), plain_second.data());

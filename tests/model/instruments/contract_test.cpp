@@ -85,6 +85,14 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
+ToolState<double> drawn_state(std::mt19937_64& random) {
+  ToolState<double> state;
+  state.point_w = uniform_vector(random, 0.0, 1.0);
+  state.rotation_tool_side = uniform_vector(random, -1e-4, 1e-4);
+  state.rotation_workpiece_side = uniform_vector(random, -1e-4, 1e-4);
+  return state;
+}
+
 class InstrumentContract : public ::testing::TestWithParam<Case> {};
 
 TEST_P(InstrumentContract, AnalyticDerivativesEqualAutomaticOnes) {
@@ -99,10 +107,7 @@ TEST_P(InstrumentContract, AnalyticDerivativesEqualAutomaticOnes) {
   ASSERT_LE(local, kMaxLocalNuisance);
 
   for (std::size_t row = 0; row < kRows; ++row) {
-    ToolState<double> state;
-    state.point_w = uniform_vector(random, 0.0, 1.0);
-    state.rotation_tool_side = uniform_vector(random, -1e-4, 1e-4);
-    state.rotation_workpiece_side = uniform_vector(random, -1e-4, 1e-4);
+    const ToolState<double> state = drawn_state(random);
     double nuisance[kMaxLocalNuisance];
     for (double& value : nuisance) value = uniform(random, -0.2, 0.2);
 
@@ -149,10 +154,7 @@ TEST_P(InstrumentContract, ReadingsSideBySideAreTheSameAsOneByOne) {
   std::vector<ToolState<double>> states(kLanes);
   ToolStateLanes side_by_side;
   for (int i = 0; i < kLanes; ++i) {
-    ToolState<double>& state = states[static_cast<std::size_t>(i)];
-    state.point_w = uniform_vector(random, 0.0, 1.0);
-    state.rotation_tool_side = uniform_vector(random, -1e-4, 1e-4);
-    state.rotation_workpiece_side = uniform_vector(random, -1e-4, 1e-4);
+    const ToolState<double> state = states[static_cast<std::size_t>(i)] = drawn_state(random);
     for (int k = 0; k < 3; ++k) {
       side_by_side.point_w[k][i] = state.point_w[k];
       side_by_side.rotation_tool_side[k][i] = state.rotation_tool_side[k];

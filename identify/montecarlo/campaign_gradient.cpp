@@ -6,7 +6,9 @@ CampaignGradient::CampaignGradient(const MeasurementModel& model, const Whitener
     : model_(model), whitener_(whitener) {}
 
 CampaignGradient::Workspace::Workspace(const CampaignGradient& gradient)
-    : levers(gradient.model_.make_levers()), blocks(gradient.model_.blocks().size()), sums(gradient.model_) {}
+    : levers(gradient.model_.make_levers()),
+      blocks(gradient.model_.blocks().size()),
+      sums(gradient.model_.model()) {}
 
 Eigen::VectorXd CampaignGradient::at(const Eigen::VectorXd& parameters, const Eigen::VectorXd& readings,
                                      Workspace& work) const {

@@ -155,7 +155,7 @@ void NormalAccumulator::add_blocks(std::size_t chunk, const Eigen::VectorXd& par
                                    Sums what, Chunk& out) const {
   const BlockModel& model = index_.blocks();
   if (!out.gradient) {
-    out.gradient.emplace(model);
+    out.gradient.emplace(model.model());
     out.levers = model.make_levers();
   }
   out.gradient->set_zero();

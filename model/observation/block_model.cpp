@@ -40,22 +40,6 @@ void add_warmed(const ExpansionBinding& expansion, const ReadingBlock& block, co
   }
 }
 
-/// Adds `count` lanes of numbers to those of the positions where the readings stand; kCount: `count` if
-/// known.
-template <std::size_t kCount>
-void add_at_positions(const std::uint32_t* position, int size, const double* const* lanes, std::size_t count,
-                      double* sums) {
-  if constexpr (kCount > 0) count = kCount;
-  for (int i = 0; i < size;) {
-    const std::uint32_t here = position[i];
-    double sum[kMostFunctions] = {};
-    for (; i < size && position[i] == here; ++i) {
-      for (std::size_t slot = 0; slot < count; ++slot) sum[slot] += lanes[slot][i];
-    }
-    for (std::size_t slot = 0; slot < count; ++slot) sums[here * count + slot] += sum[slot];
-  }
-}
-
 /// Calls f(place in the shared tail, parameter, driver, disturbance) for what shared terms and effects add.
 template <class F>
 void for_each_shared(const CampaignBinding& binding, const BlockLevers& levers, const F& f) {
@@ -81,16 +65,11 @@ BlockModel::BlockModel(const MeasurementModel& model) : model_(model) {
   moves_tool_ = binding.effect_moves_tool ||
                 std::ranges::any_of(binding.setups, [](const auto& s) { return s.tool_error >= 0; });
   for (std::size_t setup = 0; setup < binding.setups.size(); ++setup) cut_setup(setup);
-  std::size_t gathered = 0;
   int begin = 0;
   for (std::size_t g = 0; g < group_count(); ++g) {
-    const int count = model.layout().groups[g].count();
-    gathered_begin_.push_back(gathered);
-    gathered += model.tables().positions(g) * static_cast<std::size_t>(count);
     segment_begin_.push_back(begin);
-    begin += round_up_to_alignment(count);
+    begin += round_up_to_alignment(model.layout().groups[g].count());
   }
-  gathered_begin_.push_back(gathered);
   std::size_t own = 0;
   for (const auto& parameters : own_) own = std::max(own, parameters.size());
   for (const int size : {model.shared_tail_size(), static_cast<int>(own)}) {
@@ -405,17 +384,16 @@ void BlockModel::add_work(const ReadingBlock& block, const BlockLinearization& l
   }
   find_work(linearized, load, reading.state_size() == kStateSize ? load + 3 : nullptr, levers);
   gather(block, levers, sums);
-  double* const others = sums.others_.data();
-  for_each_shared(model_.binding(), levers,
-                  [&](int /*place*/, int parameter, const Lanes& driver, int disturbance) {
-                    others[parameter] += dot(driver, levers.motion[static_cast<std::size_t>(disturbance)]);
-                  });
+  for_each_shared(
+      model_.binding(), levers, [&](int /*place*/, int parameter, const Lanes& driver, int disturbance) {
+        sums.add_to_parameter(parameter, dot(driver, levers.motion[static_cast<std::size_t>(disturbance)]));
+      });
   const int* own = own_[block.own].data();
   for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    others[*own++] += sum(levers.motion[motion_index(kToolDisturbance + k)]);
+    sums.add_to_parameter(*own++, sum(levers.motion[motion_index(kToolDisturbance + k)]));
   for (int k = 0; k < reading.nuisance_size(); ++k) {
     for (int channel = 0; channel < reading.channels(); ++channel)
-      others[own[k]] += dot(error[channel], reading.d_nuisance(channel)[k]);
+      sums.add_to_parameter(own[k], dot(error[channel], reading.d_nuisance(channel)[k]));
   }
 }
 
@@ -426,16 +404,10 @@ void BlockModel::gather(const ReadingBlock& block, const BlockLevers& levers, Gr
     const FunctionGroup& group = model_.layout().groups[g];
     const std::uint32_t* entry =
         model_.tables().entries(block.setup, index_of(group.axis)).data() + block.first_row;
-    const auto count = static_cast<std::size_t>(group.count());
-    double* const gathered = sums.gathered_.data() + gathered_begin_[g];
     const double* work[kMostFunctions];
-    for (std::size_t slot = 0; slot < count; ++slot)
+    for (int slot = 0; slot < group.count(); ++slot)
       work[slot] = levers.motion[static_cast<std::size_t>(*slot_motion++)].value;
-    if (count == kMostFunctions) {
-      add_at_positions<kMostFunctions>(entry, block.size, work, count, gathered);
-    } else {
-      add_at_positions<0>(entry, block.size, work, count, gathered);
-    }
+    sums.add_at_positions(g, entry, block.size, work);
   }
 }
 
@@ -472,39 +444,6 @@ void BlockModel::make_rows(const ReadingBlock& block, const BlockLinearization& 
     add_product(scale, reading.d_nuisance(channel)[k], product);
     add_column(own + k, product);
   }
-}
-
-GradientSums::GradientSums(const BlockModel& model)
-    : model_(&model),
-      gathered_(model.gathered_begin_.back(), 0.0),
-      others_(Eigen::VectorXd::Zero(model.model().layout().size)) {}
-
-void GradientSums::set_zero() {
-  std::ranges::fill(gathered_, 0.0);
-  others_.setZero();
-}
-
-void GradientSums::add(const GradientSums& other) {
-  for (std::size_t i = 0; i < gathered_.size(); ++i) gathered_[i] += other.gathered_[i];
-  others_ += other.others_;
-}
-
-Eigen::VectorXd GradientSums::gradient() const {
-  Eigen::VectorXd gradient = others_;
-  const MeasurementModel& model = model_->model();
-  const double* sums = gathered_.data();
-  for (std::size_t g = 0; g < model_->group_count(); ++g) {
-    const FunctionGroup& group = model.layout().groups[g];
-    const int support = group.basis->support(), count = group.count();
-    for (std::size_t position = 0; position < model.tables().positions(g); ++position, sums += count) {
-      const double* const basis = model.tables().values(g, support, position);
-      double* const to = gradient.data() + group.index(model.tables().start(g, position), 0);
-      for (int j = 0; j < support; ++j) {
-        for (int slot = 0; slot < count; ++slot) to[j * count + slot] += basis[j] * sums[slot];
-      }
-    }
-  }
-  return gradient;
 }
 
 }  // namespace volcal

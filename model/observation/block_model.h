@@ -4,8 +4,7 @@
 ///
 /// The gradient needs no row of the Jacobian. Weighted errors of a reading's channels act as a force and a
 /// torque on the tool; their work on a unit of every motion of a joint (virtual work) is what the functions
-/// of that joint gather at the position of its axis, and the basis is applied once a position, not once a
-/// reading (GradientSums).
+/// of that joint gather at the position of its axis (gradient_sums.h).
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "volcal/model/instruments/instrument.h"
+#include "volcal/model/observation/gradient_sums.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -42,24 +42,6 @@ struct BlockLevers {
 struct BlockLinearization {
   LinearizationLanes reading;
   std::vector<Lanes> floor_arm_w;  ///< 3, where the floor tilts
-};
-
-class BlockModel;
-
-/// Sums of J^T e over readings.
-class GradientSums {
- public:
-  explicit GradientSums(const BlockModel& model);
-  void set_zero();
-  void add(const GradientSums& other);
-  /// In raw parameters.
-  Eigen::VectorXd gradient() const;
-
- private:
-  friend class BlockModel;
-  const BlockModel* model_;
-  std::vector<double> gathered_;  ///< group by group: positions x functions
-  Eigen::VectorXd others_;        ///< parameters besides the functions', at their places
 };
 
 class BlockModel {
@@ -95,8 +77,6 @@ class BlockModel {
   int row_width() const { return segment_begin_.back(); }
 
  private:
-  friend class GradientSums;
-
   void cut_setup(std::size_t setup);
   std::uint32_t own_number(const std::vector<int>& parameters);
   void find_drivers(const ReadingBlock& block, const Eigen::VectorXd& parameters, BlockLevers& levers) const;
@@ -115,10 +95,9 @@ class BlockModel {
   const MeasurementModel& model_;
   std::vector<ReadingBlock> blocks_;
   std::vector<std::vector<int>> own_;
-  std::vector<std::size_t> gathered_begin_;  ///< in GradientSums: per group, and the end
-  std::vector<int> segment_begin_;           ///< of a row, and its width
-  bool turns_ = false;                       ///< the machine has rotary axes
-  bool moves_tool_ = false;                  ///< some reading's tool offset is uncertain or disturbed
+  std::vector<int> segment_begin_;  ///< of a row, and its width
+  bool turns_ = false;              ///< the machine has rotary axes
+  bool moves_tool_ = false;         ///< some reading's tool offset is uncertain or disturbed
 };
 
 }  // namespace volcal

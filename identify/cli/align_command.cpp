@@ -8,8 +8,10 @@
 
 #include "volcal/identify/cli/alignment_options.h"
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/today.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/text_file.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -92,7 +94,9 @@ int run_align(const AlignArguments& arguments) {
   Campaign campaign;
   campaign.machine = aligned.result.machine;
   campaign.file = arguments.result;
-  write_result_folder(aligned.result, campaign, arguments.output, kept_files(arguments.result));
+  std::map<std::string, std::string> files = kept_files(arguments.result);
+  if (report_available()) files["report.html"] = report_html(aligned.result, campaign, {today()});
+  write_result_folder(aligned.result, campaign, arguments.output, files);
   if (arguments.json) {
     const nlohmann::ordered_json json = {{"folder", arguments.output},
                                          {"alignment", aligned.result.alignment},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/report/comparison_report.h"
+#include "volcal/identify/solve/alignment.h"
 #include "volcal/identify/solve/evaluate.h"
 
 namespace volcal::cli {
@@ -41,6 +43,9 @@ struct NamedModel {
   ModelSpec spec;
   ModelSpec refittable;  ///< what --held-out fits
   bool can_be_fitted = true;
+  std::optional<Campaign> aligned;  ///< the readings in the coordinate system of an aligned result
+
+  const Campaign& readings(const Campaign& campaign) const { return aligned ? *aligned : campaign; }
 };
 
 bool predicts_errors(const ModelSpec& model) {
@@ -51,7 +56,7 @@ bool predicts_errors(const ModelSpec& model) {
 
 /// A result, a model file, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
-  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
+  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false, {}};
   if (!std::filesystem::exists(argument)) {
     throw InputError(
         {argument, 0}, "there is no such result or model",
@@ -59,14 +64,16 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
   }
   if (is_result(argument) || std::filesystem::is_directory(argument)) {
     const FitResult result = read_result(argument);
-    if (const std::string difference = machine_difference(result.machine, campaign.machine);
-        !difference.empty()) {
+    std::optional<Campaign> aligned;
+    if (!result.alignment.empty()) adopt_alignment(aligned.emplace(campaign), result);
+    const Machine& machine = aligned ? aligned->machine : campaign.machine;
+    if (const std::string difference = machine_difference(result.machine, machine); !difference.empty()) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
                        "compare with a result of the same machine");
     }
-    return {argument, result.identified, refittable_model(result)};
+    return {argument, result.identified, refittable_model(result), true, std::move(aligned)};
   }
-  NamedModel model{argument, read_model(argument, campaign.machine), {}};
+  NamedModel model{argument, read_model(argument, campaign.machine), {}, true, {}};
   model.refittable = model.spec;
   if (!predicts_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
   return model;
@@ -103,7 +110,7 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
                            [&](const std::string& stage, double done) {
                              bar.update(stage, (static_cast<double>(m) + done) / count);
                            }};
-    const auto records = heldout_residuals(campaign, models[m].refittable, rows, options);
+    const auto records = heldout_residuals(models[m].readings(campaign), models[m].refittable, rows, options);
     judged.push_back({arguments.models[m], models[m].can_be_fitted, compare(campaign, records, comparison)});
   }
   bar.finish();
@@ -119,8 +126,9 @@ int run_compare(const CompareArguments& arguments) {
   std::vector<ComparedModel> models;
   for (const std::string& argument : arguments.models) {
     const NamedModel& model = named.emplace_back(load(argument, campaign));
-    Evaluation evaluation = evaluate_model(campaign, model.spec, nullptr, arguments.threads);
-    models.push_back(compared_model(model.name, campaign, std::move(evaluation.residuals), comparison));
+    const Campaign& readings = model.readings(campaign);
+    Evaluation evaluation = evaluate_model(readings, model.spec, nullptr, arguments.threads);
+    models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
   }
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);

@@ -1,7 +1,5 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <memory>
 #include <string>
 
@@ -10,6 +8,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/today.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -77,9 +76,7 @@ void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, 
   folder.write("diagnosis.json", json);
   folder.write("diagnosis.txt", diagnosis_text(diagnosis));
   if (report_available()) {
-    folder.write(
-        "report.html",
-        report_html(diagnosis, campaign, {fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr)))}));
+    folder.write("report.html", report_html(diagnosis, campaign, {today()}));
   }
   folder.write("machine.toml", machine_toml(campaign.machine));
   folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",

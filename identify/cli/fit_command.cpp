@@ -1,7 +1,5 @@
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <map>
 #include <memory>
 #include <string>
@@ -10,6 +8,7 @@
 #include "volcal/identify/cli/fit_policies.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/today.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -21,8 +20,6 @@
 
 namespace volcal::cli {
 namespace {
-
-std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr))); }
 
 struct FitArguments {
   std::string campaign;

@@ -34,6 +34,7 @@ struct PageOf {
   std::string_view kind;   ///< name of the renderer
   std::string_view title;  ///< heading and entry of the section list
   Json (*build)(const Input& input);
+  bool of_readings = false;  ///< left out of an aligned result, which has none
 };
 
 using Page = PageOf<PageInput>;

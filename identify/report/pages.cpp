@@ -5,17 +5,19 @@
 namespace volcal::report {
 namespace {
 
+constexpr bool kOfReadings = true;
+
 constexpr std::array kPages = {
-    Page{"summary", "Summary", summary_page},
+    Page{"summary", "Summary", summary_page, kOfReadings},
     Page{"functions", "Error functions", functions_page},
     Page{"locations", "Squareness and location", locations_page},
     Page{"volume", "Work volume", volume_page},
-    Page{"residuals", "Residuals", residuals_page},
-    Page{"outliers", "Suspect readings", outliers_page},
-    Page{"setups", "Setups and instruments", setups_page},
+    Page{"residuals", "Residuals", residuals_page, kOfReadings},
+    Page{"outliers", "Suspect readings", outliers_page, kOfReadings},
+    Page{"setups", "Setups and instruments", setups_page, kOfReadings},
     Page{"observability", "Observability", observability_page},
     Page{"resolution", "Resolution of the functions", resolution_page},
-    Page{"nuisance", "Nuisance parameters", nuisance_page},
+    Page{"nuisance", "Nuisance parameters", nuisance_page, kOfReadings},
     Page{"computation", "Computation and symbols", computation_page},
 };
 

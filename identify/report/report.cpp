@@ -56,8 +56,9 @@ std::string fill(std::string_view page, std::string_view slot, const std::string
 }
 
 template <class Input>
-std::string document(const std::string& title, std::string_view subtitle, const ReportOptions& options,
-                     std::span<const report::PageOf<Input>> pages, const Input& input) {
+std::string document(const std::string& title, const std::string& subtitle, const ReportOptions& options,
+                     std::span<const report::PageOf<Input>> pages, const Input& input,
+                     bool has_readings = true) {
   report::Json document;
   document["format"] = "volcal-report-1";
   document["title"] = title;
@@ -65,6 +66,7 @@ std::string document(const std::string& title, std::string_view subtitle, const 
   document["date"] = options.date;
   document["pages"] = report::Json::array();
   for (const report::PageOf<Input>& page : pages) {
+    if (page.of_readings && !has_readings) continue;
     document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
   }
   return document.dump(-1, ' ', false, report::Json::error_handler_t::replace);
@@ -92,8 +94,11 @@ std::string_view how_to_get_report() {
 }
 
 std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
-  return document(result.machine.name, "Geometric errors identified from measurements", options,
-                  report::pages(), report::PageInput(result, campaign, options));
+  const bool is_aligned = !result.alignment.empty();
+  const std::string subtitle = "Geometric errors identified from measurements" +
+                               (is_aligned ? ", aligned: " + result.alignment : std::string());
+  return document(result.machine.name, subtitle, options, report::pages(),
+                  report::PageInput(result, campaign, options), !is_aligned);
 }
 
 std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {

@@ -27,7 +27,8 @@ bool report_available();
 std::string_view how_to_get_report();
 
 /// The JSON document that fills the template. Values in um, urad, mm, deg, degC; lengths of arrays are
-/// bounded, so that its size does not grow with the number of readings.
+/// bounded, so that its size does not grow with the number of readings. An aligned result is shown without
+/// the sections on readings; of its campaign the machine is used.
 std::string report_json(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
 /// The whole page. Throws std::runtime_error with how_to_get_report() when it is not available.
 std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});

@@ -16,6 +16,7 @@ namespace {
 
 using testing::content;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::run_program;
 
 class AlignedResults : public ::testing::Test {
@@ -57,6 +58,28 @@ TEST_F(AlignedResults, PredictTheSameReadings) {
                   share * before.at(figure).get<double>())
           << campaign << " " << figure;
   }
+}
+
+TEST_F(AlignedResults, ExplainACampaignAsBefore) {
+  ASSERT_EQ(align("--primary Z --secondary X --origin X=100,Y=-50,Z=-200").exit_code, 0);
+  const auto compared =
+      json_of("compare " + path("campaign/campaign.toml") + " " + path("result") + " " + path("aligned"));
+  const auto& models = compared.at("models");
+  ASSERT_EQ(models.size(), 2U);
+  const double before = models[0].at("total").at("lengths_um").at("rms").get<double>();
+  EXPECT_GT(before, 0.1);
+  EXPECT_NEAR(models[1].at("total").at("lengths_um").at("rms").get<double>(), before, 1e-4 * before);
+}
+
+TEST_F(AlignedResults, HaveAReportWithoutReadings) {
+  ASSERT_EQ(align("--primary Y --secondary X").exit_code, 0);
+  if (!std::filesystem::exists(path("result/report.html"))) GTEST_SKIP() << "built without Node.js";
+  const std::string report = content(path("aligned/report.html"));
+  EXPECT_THAT(report, HasSubstr("aligned: primary Y, secondary X"));
+  EXPECT_THAT(report, HasSubstr("\"kind\":\"functions\""));
+  EXPECT_THAT(report, HasSubstr("\"kind\":\"volume\""));
+  EXPECT_THAT(report, Not(HasSubstr("\"kind\":\"residuals\"")));
+  EXPECT_THAT(content(path("result/report.html")), HasSubstr("\"kind\":\"residuals\""));
 }
 
 TEST_F(AlignedResults, AreReadByTheOtherCommands) {

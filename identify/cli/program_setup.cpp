@@ -13,7 +13,6 @@ namespace volcal::cli {
 namespace {
 
 constexpr double kLargestLength_mm = 1e5;
-constexpr double kMillimetresPerInch = 25.4;
 
 double length_number(const std::string& option, const std::string& text) {
   double value = 0.0;
@@ -95,7 +94,7 @@ NcSetup program_setup(const ProgramSetupArguments& arguments, const Machine& mac
   for (const std::string& text : arguments.tool_lengths) add_tool_length(text, setup);
   if (!arguments.start.empty()) setup.start = three_coordinates("--start", arguments.start);
   if (!arguments.units.empty())
-    setup.length_unit = (arguments.units == "inch" ? kMillimetresPerInch : 1.0) * kMetrePerMillimetre;
+    setup.length_unit = arguments.units == "inch" ? kMetrePerInch : kMetrePerMillimetre;
   if (!arguments.block_delete.empty()) setup.block_delete = arguments.block_delete == "on";
   return setup;
 }

@@ -9,7 +9,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kInch = 25.4e-3;
 constexpr int kWorkCodes[kWorkOffsets] = {540, 550, 560, 570, 580, 590, 591, 592, 593};
 
 void apply_feed_mode(const NcCommands& commands, NcState& state) {
@@ -31,7 +30,7 @@ void apply_numbers(const NcCommands& commands, const NcPlace& place, NcState& st
 
 void apply_units(const NcCommands& commands, const NcPlace& place, NcState& state) {
   if (commands.units == kNoCode) return;
-  const double unit = commands.units == 200 ? kInch : kMetrePerMillimetre;
+  const double unit = commands.units == 200 ? kMetrePerInch : kMetrePerMillimetre;
   if (unit == state.unit) return;
   if (commands.has('F'))
     place.refuse("F stands in the block that changes the unit of length", "write F in a block after it");

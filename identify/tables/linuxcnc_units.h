@@ -16,7 +16,6 @@ inline constexpr std::array<TableSetting, 1> kLinuxCncSettings = {
 
 /// In m; 0 when it is neither mm nor inch.
 inline double linear_unit(std::string_view name) {
-  constexpr double kMetrePerInch = 0.0254;
   if (name == "mm") return kMetrePerMillimetre;
   return name == "inch" ? kMetrePerInch : 0.0;
 }

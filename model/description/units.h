@@ -20,6 +20,7 @@ std::string unit_text(std::string_view suffix);
 
 inline constexpr double kMicro = 1e-6;  ///< um, urad, um/m and um/m/K in SI
 inline constexpr double kMetrePerMillimetre = 1e-3;
+inline constexpr double kMetrePerInch = 25.4e-3;
 inline constexpr double kMetrePerMicrometre = 1e-6;
 inline constexpr double kRadianPerMicroradian = 1e-6;
 inline constexpr double kSecondsPerHour = 3600.0;

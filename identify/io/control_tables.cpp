@@ -297,6 +297,26 @@ sim::ControlTables etalon_control(std::span<const TableFile> files) {
 }
 
 /// Assignments of a SINUMERIK file as words: variable, indices, value. Comments are left out.
+// Whole numbers of 0.1 um; values are actual minus set position.
+sim::ControlTables isg_ssfk_control(std::span<const TableFile> files) {
+  constexpr double kTenth = 1e-7;
+  AxisTables axes(sim::TableValue::Error);
+  for (const TableFile& file : files) {
+    if (!file.name.starts_with("achskw")) continue;
+    AxisName axis = AxisName::X;
+    std::map<int, std::map<std::string, double>> entries;
+    for (const Words& line : lines_of_words(file.content, " \t[].")) {
+      if (line[0] == "kopf" && line.at(1) == "log_achs_name") axis = axis_in(line.at(2));
+      if (line.size() > 4 && line[2] == "table") entries[std::stoi(line[3])][line[4]] = std::stod(line.at(5));
+    }
+    for (auto& [index, entry] : entries)
+      axes.add(axis, axis, entry.at("setpoint") * kTenth, entry.at("pos") * kTenth, entry.at("neg") * kTenth);
+  }
+  sim::ControlTables tables;
+  axes.move_to(tables);
+  return tables;
+}
+
 std::vector<Words> sinumerik_words(const std::string& text) {
   std::vector<Words> assignments;
   for (Words line : lines_of_words(text, " \t[],=()\"")) {
@@ -383,6 +403,7 @@ const std::vector<ControlFormat>& control_formats() {
       {"marlin", {"skew.gcode"}, marlin_control},
       {"isg-csv", {"volcomp.lis"}, isg_control},
       {"etalon-exchange", {"volcomp.txt"}, etalon_control},
+      {"isg-ssfk", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}, isg_ssfk_control},
       {"sinumerik", {"AX_EEC.INI"}, sinumerik_control},
       {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control}};
   return formats;

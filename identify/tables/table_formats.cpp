@@ -15,6 +15,7 @@ namespace volcal {
   FORMAT(marlin_format)              \
   FORMAT(isg_csv_format)             \
   FORMAT(etalon_exchange_format)     \
+  FORMAT(isg_ssfk_format)            \
   FORMAT(sinumerik_format)           \
   FORMAT(sinumerik_cec_format)
 

@@ -65,6 +65,29 @@ TEST(ControlTables, GridsByHand) {
   EXPECT_NEAR(added_um("isg-csv", isg, kMiddleOfX, 1).z(), -2.0, 1e-9);
 }
 
+/// The third entry is the worked example of the manual: set 19866.7 um, actual 19856.5 um towards + and
+/// 19874.7 um towards - (Beckhoff TF5200, Axis compensation, non-equidistant bilateral compensation).
+TEST(ControlTables, LeadscrewByHand) {
+  const std::string head =
+      "kopf.achs_nr 1\nkopf.log_achs_name X\nkw.ssfk.interval 0\n"
+      "kw.ssfk.kw_startpos -200000\nkw.ssfk.kw_nr_max 3\nkw.ssfk.unit 1\n"
+      "kw.ssfk.bilateral 1\n";
+  const std::vector<TableFile> list = {
+      {"achskw1.lis", head +
+                          "kw.ssfk.table[0].setpoint -200000\nkw.ssfk.table[1].setpoint 0\n"
+                          "kw.ssfk.table[2].setpoint 198667\nkw.ssfk.table[0].pos 0\n"
+                          "kw.ssfk.table[1].pos 0\nkw.ssfk.table[2].pos -102\n"
+                          "kw.ssfk.table[0].neg 0\nkw.ssfk.table[1].neg 0\nkw.ssfk.table[2].neg 80\nEnd\n"}};
+  constexpr AxisPosition kThird = {19866.7e-6, 0.0, 0.0};
+  EXPECT_NEAR(added_um("isg-ssfk", list, kThird, 1).x(), 10.2, 1e-9);
+  EXPECT_NEAR(added_um("isg-ssfk", list, kThird, -1).x(), -8.0, 1e-9);
+  const CompensationTables own = find_table_format("isg-ssfk")->read(list);
+  ApproachDirection towards_minus{};
+  towards_minus.fill(-1);
+  EXPECT_NEAR(own.correction(kThird, kTowardsPlus).x(), 10.2e-6, 1e-15);
+  EXPECT_NEAR(own.correction(kThird, towards_minus).x(), -8.0e-6, 1e-15);
+}
+
 TEST(ControlTables, SinumerikByHand) {
   const std::string axis = "_STEP[0,X1]=1000\n$AA_ENC_COMP_MIN[0,X1]=0\n$AA_ENC_COMP_MAX[0,X1]=1000\n";
   const std::vector<TableFile> encoder = {
@@ -152,6 +175,7 @@ constexpr ValueCells kValueCells[] = {
     {"marlin", "skew.gcode", '=', 1, 1, "none"},
     {"isg-csv", "volcomp.csv", ' ', 3, 5, ""},
     {"etalon-exchange", "volcomp.txt", ' ', 1, 1, ""},
+    {"isg-ssfk", ".lis", ' ', 1, 1, "kw.ssfk.table["},
     {"sinumerik", "AX_EEC.INI", '=', 1, 1, "$AA_ENC_COMP["},
     {"sinumerik-cec", "NC_CEC.INI", '=', 1, 1, "$AN_CEC["},
 };
@@ -178,6 +202,8 @@ constexpr Exchange kExchanges[] = {
     {"isg-csv", "axis", "EXX", "EYY"},
     {"etalon-exchange", "axis", "[EXX]", "[EYY]"},
     {"etalon-exchange", "index", "[EYX]", "[EXY]"},
+    {"isg-ssfk", "axis", "log_achs_name X", "log_achs_name Y"},
+    {"isg-ssfk", "direction", "].pos", "].neg"},
     {"sinumerik", "axis", ",X1]", ",Y1]"},
     {"sinumerik-cec", "axis", "OUTPUT_AXIS[0]=(X1)", "OUTPUT_AXIS[0]=(Y1)"},
     {"sinumerik-cec", "index", "INPUT_AXIS[2]=(X1)", "INPUT_AXIS[2]=(Z1)"},

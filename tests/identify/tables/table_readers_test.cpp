@@ -143,6 +143,22 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"etalon-exchange", "volcomp.txt", "}\n", "", 53, "does not end"}));
 
 INSTANTIATE_TEST_SUITE_P(
+    Leadscrew, MalformedTables,
+    ::testing::Values(
+        Malformed{"isg-ssfk", "achskw2.lis", "End\n", "", 18, "does not end in End"},
+        Malformed{"isg-ssfk", "achskw2.lis", "unit 1", "unit 0", 19, "unit is not 1"},
+        Malformed{"isg-ssfk", "achskw2.lis", "unit 1 /* 0.1 um */", "unit 1 /* 0.1 um", 7, "does not end on"},
+        Malformed{"isg-ssfk", "achskw2.lis", "log_achs_name Y", "log_achs_name A", 19, "\"A\""},
+        Malformed{"isg-ssfk", "achskw2.lis", "log_achs_name Y", "log_achs_name Z", 0, "has two lists"},
+        Malformed{"isg-ssfk", "achskw2.lis", "kw_nr_max 3", "kw_nr_max 4", 19,
+                  "table[3].setpoint is missing"},
+        Malformed{"isg-ssfk", "achskw2.lis", "table[2].neg", "table[1].neg", 18, "given twice"},
+        Malformed{"isg-ssfk", "achskw2.lis", "table[2].neg", "table[9999].neg", 18, "not among"},
+        Malformed{"isg-ssfk", "achskw2.lis", "table[1].setpoint 5", "table[1].setpoint 50", 19,
+                  "does not lie beyond"},
+        Malformed{"isg-ssfk", "achskw2.lis", "modulo 0", "modulo 1", 19, "modulo is not 0"}));
+
+INSTANTIATE_TEST_SUITE_P(
     Sinumerik, MalformedTables,
     ::testing::Values(
         Malformed{"sinumerik", "AX_EEC.INI", "%_N_AX_EEC_INI", "%_N_AX_CEC_INI", 1, "does not begin with"},

@@ -118,6 +118,17 @@ TEST(SignByHand, IsgHoldsErrorsInMm) {
   EXPECT_NEAR(x_um("isg-csv", files, kFarX, 1), -8.0, 1e-6);
 }
 
+TEST(SignByHand, LeadscrewListsHoldErrorsInTenthsOfMicrometres) {
+  const auto files = files_of("isg-ssfk", long_axis(), CompensationPart::Positioning);
+  const std::string& x = content_of(files, "achskw1.lis");
+  EXPECT_THAT(x, HasSubstr("kw.ssfk.table[0].setpoint 0\n"));
+  EXPECT_THAT(x, HasSubstr("setpoint 10000000\nkw.ssfk.table[0].pos 0\n"));
+  EXPECT_THAT(x, HasSubstr(".pos 100\nkw.ssfk.table[0].neg -40\n"));
+  EXPECT_THAT(x, HasSubstr(".neg 60\nEnd\n"));
+  EXPECT_NEAR(x_um("isg-ssfk", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("isg-ssfk", files, kFarX, -1), -6.0, 1e-6);
+}
+
 TEST(SignByHand, EtalonExchangeHoldsErrorsInMm) {
   const auto files = files_of("etalon-exchange", long_axis(), CompensationPart::Positioning);
   EXPECT_THAT(content_of(files, "volcomp.txt"), HasSubstr("[EXX]\nGridpoints = {\n0.000000 -0.002000000\n"));

@@ -85,7 +85,15 @@ void EffectSearch::start() {
   ladder_.clear();
   smoothing_of_steps_.clear();
   heldout_loglik_.reset();
-  find_noise();
+  if (first_noise_) {
+    noise_estimate_ = first_noise_->estimate;
+    noise_ = noise_estimate_->parameters();
+    model_.set_smoothing(first_noise_->smoothing);
+    projector_ = projector_without(std::nullopt);
+  } else {
+    find_noise();
+    first_noise_ = FirstNoise{*noise_estimate_, model_.smoothing()};
+  }
   add_step("");
 }
 

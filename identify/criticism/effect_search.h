@@ -74,6 +74,12 @@ class EffectSearch {
   double log10_level() const;
 
  private:
+  /// Of the model without any effect.
+  struct FirstNoise {
+    NoiseEstimate estimate;
+    std::vector<SmoothingTerm> smoothing;
+  };
+
   void start();
   void find_noise();
   std::unique_ptr<Projector> projector_without(std::optional<std::size_t> left_out) const;
@@ -119,6 +125,7 @@ class EffectSearch {
   std::vector<ScanVariable> variables_;
   std::vector<ScanVariable> constancy_variables_;
   std::optional<NoiseEstimate> noise_estimate_;
+  std::optional<FirstNoise> first_noise_;
   std::vector<NoiseParameters> noise_;
   std::unique_ptr<Projector> projector_;
   std::vector<FamilyTest> tests_;

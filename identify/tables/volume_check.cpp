@@ -152,10 +152,9 @@ StepChoice choose_step(const TableFormat& format, const FitResult& result, Table
       const double deviation =
           largest_deviation(result.machine, ideal, format.read(files), format.limits.both_directions);
       if (deviation < best.deviation) best = {step, deviation, false};
-      best.reached = best.deviation <= tolerance + format.limits.resolution;
-    } catch (const InputError& error) {
-      refused = error;
-      break;
+      best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
+    } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse
+      if (!refused) refused = error;
     }
     if (best.reached) break;
   }

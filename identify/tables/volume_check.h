@@ -57,9 +57,9 @@ struct StepChoice {
 };
 
 /// The largest step of 1, 2 or 5 x 10^n mm whose tables, read back, follow the ideal compensation within
-/// `tolerance` (m) plus the format's resolution; where the controller's limits forbid that, the best one that
-/// they allow. A format that tells no directions apart is judged by their mean. Throws InputError when not
-/// even the coarsest table fits.
+/// `tolerance` (m) plus half the format's resolution, which rounding takes; where the controller's limits
+/// forbid that, the best one that they allow. A format that tells no directions apart is judged by their
+/// mean. Throws InputError when no step is allowed.
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance);
 

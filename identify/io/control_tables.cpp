@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "volcal/identify/io/text_file.h"
+#include "volcal/identify/io/typed_control_tables.h"
 #include "volcal/identify/tables/csv_tables.h"
 #include "volcal/model/description/errors.h"
 
@@ -405,7 +406,9 @@ const std::vector<ControlFormat>& control_formats() {
       {"etalon-exchange", {"volcomp.txt"}, etalon_control},
       {"isg-ssfk", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}, isg_ssfk_control},
       {"sinumerik", {"AX_EEC.INI"}, sinumerik_control},
-      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control}};
+      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control},
+      {"heidenhain", {"CONFIG.CMA.txt"}, heidenhain_control},
+      {"fanuc", {"pitch_error.txt"}, fanuc_control}};
   return formats;
 }
 

@@ -17,7 +17,9 @@ namespace volcal {
   FORMAT(etalon_exchange_format)     \
   FORMAT(isg_ssfk_format)            \
   FORMAT(sinumerik_format)           \
-  FORMAT(sinumerik_cec_format)
+  FORMAT(sinumerik_cec_format)       \
+  FORMAT(heidenhain_format)          \
+  FORMAT(fanuc_format)
 
 #define VOLCAL_DECLARE(name) const TableFormat& name();
 #define VOLCAL_ADDRESS(name) &(name)(),
@@ -35,17 +37,8 @@ const TableFormat* find_table_format(std::string_view name) {
 }
 
 std::span<const RefusedFormat> refused_table_formats() {
-  static constexpr std::array<RefusedFormat, 3> kRefused = {
-      {{"heidenhain",
-        "columns of .COM and .CMA are public, their widths, BEGIN and END lines and the sign of the values "
-        "are not; "
-        "enter neutral-csv in the table editor after finding the sign with one large value"},
-       {"fanuc",
-        "stored pitch error takes increments, but their sign, their range and where within an interval the "
-        "control "
-        "applies them are not confirmed publicly; neutral-csv has the values, parameters 3620 to 3627 the "
-        "places"},
-       {"sinumerik-vcs", "no public grammar of its files is known"}}};
+  static constexpr std::array<RefusedFormat, 1> kRefused = {
+      {{"sinumerik-vcs", "no public grammar of its files is known"}}};
   return kRefused;
 }
 

@@ -143,6 +143,21 @@ TEST_F(TablesAtPoints, WriteTheFilesOfAFormat) {
   EXPECT_THAT(run.output, HasSubstr("Verified: read back by volcal; not tried on a controller."));
 }
 
+TEST_F(TablesAtPoints, WriteTablesThatAreEnteredByHand) {
+  const auto heidenhain = tables("--format heidenhain --set sign=error --step 50 -o " + path("heidenhain"));
+  ASSERT_EQ(heidenhain.exit_code, 0) << heidenhain.errors;
+  EXPECT_THAT(heidenhain.output, HasSubstr("sign of the values is NOT confirmed"));
+  EXPECT_THAT(content(path("heidenhain/X.COM.txt")), HasSubstr("ERRORS\nAXISPOS X Y Z\n-400.0000 "));
+  EXPECT_THAT(content(path("heidenhain/CONFIG.CMA.txt")), HasSubstr("* X.COM Y.COM Z.COM"));
+  const auto fanuc = tables(
+      "--format fanuc --set sign=compensation --set output=even --set directions=mean -o " + path("fanuc"));
+  ASSERT_EQ(fanuc.exit_code, 0) << fanuc.errors;
+  EXPECT_THAT(content(path("fanuc/pitch_error.txt")),
+              HasSubstr("REFERENCE X -400.0000\n3605#0 X 0\n3620 X 0\n"));
+  const auto again = tables("--format neutral-csv --superimpose " + path("fanuc") + " --dry-run");
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
 /// Where a table has a row, its trim in mm is the correction at that point.
 TEST_F(TablesAtPoints, SayWhatTheTablesAdd) {
   const std::string options = "--format linuxcnc --step 50 --at X=100,Y=50,Z=-150";
@@ -178,8 +193,12 @@ TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
       {"--format klipper --type L-POS", "three skew factors"},
       {"--format sinumerik-cec", "sign of $AN_CEC values is not confirmed"},
       {"--format sinumerik-cec --set cec_sign=up", "give --set cec_sign=error"},
-      {"--format fanuc", "not confirmed publicly"},
-      {"--format heidenhain", "the sign of the values"},
+      {"--format fanuc", "sign is not confirmed publicly"},
+      {"--format fanuc --set sign=error", "give --set output=even"},
+      {"--format fanuc --type L-STR", "acts on its own axis only"},
+      {"--format heidenhain", "sign of the values of .COM tables is not confirmed"},
+      {"--format heidenhain --type L-VOL", "depends on one axis"},
+      {"--format sinumerik-vcs", "no public grammar"},
       {"--format wrong", "is no table format"},
       {"--format linuxcnc --set sign=1", "has no such setting"},
       {"--format linuxcnc --set units", "write NAME=VALUE"},

@@ -108,6 +108,21 @@ TEST(ControlTables, EtalonExchangeAndFirmwareByHand) {
   EXPECT_NEAR(added_um("klipper", klipper, {0.0, 0.0, 1.0}, 1).x(), -20.0, 1e-9);
 }
 
+TEST(ControlTables, TypedTablesByHand) {
+  const std::vector<TableFile> heidenhain = {
+      {"CONFIG.CMA.txt", "ACTIVE X\n* X.COM\n"},
+      {"X.COM.txt", "; VOLCAL VALUES ARE ERRORS\nAXISPOS X Z\n0 0 0\n1000 0.010 0.004\n"}};
+  EXPECT_NEAR(added_um("heidenhain", heidenhain, kMiddleOfX, 1).x(), -5.0, 1e-9);
+  EXPECT_NEAR(added_um("heidenhain", heidenhain, kMiddleOfX, 1).z(), -2.0, 1e-9);
+  const std::string fanuc =
+      "VALUES COMPENSATIONS\nOUTPUT EVEN\nDETECTION_UNIT_UM 0.1\nLARGEST_VALUE 7\n"
+      "REFERENCE_AMOUNT NEGATIVE\nPARAMETER AXIS VALUE\nREFERENCE X 1000\n3605#0 X 1\n3620 X 11\n"
+      "3621 X 11\n3622 X 11\n3623 X 20\n3624 X 1000\n3626 X 21\n3627 X -30\nNUMBER VALUE\n11 5\n21 2\n";
+  EXPECT_NEAR(added_um("fanuc", {{"pitch_error.txt", fanuc}}, kMiddleOfX, 1).x(), -5.0, 1e-9)
+      << "5 x 20 x 0.1 um less at the far end of the interval below the reference position";
+  EXPECT_NEAR(added_um("fanuc", {{"pitch_error.txt", fanuc}}, kMiddleOfX, -1).x(), -2.0 - 3.0, 1e-9);
+}
+
 /// Two readers that know nothing of each other agree on every format and type.
 TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
   for (const TableFormat* format : table_formats()) {
@@ -178,6 +193,8 @@ constexpr ValueCells kValueCells[] = {
     {"isg-ssfk", ".lis", ' ', 1, 1, "kw.ssfk.table["},
     {"sinumerik", "AX_EEC.INI", '=', 1, 1, "$AA_ENC_COMP["},
     {"sinumerik-cec", "NC_CEC.INI", '=', 1, 1, "$AN_CEC["},
+    {"heidenhain", ".COM.txt", ' ', 1, 3, ""},
+    {"fanuc", "pitch_error.txt", ' ', 1, 1, ""},
 };
 
 /// Two words of a file that could be mistaken for each other, and which mistake that is.
@@ -209,6 +226,13 @@ constexpr Exchange kExchanges[] = {
     {"sinumerik-cec", "index", "INPUT_AXIS[2]=(X1)", "INPUT_AXIS[2]=(Z1)"},
     {"sinumerik-cec", "direction", "DIRECTION[0]=1", "DIRECTION[0]=-1"},
     {"sinumerik-cec", "sign", "VALUES ARE ERRORS", "VALUES ARE COMPENSATIONS"},
+    {"heidenhain", "axis", "AXISPOS X Y", "AXISPOS Y X"},
+    {"heidenhain", "cause", "* X.COM Y.COM", "* Y.COM X.COM"},
+    {"heidenhain", "sign", "VALUES ARE ERRORS", "VALUES ARE COMPENSATIONS"},
+    {"fanuc", "axis", " X ", " Y "},
+    {"fanuc", "direction", "REFERENCE_AMOUNT NEGATIVE", "REFERENCE_AMOUNT POSITIVE"},
+    {"fanuc", "unit", "DETECTION_UNIT_UM 1", "DETECTION_UNIT_UM 10"},
+    {"fanuc", "sign", "VALUES COMPENSATIONS", "VALUES ERRORS"},
 };
 
 std::string exchanged(const std::string& text, const std::string& one, const std::string& other) {

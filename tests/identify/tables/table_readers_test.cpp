@@ -181,6 +181,48 @@ INSTANTIATE_TEST_SUITE_P(
                   "is not 0"},
         Malformed{"sinumerik-cec", "NC_CEC.INI", "_OUTPUT_AXIS[0]=(X1)", "_OUTPUT_AXIS[0]=(C1)", 8, "C1"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    Heidenhain, MalformedTables,
+    ::testing::Values(
+        Malformed{"heidenhain", "X.COM.txt", "; VOLCAL VALUES ARE ERRORS\n", "", 1, "what the values are"},
+        Malformed{"heidenhain", "X.COM.txt", "AXISPOS X Y Z", "AXISPOS X Y Y", 2, "column is named \"Y\""},
+        Malformed{"heidenhain", "X.COM.txt", "AXISPOS X", "POS X", 2, "neither AXISPOS nor"},
+        Malformed{"heidenhain", "X.COM.txt", "AXISPOS X", "DATUM 0\nAXISPOS X", 3, "do not stand together"},
+        Malformed{"heidenhain", "X.COM.txt", "AXISPOS X", "DATUM 0\nSPACING 24\nNR X", 3, "out of range"},
+        Malformed{"heidenhain", "X.COM.txt", "AXISPOS X", "DATUM 0\nSPACING 23\nNR X", 6, "not number 1"},
+        Malformed{"heidenhain", "X.COM.txt", "\n500.0000 ", "\n1500.0000 ", 5, "does not lie beyond"},
+        Malformed{"heidenhain", "X.COM.txt", "\n500.0000 ", "\n500,0000 ", 4, "not a number of a table"},
+        Malformed{"heidenhain", "X.COM.txt", "\n1000.0000 ", "\n", 5, "the row has 3 cells"},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", "\n* ", "\n- ", 2, "no line is active"},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", " Z.COM\n", "\n", 2, "another number of cells"},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", "Z.COM\n", "Z.COM\n* X.COM Y.COM Z.COM\n", 3, "two lines"},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", "ACTIVE X", "ACTIVE C", 1, "column is named \"C\""},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", "ACTIVE", "NR", 1, "not ACTIVE"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Fanuc, MalformedTables,
+    ::testing::Values(
+        Malformed{"fanuc", "pitch_error.txt", "VALUES COMPENSATIONS", "VALUES UP", 2, "VALUES is neither"},
+        Malformed{"fanuc", "pitch_error.txt", "UNIT_UM 1", "UNIT_UM 0", 7, "missing or out of range"},
+        Malformed{"fanuc", "pitch_error.txt", "LARGEST_VALUE 7\n", "", 6, "missing or out of range"},
+        Malformed{"fanuc", "pitch_error.txt", "PARAMETER AXIS VALUE\n", "", 7, "PARAMETER AXIS VALUE"},
+        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3621 C 0", 11, "no parameter of an axis"},
+        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3620 X 0", 11, "a second time"},
+        Malformed{"fanuc", "pitch_error.txt", "3624 X", "3625 X", 14, "is not read here"},
+        Malformed{"fanuc", "pitch_error.txt", "3624 X 500.0000\n", "", 15, "3624 is missing"},
+        Malformed{"fanuc", "pitch_error.txt", "3620 X 0", "3620 X 9", 16, "out of order"},
+        Malformed{"fanuc", "pitch_error.txt", "3622 X 2", "3622 X 200", 16, "more than 128"},
+        Malformed{"fanuc", "pitch_error.txt", "3623 X 1", "3623 X 0", 16, "3623 or 3624"},
+        Malformed{"fanuc", "pitch_error.txt", "3627 X 2", "3627 X 99999", 16, "3626 or 3627"},
+        Malformed{"fanuc", "pitch_error.txt", "3626 X 3", "3626 X -3", 16, "3626 or 3627"},
+        Malformed{"fanuc", "pitch_error.txt", "3626 X 3\n", "", 15, "3626, 3627 or REFERENCE_AMOUNT"},
+        Malformed{"fanuc", "pitch_error.txt", "REFERENCE_AMOUNT NEGATIVE\n", "", 15, "3626, 3627 or"},
+        Malformed{"fanuc", "pitch_error.txt", "\n1 -5", "\n1 -9", 33, "beyond 7"},
+        Malformed{"fanuc", "pitch_error.txt", "\n1 -5", "\n1 -0.5", 33, "not a whole number"},
+        Malformed{"fanuc", "pitch_error.txt", "\n2 -5", "\n1 -5", 34, "a second time"},
+        Malformed{"fanuc", "pitch_error.txt", "\n2 -5", "\n2000 -5", 34, "number is out of range"},
+        Malformed{"fanuc", "pitch_error.txt", "\n4 -5", "", 42, "point 4 has no value"}));
+
 TEST(TableReaders, MissingFilesAreNamed) {
   for (const TableFormat* format : table_formats()) {
     try {

@@ -173,6 +173,38 @@ TEST(SignByHand, SinumerikCecIsAskedFor) {
   EXPECT_NEAR(x_um("sinumerik-cec", corrections, kFarY, 1), 30.0, 1e-3);
 }
 
+TEST(SignByHand, HeidenhainIsAskedFor) {
+  EXPECT_THROW(files_of("heidenhain", leaning_axis(), CompensationPart::Squareness), InputError);
+  const auto errors =
+      files_of("heidenhain", leaning_axis(), CompensationPart::Squareness, {{"sign", "error"}});
+  const auto corrections =
+      files_of("heidenhain", leaning_axis(), CompensationPart::Squareness, {{"sign", "compensation"}});
+  EXPECT_EQ(content_of(errors, "Y.COM.txt"),
+            "; VOLCAL VALUES ARE ERRORS\nAXISPOS X Z\n0.0000 0.0000 0.0000\n500.0000 -0.0150 0.0000\n"
+            "1000.0000 -0.0300 0.0000\n");
+  EXPECT_EQ(content_of(errors, "CONFIG.CMA.txt"), "ACTIVE X Y Z\n* X.COM Y.COM Z.COM\n");
+  EXPECT_THAT(content_of(corrections, "Y.COM.txt"), HasSubstr("1000.0000 0.0300 0.0000\n"));
+  EXPECT_NEAR(x_um("heidenhain", errors, kFarY, 1), 30.0, 1e-3);
+  EXPECT_NEAR(x_um("heidenhain", corrections, kFarY, 1), 30.0, 1e-3);
+}
+
+TEST(SignByHand, FanucIsAskedFor) {
+  EXPECT_THROW(files_of("fanuc", long_axis(), CompensationPart::Positioning), InputError);
+  std::map<std::string, std::string> settings = {
+      {"sign", "compensation"}, {"output", "even"}, {"reference_amount", "negative"}};
+  const auto corrections = files_of("fanuc", long_axis(), CompensationPart::Positioning, settings);
+  settings["sign"] = "error";
+  const auto errors = files_of("fanuc", long_axis(), CompensationPart::Positioning, settings);
+  EXPECT_THAT(content_of(corrections, "pitch_error.txt"), HasSubstr("3627 X 4\n"));
+  EXPECT_THAT(content_of(corrections, "pitch_error.txt"), HasSubstr("0 0\n1 -5\n2 -5\n3 0\n4 -5\n5 -5\n"));
+  EXPECT_THAT(content_of(errors, "pitch_error.txt"), HasSubstr("3627 X -4\n"));
+  EXPECT_THAT(content_of(errors, "pitch_error.txt"), HasSubstr("0 0\n1 5\n2 5\n3 0\n4 5\n5 5\n"));
+  for (const auto& files : {corrections, errors}) {
+    EXPECT_NEAR(x_um("fanuc", files, kFarX, 1), -10.0, 1e-6);
+    EXPECT_NEAR(x_um("fanuc", files, kFarX, -1), -6.0, 1e-6);
+  }
+}
+
 TEST(SignByHand, SkewFactorsAreSlopesOfTheError) {
   const auto klipper = files_of("klipper", leaning_axis(), CompensationPart::Squareness);
   EXPECT_THAT(content_of(klipper, "skew_correction.cfg"), HasSubstr("xy_skew = -3e-05\n"));

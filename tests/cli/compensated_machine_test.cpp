@@ -128,7 +128,7 @@ TEST(CompensationStudy, EveryFormatLeavesWhatItsIdealLeaves) {
     if (!row.contains("read_after_um")) continue;
     EXPECT_LT(row.at("read_after_um").get<double>(), row.at("read_before_um").get<double>()) << row.dump();
   }
-  EXPECT_EQ(formats.size(), 12U);
+  EXPECT_EQ(formats.size(), 13U);
 }
 
 TEST(CompensationStudy, DoesNotDependOnTheNumberOfThreads) {

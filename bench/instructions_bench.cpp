@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "measure.h"
 #include "reference_problem.h"
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/criticism/projector.h"

@@ -257,6 +257,24 @@ class IsgControlBlock {
   sim::ControlGrid grid_;
 };
 
+// Whole numbers of 0.1 um; values are actual minus set position.
+void add_leadscrew_lists(std::span<const TableFile> files, sim::ControlTables& tables) {
+  constexpr double kTenth = 1e-7;
+  AxisTables axes(sim::TableValue::Error);
+  for (const TableFile& file : files) {
+    if (!file.name.starts_with("achskw")) continue;
+    AxisName axis = AxisName::X;
+    std::map<int, std::map<std::string, double>> entries;
+    for (const Words& line : lines_of_words(file.content, " \t[].")) {
+      if (line[0] == "kopf" && line.at(1) == "log_achs_name") axis = axis_in(line.at(2));
+      if (line.size() > 4 && line[2] == "table") entries[std::stoi(line[3])][line[4]] = std::stod(line.at(5));
+    }
+    for (auto& [index, entry] : entries)
+      axes.add(axis, axis, entry.at("setpoint") * kTenth, entry.at("pos") * kTenth, entry.at("neg") * kTenth);
+  }
+  axes.move_to(tables);
+}
+
 // Names of ISO 230-1: errors, mm; # begins a new block.
 sim::ControlTables isg_control(std::span<const TableFile> files) {
   sim::ControlTables tables;
@@ -276,6 +294,7 @@ sim::ControlTables isg_control(std::span<const TableFile> files) {
     }
   }
   close();
+  add_leadscrew_lists(files, tables);
   return tables;
 }
 
@@ -298,23 +317,9 @@ sim::ControlTables etalon_control(std::span<const TableFile> files) {
 }
 
 /// Assignments of a SINUMERIK file as words: variable, indices, value. Comments are left out.
-// Whole numbers of 0.1 um; values are actual minus set position.
 sim::ControlTables isg_ssfk_control(std::span<const TableFile> files) {
-  constexpr double kTenth = 1e-7;
-  AxisTables axes(sim::TableValue::Error);
-  for (const TableFile& file : files) {
-    if (!file.name.starts_with("achskw")) continue;
-    AxisName axis = AxisName::X;
-    std::map<int, std::map<std::string, double>> entries;
-    for (const Words& line : lines_of_words(file.content, " \t[].")) {
-      if (line[0] == "kopf" && line.at(1) == "log_achs_name") axis = axis_in(line.at(2));
-      if (line.size() > 4 && line[2] == "table") entries[std::stoi(line[3])][line[4]] = std::stod(line.at(5));
-    }
-    for (auto& [index, entry] : entries)
-      axes.add(axis, axis, entry.at("setpoint") * kTenth, entry.at("pos") * kTenth, entry.at("neg") * kTenth);
-  }
   sim::ControlTables tables;
-  axes.move_to(tables);
+  add_leadscrew_lists(files, tables);
   return tables;
 }
 
@@ -392,23 +397,24 @@ struct ControlFormat {
   std::string_view format;
   std::vector<std::string> marks;  ///< any of these files in a folder
   sim::ControlTables (*read)(std::span<const TableFile>);
+  std::string_view without;  ///< a file that makes them part of another format
 };
 
 const std::vector<ControlFormat>& control_formats() {
   static const std::vector<ControlFormat> formats = {
-      {"csv", {"compensation_tables.csv"}, csv_control},
-      {"neutral-csv", {"axis_corrections.csv", "correction_grid.csv"}, neutral_control},
-      {"linuxcnc", {"compensation.ini"}, linuxcnc_control},
-      {"linuxcnc-grid", {"volcal.grid"}, linuxcnc_grid_control},
-      {"klipper", {"skew_correction.cfg"}, klipper_control},
-      {"marlin", {"skew.gcode"}, marlin_control},
-      {"isg-csv", {"volcomp.lis"}, isg_control},
-      {"etalon-exchange", {"volcomp.txt"}, etalon_control},
-      {"isg-ssfk", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}, isg_ssfk_control},
-      {"sinumerik", {"AX_EEC.INI"}, sinumerik_control},
-      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control},
-      {"heidenhain", {"CONFIG.CMA.txt"}, heidenhain_control},
-      {"fanuc", {"pitch_error.txt"}, fanuc_control}};
+      {"csv", {"compensation_tables.csv"}, csv_control, ""},
+      {"neutral-csv", {"axis_corrections.csv", "correction_grid.csv"}, neutral_control, ""},
+      {"linuxcnc", {"compensation.ini"}, linuxcnc_control, ""},
+      {"linuxcnc-grid", {"volcal.grid"}, linuxcnc_grid_control, ""},
+      {"klipper", {"skew_correction.cfg"}, klipper_control, ""},
+      {"marlin", {"skew.gcode"}, marlin_control, ""},
+      {"isg-csv", {"volcomp.lis"}, isg_control, ""},
+      {"etalon-exchange", {"volcomp.txt"}, etalon_control, ""},
+      {"isg-ssfk", {"achskw1.lis", "achskw2.lis", "achskw3.lis"}, isg_ssfk_control, "volcomp.lis"},
+      {"sinumerik", {"AX_EEC.INI"}, sinumerik_control, ""},
+      {"sinumerik-cec", {"NC_CEC.INI"}, sinumerik_cec_control, ""},
+      {"heidenhain", {"CONFIG.CMA.txt"}, heidenhain_control, ""},
+      {"fanuc", {"pitch_error.txt"}, fanuc_control, ""}};
   return formats;
 }
 
@@ -427,7 +433,8 @@ TablesFolder read_tables_folder(const std::string& folder) {
       names.insert(entry.path().filename().string());
   }
   for (const ControlFormat& format : control_formats()) {
-    if (std::ranges::none_of(format.marks, [&](const std::string& mark) { return names.contains(mark); }))
+    if (names.contains(std::string(format.without)) ||
+        std::ranges::none_of(format.marks, [&](const std::string& mark) { return names.contains(mark); }))
       continue;
     if (tables.format != nullptr)
       throw InputError({folder, 0},

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <map>
 #include <utility>
 
+#include "volcal/identify/tables/isg_ssfk_lists.h"
 #include "volcal/identify/tables/sampled_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -11,11 +13,19 @@
 namespace volcal {
 
 const TableFormat& isg_csv_format();
+const TableFormat& isg_ssfk_format();
 
 namespace {
 
 constexpr std::string_view kIsgList = "volcomp.lis";
 constexpr std::string_view kIsgFile = "volcomp.csv";
+
+constexpr std::array<TableSetting, 1> kIsgSettings = {
+    {{"reversal",
+      "lists or none: with lists, half the positioning reversal of every axis towards + and towards - as "
+      "leadscrew lists (isg-ssfk) beside the volumetric tables, which know no direction; for axes that have "
+      "no leadscrew compensation of their own",
+      "none", "lists"}}};
 
 /// All axes count as tool axes: displacements alone are written, and they add whatever carries the axis.
 std::string isg_list(const Machine& machine) {
@@ -66,11 +76,37 @@ std::string isg_grid(const CorrectionGrid& grid) {
   return fmt::to_string(text);
 }
 
+bool has_reversal_lists(const TableFormatOptions& options) {
+  const std::string reversal = table_setting(kIsgSettings, options, "reversal");
+  if (reversal != "lists" && reversal != "none")
+    throw InputError({}, "--set reversal=" + reversal, "write reversal=lists or reversal=none");
+  return reversal == "lists" && options.type.contains(CompensationPart::Positioning);
+}
+
+/// What positioning along the specific lines leaves of the mean of both directions.
+std::vector<TableFile> isg_reversal_lists(const FitResult& result, TableFormatOptions options) {
+  options.type = CompensationPart::Positioning;
+  std::vector<TableFile> files;
+  for (const SampledTable& sampled : sample_axis_tables(isg_ssfk_format(), result, options)) {
+    AxisTable half = sampled.table;
+    for (std::size_t i = 0; i < half.position.size(); ++i) {
+      half.forward[i] = 0.5 * (sampled.table.forward[i] - sampled.table.backward[i]);
+      half.backward[i] = -half.forward[i];
+    }
+    files.push_back(ssfk_file(sampled.output, half));
+  }
+  return files;
+}
+
 std::vector<TableFile> write_isg(const FitResult& result, const TableFormatOptions& options) {
   std::string content = options.type.is_separable()
                             ? isg_axis_blocks(sample_axis_tables(isg_csv_format(), result, options))
                             : isg_grid(sample_grid(isg_csv_format(), result, options));
-  return {{std::string(kIsgList), isg_list(result.machine)}, {std::string(kIsgFile), std::move(content)}};
+  std::vector<TableFile> files = {{std::string(kIsgList), isg_list(result.machine)},
+                                  {std::string(kIsgFile), std::move(content)}};
+  if (has_reversal_lists(options))
+    std::ranges::move(isg_reversal_lists(result, options), std::back_inserter(files));
+  return files;
 }
 
 /// One block of a file: arguments, parameters, rows.
@@ -174,6 +210,7 @@ CompensationTables read_isg(std::span<const TableFile> files) {
   }
   if (!block) lines.fail("the last block is missing", "write a header and rows");
   result.terms.push_back(std::move(*block).term(lines));
+  std::ranges::move(ssfk_terms(files), std::back_inserter(result.terms));
   return result;
 }
 
@@ -194,7 +231,7 @@ const TableFormat& isg_csv_format() {
       .supported = CompensationType::volumetric(),
       .refusal = "it holds every type of the linear axes",
       .limits = {.resolution = 1e-12},
-      .settings = {},
+      .settings = kIsgSettings,
       .write = write_isg,
       .read = read_isg};
   return format;

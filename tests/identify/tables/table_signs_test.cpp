@@ -115,7 +115,13 @@ TEST(SignByHand, IsgHoldsErrorsInMm) {
   EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("X EXX\n0.000000 -0.002000000\n"))
       << "mean of both directions: the reversal is 4 um";
   EXPECT_THAT(content_of(files, "volcomp.csv"), HasSubstr("1000.000000 0.008000000\n"));
-  EXPECT_NEAR(x_um("isg-csv", files, kFarX, 1), -8.0, 1e-6);
+  EXPECT_THAT(content_of(files, "achskw1.lis"), HasSubstr(".pos 20\nkw.ssfk.table[1].pos 20\n"))
+      << "half the reversal";
+  EXPECT_NEAR(x_um("isg-csv", files, kFarX, 1), -10.0, 1e-6);
+  EXPECT_NEAR(x_um("isg-csv", files, kFarX, -1), -6.0, 1e-6);
+  const std::vector<TableFile> tables_alone(files.begin(), files.begin() + 2);
+  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, 1), -8.0, 1e-6);
+  EXPECT_NEAR(x_um("isg-csv", tables_alone, kFarX, -1), -8.0, 1e-6);
 }
 
 TEST(SignByHand, LeadscrewListsHoldErrorsInTenthsOfMicrometres) {

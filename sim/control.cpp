@@ -97,6 +97,9 @@ CommandCorrection command_correction(const ActiveCompensation& compensation) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const ControlAxisTable& table : tables->axis_tables)
       sum[direction_of(table.output)] += sign_of(table.meaning) * table_value(table, state);
+    for (const auto& [table, factor] : tables->products)
+      sum[direction_of(table.output)] +=
+          sign_of(table.meaning) * table_value(table, state) * table_value(factor, state);
     for (const ControlGrid& grid : tables->grids) sum += grid_correction(grid, state);
     for (const ControlSkew& skew : tables->skews) sum += skew_correction(skew, state);
     for (const CommandCorrection& model : models) sum += model(state);

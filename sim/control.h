@@ -29,6 +29,12 @@ struct ControlAxisTable {
   std::vector<double> towards_minus;
 };
 
+/// What the product of two tables adds to the first one's output: value times value of `factor` as a number.
+struct ControlProduct {
+  ControlAxisTable table;
+  ControlAxisTable factor;
+};
+
 /// Trilinear between nodes, the end values beyond them.
 struct ControlGrid {
   TableValue meaning = TableValue::Correction;
@@ -56,11 +62,14 @@ struct ControlModel {
 /// Tables of one folder; their corrections add up.
 struct ControlTables {
   std::vector<ControlAxisTable> axis_tables;
+  std::vector<ControlProduct> products;
   std::vector<ControlGrid> grids;
   std::vector<ControlSkew> skews;
   std::vector<ControlModel> models;
 
-  bool empty() const { return axis_tables.empty() && grids.empty() && skews.empty() && models.empty(); }
+  bool empty() const {
+    return axis_tables.empty() && products.empty() && grids.empty() && skews.empty() && models.empty();
+  }
 };
 
 struct ActiveCompensation {

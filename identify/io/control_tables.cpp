@@ -365,6 +365,12 @@ struct CecControlTable {
   std::map<std::string, std::string> settings;
 };
 
+sim::ControlAxisTable in_millimetres(sim::ControlAxisTable table) {
+  for (double& value : table.towards_plus) value /= kMillimetre;
+  for (double& value : table.towards_minus) value /= kMillimetre;
+  return table;
+}
+
 // What a positive value means is a comment of the file: the control that is simulated is the one that the
 // user found out it is.
 sim::ControlTables sinumerik_cec_control(std::span<const TableFile> files) {
@@ -380,6 +386,7 @@ sim::ControlTables sinumerik_cec_control(std::span<const TableFile> files) {
     }
   }
   sim::ControlTables tables;
+  std::map<int, std::size_t> place;
   for (auto& [number, table] : cec) {
     AxisTables axes(corrections ? sim::TableValue::Correction : sim::TableValue::Error);
     const double step = std::stod(table.settings["_STEP"]) * kMillimetre;
@@ -388,7 +395,14 @@ sim::ControlTables sinumerik_cec_control(std::span<const TableFile> files) {
     for (const auto& [point, value] : table.values)
       axes.add(axis_in(table.settings["_INPUT_AXIS"]), axis_in(table.settings["_OUTPUT_AXIS"]),
                first + point * step, direction < 0 ? 0.0 : value, direction > 0 ? 0.0 : value);
+    place[number] = tables.axis_tables.size();
     axes.move_to(tables);
+  }
+  for (auto& [number, table] : cec) {
+    const int other = std::stoi(table.settings["_MULT_BY_TABLE"]);
+    if (other > 0)
+      tables.products.push_back({tables.axis_tables.at(place.at(number)),
+                                 in_millimetres(tables.axis_tables.at(place.at(other - 1)))});
   }
   return tables;
 }

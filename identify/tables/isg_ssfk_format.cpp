@@ -18,9 +18,7 @@ std::vector<TableFile> write_ssfk(const FitResult& result, const TableFormatOpti
 CompensationTables read_ssfk(std::span<const TableFile> files) {
   CompensationTables result;
   result.terms = ssfk_terms(files);
-  if (result.terms.empty())
-    throw InputError({}, "there is no compensation list among the files",
-                     "give the folder that volcal tables wrote, with achskw1.lis");
+  if (result.terms.empty()) file_named(files, "achskw1.lis");  // says that it is missing
   return result;
 }
 

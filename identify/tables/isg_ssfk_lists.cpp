@@ -181,6 +181,7 @@ std::vector<CorrectionTerm> ssfk_terms(std::span<const TableFile> files) {
                        "keep one of the files");
   }
   std::vector<CorrectionTerm> terms;
+  terms.reserve(tables.size());
   for (auto& [axis, table] : tables) terms.push_back(axis_term(axis, std::move(table)));
   return terms;
 }

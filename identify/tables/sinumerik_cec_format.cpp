@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "volcal/identify/tables/product_tables.h"
 #include "volcal/identify/tables/sampled_tables.h"
 #include "volcal/identify/tables/sinumerik_program.h"
 #include "volcal/model/description/errors.h"
@@ -19,6 +21,7 @@ namespace {
 constexpr std::string_view kCecFile = "NC_CEC.INI";
 constexpr std::string_view kCecHeader = "%_N_NC_CEC_INI";
 constexpr std::string_view kCec = "$AN_CEC";
+constexpr double kMostCecTables = 1000.0;
 constexpr std::string_view kSignComment = ";VOLCAL VALUES ARE ";
 
 constexpr std::array<TableSetting, 2> kCecSettings = {
@@ -29,6 +32,11 @@ constexpr std::array<TableSetting, 2> kCecSettings = {
       "", "error"},
      {"max_tables", "tables that the control has", "8", "62"}}};
 
+bool vanishes(const AxisTable& table) {
+  const auto is_zero = [](double value) { return std::abs(value) < 0.5e-9; };
+  return std::ranges::all_of(table.forward, is_zero) && std::ranges::all_of(table.backward, is_zero);
+}
+
 bool same_in_both_directions(const AxisTable& table) {
   for (std::size_t i = 0; i < table.position.size(); ++i) {
     if (std::abs(table.forward[i] - table.backward[i]) > 0.5e-9) return false;
@@ -36,23 +44,26 @@ bool same_in_both_directions(const AxisTable& table) {
   return true;
 }
 
+/// Corrections as values of $AN_CEC.
 class CecWriter {
  public:
   CecWriter(double sign, double step) : sign_(sign), step_(step) {}
 
-  void add(const SampledTable& sampled) {
+  /// `multiplied_by`: number of the other table, 0 = none.
+  void add(const SampledTable& sampled, int multiplied_by = 0) {
     if (same_in_both_directions(sampled.table)) {
-      add_table(sampled, sampled.table.forward, 0);
+      add_table(sampled, sampled.table.forward, 0, multiplied_by);
     } else {
-      add_table(sampled, sampled.table.forward, 1);
-      add_table(sampled, sampled.table.backward, -1);
+      add_table(sampled, sampled.table.forward, 1, multiplied_by);
+      add_table(sampled, sampled.table.backward, -1, multiplied_by);
     }
   }
   int tables() const { return tables_; }
   const std::string& text() const { return text_; }
 
  private:
-  void add_table(const SampledTable& sampled, const std::vector<double>& corrections, int direction) {
+  void add_table(const SampledTable& sampled, const std::vector<double>& corrections, int direction,
+                 int multiplied_by) {
     const auto& positions = sampled.table.position;
     for (std::size_t i = 0; i < positions.size(); ++i)
       text_ += fmt::format("{}[{},{}]={:.6f}\n", kCec, tables_, i,
@@ -60,10 +71,11 @@ class CecWriter {
     text_ += fmt::format(
         "{0}_INPUT_AXIS[{1}]=({2})\n{0}_OUTPUT_AXIS[{1}]=({3})\n{0}_STEP[{1}]={4:.6f}\n"
         "{0}_MIN[{1}]={5:.6f}\n{0}_MAX[{1}]={6:.6f}\n{0}_DIRECTION[{1}]={7}\n"
-        "{0}_MULT_BY_TABLE[{1}]=0\n{0}_IS_MODULO[{1}]=0\n",
+        "{0}_MULT_BY_TABLE[{1}]={8}\n{0}_IS_MODULO[{1}]=0\n",
         kCec, tables_, sinumerik_axis_name(letter_of(sampled.table.input)),
         sinumerik_axis_name(letter_of(sampled.output)), step_ / kMetrePerMillimetre,
-        positions.front() / kMetrePerMillimetre, positions.back() / kMetrePerMillimetre, direction);
+        positions.front() / kMetrePerMillimetre, positions.back() / kMetrePerMillimetre, direction,
+        multiplied_by);
     ++tables_;
   }
 
@@ -71,6 +83,75 @@ class CecWriter {
   double step_;
   int tables_ = 0;
   std::string text_;
+};
+
+/// Tables and products as $AN_CEC adds them up: a product of two tables' values, mm, counts in addition to
+/// the values themselves, which the tables of one axis take back.
+class CecProducts {
+ public:
+  CecProducts(ProductTables sampled, double sign) : sampled_(std::move(sampled)), sign_(sign) {
+    for (const LeverProduct& product : sampled_.products) {
+      if (!levers_.contains(product.lever)) add_lever(product.lever);
+    }
+  }
+
+  void write(CecWriter& writer) {
+    std::map<AxisName, int> number;
+    for (const auto& [axis, lever] : levers_) {
+      writer.add({axis, lever.table});
+      number[axis] = writer.tables();
+    }
+    for (const LeverProduct& product : sampled_.products) {
+      const SampledTable turned = at_reach(product);
+      subtract(turned);
+      writer.add(turned, number.at(product.lever));
+    }
+    for (const SampledTable& table : sampled_.tables) {
+      if (!vanishes(table.table)) writer.add(table);
+    }
+  }
+
+ private:
+  struct Lever {
+    double reach = 0.0;  ///< m, where the table has 1 mm
+    AxisTable table;     ///< corrections, so that values come out as distances
+  };
+
+  void add_lever(AxisName axis) {
+    const SampledTable& own = *std::ranges::find_if(sampled_.tables, [axis](const SampledTable& table) {
+      return table.output == axis && table.table.input == axis;
+    });
+    Lever lever{0.0, {.input = axis, .position = own.table.position, .forward = {}, .backward = {}}};
+    const double line = sampled_.lines[index_of(axis)];
+    for (const double q : lever.table.position) lever.reach = std::max(lever.reach, std::abs(q - line));
+    for (const double q : lever.table.position)
+      lever.table.forward.push_back(sign_ * (q - line) / lever.reach * kMetrePerMillimetre);
+    lever.table.backward = lever.table.forward;
+    subtract({axis, lever.table});
+    levers_.emplace(axis, std::move(lever));
+  }
+
+  SampledTable at_reach(const LeverProduct& product) const {
+    SampledTable table{product.output, product.angle};
+    const double reach = levers_.at(product.lever).reach;
+    for (double& value : table.table.forward) value *= reach;
+    for (double& value : table.table.backward) value *= reach;
+    return table;
+  }
+
+  void subtract(const SampledTable& other) {
+    const auto same = std::ranges::find_if(sampled_.tables, [&](const SampledTable& table) {
+      return table.output == other.output && table.table.input == other.table.input;
+    });
+    for (std::size_t i = 0; i < other.table.position.size(); ++i) {
+      same->table.forward[i] -= other.table.forward[i];
+      same->table.backward[i] -= other.table.backward[i];
+    }
+  }
+
+  ProductTables sampled_;
+  double sign_;
+  std::map<AxisName, Lever> levers_;
 };
 
 /// +1 where values are corrections, -1 where they are errors.
@@ -87,8 +168,12 @@ std::vector<TableFile> write_cec(const FitResult& result, const TableFormatOptio
   const double sign = cec_sign(options);
   const double most = table_setting_number(kCecSettings, options, "max_tables");
   CecWriter writer(sign, options.step);
-  for (const SampledTable& sampled : sample_axis_tables(sinumerik_cec_format(), result, options))
-    writer.add(sampled);
+  if (options.type.is_separable()) {
+    for (const SampledTable& sampled : sample_axis_tables(sinumerik_cec_format(), result, options))
+      writer.add(sampled);
+  } else {
+    CecProducts(sample_product_tables(sinumerik_cec_format(), result, options), sign).write(writer);
+  }
   if (writer.tables() > most)
     throw InputError(
         {}, fmt::format("sinumerik-cec: {} tables are needed, the control has {:g}", writer.tables(), most),
@@ -119,28 +204,45 @@ double cec_length(const CecTable& table, const std::string& name) {
   return sinumerik_number(cec_setting(table, name)) * kMetrePerMillimetre;
 }
 
-CorrectionTerm cec_term(CecTable table, double sign) {
+/// Values as written, of the direction that the table is for, times `factor`.
+AxisTable cec_values(CecTable table, double factor) {
   table.values.step = cec_length(table, "_STEP");
   table.values.low = cec_length(table, "_MIN");
   table.values.high = cec_length(table, "_MAX");
-  for (const char* name : {"_MULT_BY_TABLE", "_IS_MODULO"}) {
-    if (sinumerik_number(cec_setting(table, name)) != 0.0)
-      throw InputError(cec_setting(table, name).place, std::string(kCec) + name + " is not 0",
-                       "neither products of tables nor modulo axes are read here");
-  }
+  if (sinumerik_number(cec_setting(table, "_IS_MODULO")) != 0.0)
+    throw InputError(cec_setting(table, "_IS_MODULO").place, std::string(kCec) + "_IS_MODULO is not 0",
+                     "modulo axes are not read here");
   const double direction = sinumerik_number(cec_setting(table, "_DIRECTION"));
   if (direction != 0.0 && std::abs(direction) != 1.0)
     throw InputError(cec_setting(table, "_DIRECTION").place, "DIRECTION is neither 0, 1 nor -1",
                      "0 = both directions, 1 = towards +, -1 = towards -");
-  AxisTable axis_table{.input = cec_axis(table, "_INPUT_AXIS"),
-                       .position = sinumerik_positions(table.values),
-                       .forward = {},
-                       .backward = {}};
+  AxisTable values{.input = cec_axis(table, "_INPUT_AXIS"),
+                   .position = sinumerik_positions(table.values),
+                   .forward = {},
+                   .backward = {}};
   for (const auto& [index, value] : table.values.value) {
-    axis_table.forward.push_back(direction < 0.0 ? 0.0 : sign * value);
-    axis_table.backward.push_back(direction > 0.0 ? 0.0 : sign * value);
+    values.forward.push_back(direction < 0.0 ? 0.0 : factor * value);
+    values.backward.push_back(direction > 0.0 ? 0.0 : factor * value);
   }
-  return axis_term(cec_axis(table, "_OUTPUT_AXIS"), std::move(axis_table));
+  return values;
+}
+
+/// Own values, and their product with those of another table, both in mm.
+void add_cec_terms(const std::map<int, CecTable>& tables, const CecTable& table, double sign,
+                   CompensationTables& result) {
+  const AxisName output = cec_axis(table, "_OUTPUT_AXIS");
+  result.terms.push_back(axis_term(output, cec_values(table, sign)));
+  const SinumerikAssignment& multiplied = cec_setting(table, "_MULT_BY_TABLE");
+  const double number = sinumerik_number(multiplied);
+  if (number == 0.0) return;
+  const auto other = number == std::floor(number) && std::abs(number) < kMostCecTables
+                         ? tables.find(static_cast<int>(number) - 1)
+                         : tables.end();
+  if (other == tables.end())
+    throw InputError(multiplied.place, fmt::format("there is no table number {:g}", number),
+                     "MULT_BY_TABLE is 0 or the index of a table plus 1");
+  result.terms.push_back(
+      product_term(output, cec_values(table, sign), cec_values(other->second, 1.0 / kMetrePerMillimetre)));
 }
 
 /// The sign that the file was written for stands in a comment: the control does not know it.
@@ -173,7 +275,7 @@ CompensationTables read_cec(std::span<const TableFile> files) {
     }
   }
   CompensationTables result;
-  for (const auto& [number, table] : tables) result.terms.push_back(cec_term(table, sign));
+  for (const auto& [index, table] : tables) add_cec_terms(tables, table, sign, result);
   return result;
 }
 
@@ -184,18 +286,17 @@ const TableFormat& sinumerik_cec_format() {
       .name = "sinumerik-cec",
       .summary =
           "SINUMERIK sag and angularity compensation: NC_CEC.INI with $AN_CEC tables from machine axis to "
-          "machine axis, by direction where there is reversal",
+          "machine axis, by direction where there is reversal, multiplied for angular errors",
       .source =
           "Siemens, SINUMERIK Function Manual Extended Functions, K3 Compensations, 03/2013, Interpolatory "
-          "compensation; 828D: 8 tables of 200 points",
+          "compensation: a product of tables is added to the total of the compensation axis (rule 8, "
+          "MULT_BY_TABLE); 828D: 8 tables of 200 points",
       .verified =
           "read back by volcal; not tried on a controller, and the sign of the values is NOT confirmed: it "
-          "must be given",
-      .supported = CompensationType(CompensationPart::Positioning) | CompensationPart::Straightness |
-                   CompensationPart::Squareness,
-      .refusal =
-          "a table has one input; products of tables (MULT_BY_TABLE) would give angular errors, but whether "
-          "the factors then count by themselves is not stated publicly",
+          "must be given; that the two tables of a product also count by themselves follows from the words "
+          "of the manual",
+      .supported = CompensationType::volumetric(),
+      .refusal = "it holds every type of the linear axes",
       .limits = {.points_per_table = 200, .resolution = 1e-9, .both_directions = true, .equidistant = true},
       .settings = kCecSettings,
       .write = write_cec,

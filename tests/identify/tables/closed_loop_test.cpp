@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "tests/support/identified_machines.h"
@@ -169,7 +171,9 @@ TEST_P(TablesInTheLoop, MistakesAreSeen) {
     const Compensation ideal = ideal_of(truth, tool, type);
     const Correction right = corrections_of(ideal, format().limits.both_directions);
     return correction_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {
-      return Vector(mistake(tables.correction(at, direction)) - right(at, direction));
+      const bool both = format().limits.both_directions;  // else the mean, without lists of reversal
+      return Vector(mistake(tables.correction(at, both ? direction : ApproachDirection{})) -
+                    right(at, direction));
     });
   };
   const Vector tool = truth.machine().tools[1].offset;
@@ -192,6 +196,27 @@ TEST_P(TablesInTheLoop, MistakesAreSeen) {
   if (!type.has(CompensationPart::Angular)) return;
   const Vector other_tool = truth.machine().tools[2].offset;
   EXPECT_GT(deviation(other_tool, [](const Vector& c) { return c; }), noticeable) << "tool";
+}
+
+TEST(ReversalLists, TakeWhatVolumetricTablesLeaveOfAReversalAlongTheAxes) {
+  const TableFormat& format = *find_table_format("isg-csv");
+  for (std::size_t structure = 0; structure < 3; ++structure) {
+    const sim::TruthMachine truth = machine_with_errors(structure, true);
+    const Eigen::Vector3d tool = truth.machine().tools[1].offset;
+    std::map<std::string, double> left;
+    for (const char* reversal : {"none", "lists"}) {
+      TableFormatOptions options = options_for(format, CompensationType::volumetric());
+      options.settings["reversal"] = reversal;
+      options.step = 50e-3;
+      const CompensationTables tables = format.read(write_tables(format, testing::result_of(truth), options));
+      left[reversal] =
+          remaining_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {
+            return tables.correction(at, direction);
+          });
+    }
+    EXPECT_LT(left["lists"], 0.75 * left["none"]) << structure;
+    EXPECT_LT(left["lists"], 1.2e-6) << structure;
+  }
 }
 
 /// Measured by a laser tracer, fitted, written, read back, and judged on the machine that was measured.

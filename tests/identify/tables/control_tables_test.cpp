@@ -123,6 +123,36 @@ TEST(ControlTables, TypedTablesByHand) {
   EXPECT_NEAR(added_um("fanuc", {{"pitch_error.txt", fanuc}}, kMiddleOfX, -1).x(), -2.0 - 3.0, 1e-9);
 }
 
+/// Every type, also where the frame turns: tables and products against the ideal compensation, no alignment.
+TEST(ControlTables, ProductsOfTablesAreTheIdealCompensation) {
+  const TableFormat& format = *find_table_format("sinumerik-cec");
+  for (std::size_t structure = 0; structure < 3; ++structure) {
+    sim::RandomTruthOptions truth_options;
+    truth_options.reversal_max = 4e-6;
+    truth_options.angular_reversal_max = 3e-6;
+    const sim::TruthMachine truth =
+        sim::random_truth(sim::reference_machines()[structure], 40 + structure, truth_options);
+    const FitResult result = testing::result_of(truth, 20);
+    for (const CompensationTypeInfo& info : compensation_types()) {
+      TableFormatOptions options;
+      options.type = info.type;
+      options.tool = "side_x";
+      options.step = 20e-3;
+      options.settings = testing::example_settings(format);
+      const auto control =
+          sim::command_correction({control_tables(format, write_tables(format, result, options)), 0.0, {}});
+      const Compensation ideal = ideal_compensation(result, options);
+      for (const VolumePoint& point : volume_points(truth.machine(), 3)) {
+        sim::MachineState state;
+        state.position = point.position;
+        state.direction = point.direction;
+        EXPECT_LT((control(state) - ideal.correction(point.position, point.direction)).norm(), 0.25e-6)
+            << truth.machine().structure.code << " " << info.name;
+      }
+    }
+  }
+}
+
 /// Two readers that know nothing of each other agree on every format and type.
 TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
   for (const TableFormat* format : table_formats()) {
@@ -222,9 +252,10 @@ constexpr Exchange kExchanges[] = {
     {"isg-ssfk", "axis", "log_achs_name X", "log_achs_name Y"},
     {"isg-ssfk", "direction", "].pos", "].neg"},
     {"sinumerik", "axis", ",X1]", ",Y1]"},
-    {"sinumerik-cec", "axis", "OUTPUT_AXIS[0]=(X1)", "OUTPUT_AXIS[0]=(Y1)"},
+    {"sinumerik-cec", "axis", "OUTPUT_AXIS[0]=(Y1)", "OUTPUT_AXIS[0]=(X1)"},
     {"sinumerik-cec", "index", "INPUT_AXIS[2]=(X1)", "INPUT_AXIS[2]=(Z1)"},
-    {"sinumerik-cec", "direction", "DIRECTION[0]=1", "DIRECTION[0]=-1"},
+    {"sinumerik-cec", "direction", "DIRECTION[2]=1", "DIRECTION[2]=-1"},
+    {"sinumerik-cec", "factor", "]=1\n$AN_CEC_IS_MODULO", "]=2\n$AN_CEC_IS_MODULO"},
     {"sinumerik-cec", "sign", "VALUES ARE ERRORS", "VALUES ARE COMPENSATIONS"},
     {"heidenhain", "axis", "AXISPOS X Y", "AXISPOS Y X"},
     {"heidenhain", "cause", "* X.COM Y.COM", "* Y.COM X.COM"},

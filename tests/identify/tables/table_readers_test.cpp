@@ -28,10 +28,13 @@ class MalformedTables : public ::testing::TestWithParam<Malformed> {};
 
 TEST_P(MalformedTables, AreRefusedWithFileLineAndRemedy) {
   const Malformed& broken = GetParam();
-  const bool by_axis = std::string_view(broken.file) == "axis_corrections.csv";
-  std::vector<TableFile> files =
-      sample_tables(*find_table_format(broken.format),
-                    by_axis ? std::optional<CompensationType>(CompensationPart::Positioning) : std::nullopt);
+  const std::string_view name = broken.file;
+  std::optional<CompensationType> type;
+  if (name == "axis_corrections.csv") type = CompensationPart::Positioning;
+  if (name == "NC_CEC.INI")
+    type = CompensationType(CompensationPart::Positioning) | CompensationPart::Straightness |
+           CompensationPart::Squareness;
+  std::vector<TableFile> files = sample_tables(*find_table_format(broken.format), type);
   std::string* content = nullptr;
   for (TableFile& file : files) {
     if (file.name == broken.file) content = &file.content;
@@ -149,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"isg-ssfk", "achskw2.lis", "unit 1", "unit 0", 19, "unit is not 1"},
         Malformed{"isg-ssfk", "achskw2.lis", "unit 1 /* 0.1 um */", "unit 1 /* 0.1 um", 7, "does not end on"},
         Malformed{"isg-ssfk", "achskw2.lis", "log_achs_name Y", "log_achs_name A", 19, "\"A\""},
-        Malformed{"isg-ssfk", "achskw2.lis", "log_achs_name Y", "log_achs_name Z", 0, "has two lists"},
+        Malformed{"isg-ssfk", "achskw3.lis", "log_achs_name Z", "log_achs_name Y", 0, "has two lists"},
         Malformed{"isg-ssfk", "achskw2.lis", "kw_nr_max 3", "kw_nr_max 4", 19,
                   "table[3].setpoint is missing"},
         Malformed{"isg-ssfk", "achskw2.lis", "table[2].neg", "table[1].neg", 18, "given twice"},
@@ -177,8 +180,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "sign of the values"},
         Malformed{"sinumerik-cec", "NC_CEC.INI", "_DIRECTION[0]=1", "_DIRECTION[0]=3", 12,
                   "DIRECTION is neither"},
-        Malformed{"sinumerik-cec", "NC_CEC.INI", "_MULT_BY_TABLE[0]=0", "_MULT_BY_TABLE[0]=2", 13,
-                  "is not 0"},
+        Malformed{"sinumerik-cec", "NC_CEC.INI", "_MULT_BY_TABLE[0]=0", "_MULT_BY_TABLE[0]=99", 13,
+                  "no table number 99"},
         Malformed{"sinumerik-cec", "NC_CEC.INI", "_OUTPUT_AXIS[0]=(X1)", "_OUTPUT_AXIS[0]=(C1)", 8, "C1"}));
 
 INSTANTIATE_TEST_SUITE_P(

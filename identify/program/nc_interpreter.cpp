@@ -115,8 +115,10 @@ const NcStep& NcInterpreter::execute(std::string_view line) {
 int NcInterpreter::wanted_motion() const {
   const NcCommands& commands = step_.commands;
   const bool axes = commands.has_axis_words();
-  if (sets_offset(commands) && axes) {
-    if (commands.motion != kNoCode && commands.motion != kCancel)
+  const bool arc =
+      is_arc(commands.motion == kNoCode ? state_.motion : commands.motion) && has_centre_words(commands);
+  if (sets_offset(commands) && (axes || arc)) {
+    if (arc || (commands.motion != kNoCode && commands.motion != kCancel))
       place().refuse("a motion and an offset want the same coordinates", "write them in two blocks");
     return kNoCode;
   }
@@ -125,9 +127,7 @@ int NcInterpreter::wanted_motion() const {
   if (commands.non_modal == 40 && axes)
     place().refuse("coordinates stand beside G4; controls differ in what they mean",
                    "write them in two blocks");
-  const bool arc = is_arc(commands.motion == kNoCode ? state_.motion : commands.motion);
-  if (axes || (arc && has_centre_words(commands)))
-    return commands.motion == kNoCode ? state_.motion : commands.motion;
+  if (axes || arc) return commands.motion == kNoCode ? state_.motion : commands.motion;
   if (is_arc(commands.motion) || is_cycle(commands.motion))
     place().refuse(g_code_name(commands.motion) + " has no coordinates", "write where it goes");
   return kNoCode;

@@ -140,6 +140,8 @@ TEST(NcRefusals, OfBlocksThatMeanNothingOrTwoThings) {
       {"G4 P1 X2\n",
        "1: coordinates stand beside G4; controls differ in what they mean (write them in two blocks)"},
       {"G1 G92 X1\n", "1: a motion and an offset want the same coordinates (write them in two blocks)"},
+      {"G21 G17 F100\nG0 X0 Y0 Z0\nG2 X10 I5\nG43.1 J1\n",
+       "4: a motion and an offset want the same coordinates (write them in two blocks)"},
       {"G52 X1\nG92 X1\n",
        "2: G52 and G92 stand in one program; controls differ in whether they add up (use one of the two)"},
       {"G81 X1 Z-1 F10\n",

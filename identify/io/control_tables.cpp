@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "volcal/identify/io/control_words.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/typed_control_tables.h"
 #include "volcal/identify/tables/csv_tables.h"
@@ -17,35 +18,9 @@ namespace {
 
 constexpr double kMillimetre = 1e-3, kInch = 25.4e-3, kMicrometre = 1e-6;  // m; also rad of a microradian
 
-using Words = std::vector<std::string>;
-
-/// Lines as words, any of `separators` between them; empty lines are left out.
-std::vector<Words> lines_of_words(const std::string& text, const std::string& separators) {
-  std::vector<Words> lines(1);
-  std::string word;
-  const auto end_word = [&] {
-    if (!word.empty()) lines.back().push_back(word);
-    word.clear();
-  };
-  for (const char c : text + "\n") {
-    if (c == '\n') {
-      end_word();
-      if (!lines.back().empty()) lines.emplace_back();
-    } else if (c == '\r' || separators.find(c) != std::string::npos) {
-      end_word();
-    } else {
-      word += c;
-    }
-  }
-  lines.pop_back();
-  return lines;
-}
-
 const std::string& content_of(std::span<const TableFile> files, const std::string& name) {
   return file_named(files, name).content;
 }
-
-AxisName axis_in(const std::string& word) { return *axis_from_letter(word.at(0)); }
 
 /// Tables of one input and one output axis in one row per position: appended in the order of the file.
 class AxisTables {

@@ -2,36 +2,23 @@
 
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
+
+#include "volcal/identify/io/control_words.h"
 
 namespace volcal {
 namespace {
 
+constexpr const char* kBlanks = " \t";
 constexpr double kTypedMillimetre = 1e-3, kTypedMicrometre = 1e-6, kTypedTenth = 1e-7;  // m
-
-/// Lines as words; those behind ; are kept, since one says what the values are.
-std::vector<std::vector<std::string>> typed_lines(const std::string& text) {
-  std::vector<std::vector<std::string>> lines;
-  std::istringstream all(text);
-  for (std::string line; std::getline(all, line);) {
-    std::istringstream words(line);
-    lines.emplace_back();
-    for (std::string word; words >> word;) lines.back().push_back(word);
-    if (lines.back().empty()) lines.pop_back();
-  }
-  return lines;
-}
-
-AxisName typed_axis(const std::string& word) { return axis_from_letter(word.at(0)).value(); }
 
 /// Rows of one .COM: what the position of `cause` does to the axes of the columns.
 void add_com_rows(const std::string& text, AxisName cause, sim::ControlTables& tables) {
   const bool errors = text.find("VALUES ARE ERRORS") != std::string::npos;
   double datum = 0.0, spacing = 0.0;
   std::vector<sim::ControlAxisTable> columns;
-  for (const auto& words : typed_lines(text)) {
+  for (const auto& words : lines_of_words(text, kBlanks)) {
     if (words[0] == ";") continue;
     if (words[0] == "DATUM") {
       datum = std::stod(words.at(1)) * kTypedMillimetre;
@@ -41,7 +28,7 @@ void add_com_rows(const std::string& text, AxisName cause, sim::ControlTables& t
       for (std::size_t i = 1; i < words.size(); ++i) {
         columns.emplace_back();
         columns.back().input = cause;
-        columns.back().output = typed_axis(words[i]);
+        columns.back().output = axis_in(words[i]);
         columns.back().meaning = errors ? sim::TableValue::Error : sim::TableValue::Correction;
       }
     } else {
@@ -67,7 +54,7 @@ struct TypedPitch {
 TypedPitch typed_pitch(const std::string& text) {
   TypedPitch pitch;
   bool points = false;
-  for (const auto& words : typed_lines(text)) {
+  for (const auto& words : lines_of_words(text, kBlanks)) {
     if (words[0] == ";" || words[0] == "PARAMETER") continue;
     if (words[0] == "NUMBER") {
       points = true;
@@ -142,12 +129,12 @@ TypedAmounts in_the_middle(const TypedAmounts& points) {
 // TNC 407 Technical Manual, 4-27 and 4-28; MANUALplus 620 Technical Manual, 716 to 718: the axis of a column
 // of the .COM is a function of the axis of the column of the .CMA that names it.
 sim::ControlTables heidenhain_control(std::span<const TableFile> files) {
-  const auto assignment = typed_lines(file_named(files, "CONFIG.CMA.txt").content);
+  const auto assignment = lines_of_words(file_named(files, "CONFIG.CMA.txt").content, kBlanks);
   sim::ControlTables tables;
   for (const auto& row : assignment) {
     if (row[0] != "*") continue;
     for (std::size_t i = 1; i < row.size(); ++i)
-      add_com_rows(file_named(files, row[i] + ".txt").content, typed_axis(assignment.at(0).at(i)), tables);
+      add_com_rows(file_named(files, row[i] + ".txt").content, axis_in(assignment.at(0).at(i)), tables);
   }
   return tables;
 }
@@ -160,7 +147,7 @@ sim::ControlTables fanuc_control(std::span<const TableFile> files) {
     TypedAmounts amounts = amounts_of_axis(pitch, parameter);
     if (pitch.head.at("OUTPUT") == "MIDDLE") amounts = in_the_middle(amounts);
     sim::ControlAxisTable table;
-    table.input = table.output = typed_axis(std::string(1, letter));
+    table.input = table.output = axis_in(std::string(1, letter));
     table.meaning =
         pitch.head.at("VALUES") == "ERRORS" ? sim::TableValue::Error : sim::TableValue::Correction;
     table.position = amounts.position;

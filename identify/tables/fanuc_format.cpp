@@ -80,39 +80,23 @@ using PitchValues = std::map<int, int>;  ///< by number of the point
 
 // ---- Writing
 
-[[noreturn]] void fail_pitch_setting(std::string_view name, const std::string& given,
-                                     const std::string& remedy) {
-  if (given.empty())
-    throw InputError({}, fmt::format("fanuc: {} is not confirmed publicly and must be given", name),
-                     "find it out on the machine (--list says how), then " + remedy);
-  throw InputError({}, fmt::format("--set {}={}", name, given.substr(0, 40)), remedy);
-}
-
-/// Whether a setting is the first of two words.
-bool first_of_two(const TableFormatOptions& options, std::string_view name, std::string_view first,
-                  std::string_view second) {
-  const std::string given = table_setting(kPitchSettings, options, name);
-  if (given != first && given != second)
-    fail_pitch_setting(name, given, fmt::format("give --set {0}={1} or --set {0}={2}", name, first, second));
-  return given == first;
-}
-
 int whole_setting(const TableFormatOptions& options, std::string_view name, int least, int most) {
   const double value = table_setting_number(kPitchSettings, options, name);
   if (value != std::floor(value) || value < least || value > most)
-    fail_pitch_setting(name, fmt::format("{:g}", value),
-                       fmt::format("give a whole number from {} to {}", least, most));
+    throw InputError({}, fmt::format("--set {}={:g}", name, value),
+                     fmt::format("give a whole number from {} to {}", least, most));
   return static_cast<int>(value);
 }
 
 PitchHead pitch_head(const TableFormatOptions& options) {
   PitchHead head;
-  head.sign = first_of_two(options, "sign", "compensation", "error") ? 1.0 : -1.0;
-  head.output = first_of_two(options, "output", "even", "middle") ? PitchOutput::Even : PitchOutput::Middle;
+  head.sign = is_first_word(kPitchSettings, options, "sign", "compensation", "error") ? 1.0 : -1.0;
+  head.output = is_first_word(kPitchSettings, options, "output", "even", "middle") ? PitchOutput::Even
+                                                                                   : PitchOutput::Middle;
   head.unit = table_setting_number(kPitchSettings, options, "detection_unit_um") * kMetrePerMicrometre;
   if (!(head.unit > 0.0))
-    fail_pitch_setting("detection_unit_um", fmt::format("{:g}", head.unit / kMetrePerMicrometre),
-                       "give the detection unit in um, usually 1");
+    throw InputError({}, fmt::format("--set detection_unit_um={:g}", head.unit / kMetrePerMicrometre),
+                     "give the detection unit in um, usually 1");
   head.largest = whole_setting(options, "largest_value", 1, kWidestPitchValue);
   return head;
 }
@@ -247,16 +231,18 @@ class PitchWriter {
 
 std::vector<TableFile> write_pitch(const FitResult& result, const TableFormatOptions& options) {
   PitchHead head = pitch_head(options);
-  const bool both = first_of_two(options, "directions", "both", "mean");
+  const bool both = is_first_word(kPitchSettings, options, "directions", "both", "mean");
   const std::string amount = table_setting(kPitchSettings, options, "reference_amount");
   if (!amount.empty())
-    head.reference_negative = first_of_two(options, "reference_amount", "negative", "positive");
+    head.reference_negative =
+        is_first_word(kPitchSettings, options, "reference_amount", "negative", "positive");
   PitchWriter writer(head, whole_setting(options, "first_number", 0, kLargestPitchNumber));
   for (const SampledTable& sampled : sample_axis_tables(fanuc_format(), result, options))
     writer.add(pitch_curve(sampled, result.machine.axis(sampled.output), options.step, head, both));
   if (writer.bidirectional() && amount.empty())
-    fail_pitch_setting("reference_amount", amount,
-                       "give --set reference_amount=negative or =positive, or --set directions=mean");
+    throw InputError({}, "reference_amount is not confirmed publicly and must be given",
+                     "find it out on the machine (--list says how), then give --set "
+                     "reference_amount=negative or =positive, or --set directions=mean");
   return {{std::string(kPitchFile), writer.text()}};
 }
 

@@ -75,19 +75,11 @@ void check_com_limits(const std::vector<ComTable>& tables, bool spacing, const S
 // ---- Writing
 
 double com_sign(const TableFormatOptions& options) {
-  const std::string sign = table_setting(kComSettings, options, "sign");
-  if (sign == "compensation") return 1.0;
-  if (sign == "error") return -1.0;
-  throw InputError({}, "heidenhain: the sign of the values of .COM tables is not confirmed",
-                   "find it out on the machine (--list says how), then give --set sign=error or --set "
-                   "sign=compensation");
+  return is_first_word(kComSettings, options, "sign", "compensation", "error") ? 1.0 : -1.0;
 }
 
 bool has_spacing(const TableFormatOptions& options) {
-  const std::string rows = table_setting(kComSettings, options, "rows");
-  if (rows == "spacing") return true;
-  if (rows == "axispos") return false;
-  throw InputError({}, "--set rows=" + rows, "write rows=axispos or rows=spacing");
+  return is_first_word(kComSettings, options, "rows", "spacing", "axispos");
 }
 
 int spacing_below(double step) {

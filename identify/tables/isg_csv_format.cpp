@@ -23,8 +23,8 @@ constexpr std::string_view kIsgFile = "volcomp.csv";
 constexpr std::array<TableSetting, 1> kIsgSettings = {
     {{"reversal",
       "lists or none: with lists, half the positioning reversal of every axis towards + and towards - as "
-      "leadscrew lists (isg-ssfk) beside the volumetric tables, which know no direction; for axes that have "
-      "no leadscrew compensation of their own",
+      "leadscrew lists (isg-ssfk) beside the volumetric tables, which know no direction, where the type has "
+      "L-POS; for axes that have no leadscrew compensation of their own",
       "none", "lists"}}};
 
 /// All axes count as tool axes: displacements alone are written, and they add whatever carries the axis.
@@ -77,10 +77,8 @@ std::string isg_grid(const CorrectionGrid& grid) {
 }
 
 bool has_reversal_lists(const TableFormatOptions& options) {
-  const std::string reversal = table_setting(kIsgSettings, options, "reversal");
-  if (reversal != "lists" && reversal != "none")
-    throw InputError({}, "--set reversal=" + reversal, "write reversal=lists or reversal=none");
-  return reversal == "lists" && options.type.contains(CompensationPart::Positioning);
+  return is_first_word(kIsgSettings, options, "reversal", "lists", "none") &&
+         options.type.has(CompensationPart::Positioning);
 }
 
 /// What positioning along the specific lines leaves of the mean of both directions.

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <utility>
 
+#include "volcal/identify/tables/correction_positions.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -73,15 +74,16 @@ class ProductSampler {
       : machine_(result.machine),
         both_(format.limits.both_directions),
         lines_(lines_of(result.machine, options)),
-        angular_(ideal_compensation(result, with_type(options, CompensationPart::Angular))) {
+        angular_(ideal_compensation(result, angular_part(options))) {
     tables_.lines = lines_;
-    if (options.type.is_volumetric()) {
-      add_lines(format, result, options);
-    } else {
-      add_tables(format, result, options);
-      add_constant(angular_.correction(lines_, {}));
-    }
+    const Compensation ideal = ideal_compensation(result, options);
     const std::vector<AxisName> axes = linear_axes_of(machine_);
+    for (const AxisName input : axes) {
+      const Axis& axis = machine_.axis(input);
+      const auto positions = correction_positions(axis, options.step, format.limits.equidistant);
+      require_points(format, axis, positions.size());
+      for (const AxisName output : axes) add_table(ideal, input, output, positions);
+    }
     for (std::size_t i = 0; i < axes.size(); ++i) {
       for (std::size_t k = i + 1; k < axes.size(); ++k) add_pair(axes[i], axes[k]);
     }
@@ -90,50 +92,30 @@ class ProductSampler {
   ProductTables take() { return std::move(tables_); }
 
  private:
-  static TableFormatOptions with_type(TableFormatOptions options, CompensationType type) {
-    options.type = type;
+  static TableFormatOptions angular_part(TableFormatOptions options) {
+    options.type = CompensationPart::Angular;
     return options;
   }
 
-  /// Positions of all tables come from a type that has all of them.
-  void add_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options) {
-    tables_.tables = sample_axis_tables(format, result, with_type(options, CompensationType::volumetric()));
-    const auto wanted = sample_axis_tables(format, result, options);
-    for (SampledTable& table : tables_.tables) {
-      const auto same = std::ranges::find_if(wanted, [&](const SampledTable& other) {
-        return other.output == table.output && other.table.input == table.table.input;
-      });
-      if (same != wanted.end()) {
-        table = *same;
-      } else {
-        std::ranges::fill(table.table.forward, 0.0);
-        std::ranges::fill(table.table.backward, 0.0);
-      }
+  /// Along the specific line of the input, less what the lines' crossing has, which the table of an axis on
+  /// itself holds: zero is at home.
+  void add_table(const Compensation& ideal, AxisName input, AxisName output,
+                 const std::vector<double>& positions) {
+    const int k = direction_of(output);
+    const double at_crossing = ideal.correction(lines_, {})[k];
+    const auto value = [&](double q, int direction) {
+      AxisPosition position = lines_;
+      position[index_of(input)] = q;
+      ApproachDirection approach{};
+      approach[index_of(input)] = static_cast<std::int8_t>(both_ ? direction : 0);
+      return ideal.correction(position, approach)[k] - (input == output ? 0.0 : at_crossing);
+    };
+    AxisTable table{.input = input, .position = positions, .forward = {}, .backward = {}};
+    for (const double q : positions) {
+      table.forward.push_back(value(q, 1));
+      table.backward.push_back(value(q, -1));
     }
-  }
-
-  /// What the whole compensation does along the specific lines: L-VOL turns the frame as well, which no other
-  /// type does.
-  void add_lines(const TableFormat& format, const FitResult& result, const TableFormatOptions& options) {
-    tables_.tables = sample_axis_tables(format, result, options);
-    const Compensation ideal = ideal_compensation(result, options);
-    const Eigen::Vector3d on_lines = ideal.correction(lines_, {});
-    for (SampledTable& sampled : tables_.tables) {
-      AxisTable& table = sampled.table;
-      for (std::size_t i = 0; i < table.position.size(); ++i) {
-        const auto value = [&, axis = index_of(table.input),
-                            k = direction_of(sampled.output)](int direction) {
-          AxisPosition position = lines_;
-          position[axis] = table.position[i];
-          ApproachDirection approach{};
-          approach[axis] = static_cast<std::int8_t>(both_ ? direction : 0);
-          return ideal.correction(position, approach)[k] - on_lines[k];
-        };
-        table.forward[i] = value(1);
-        table.backward[i] = value(-1);
-      }
-    }
-    add_constant(on_lines);
+    tables_.tables.push_back({output, std::move(table)});
   }
 
   const std::vector<double>& positions(AxisName axis) const {
@@ -165,15 +147,6 @@ class ProductSampler {
         largest = std::max({largest, std::abs(angle.forward.back()), std::abs(angle.backward.back())});
       }
       if (largest * pair.reach() > kNoProduct) tables_.products.push_back({output, lever, std::move(angle)});
-    }
-  }
-
-  /// A compensation is zero at home, products are on the lines.
-  void add_constant(const Eigen::Vector3d& constant) {
-    for (SampledTable& table : tables_.tables) {
-      if (table.output != table.table.input) continue;
-      for (double& value : table.table.forward) value += constant[direction_of(table.output)];
-      for (double& value : table.table.backward) value += constant[direction_of(table.output)];
     }
   }
 

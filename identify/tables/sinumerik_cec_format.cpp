@@ -118,10 +118,8 @@ class CecProducts {
   };
 
   void add_lever(AxisName axis) {
-    const SampledTable& own = *std::ranges::find_if(sampled_.tables, [axis](const SampledTable& table) {
-      return table.output == axis && table.table.input == axis;
-    });
-    Lever lever{0.0, {.input = axis, .position = own.table.position, .forward = {}, .backward = {}}};
+    Lever lever{0.0,
+                {.input = axis, .position = table_of(axis, axis).position, .forward = {}, .backward = {}}};
     const double line = sampled_.lines[index_of(axis)];
     for (const double q : lever.table.position) lever.reach = std::max(lever.reach, std::abs(q - line));
     for (const double q : lever.table.position)
@@ -139,13 +137,19 @@ class CecProducts {
     return table;
   }
 
+  AxisTable& table_of(AxisName input, AxisName output) {
+    return std::ranges::find_if(sampled_.tables,
+                                [&](const SampledTable& sampled) {
+                                  return sampled.output == output && sampled.table.input == input;
+                                })
+        ->table;
+  }
+
   void subtract(const SampledTable& other) {
-    const auto same = std::ranges::find_if(sampled_.tables, [&](const SampledTable& table) {
-      return table.output == other.output && table.table.input == other.table.input;
-    });
-    for (std::size_t i = 0; i < other.table.position.size(); ++i) {
-      same->table.forward[i] -= other.table.forward[i];
-      same->table.backward[i] -= other.table.backward[i];
+    AxisTable& table = table_of(other.table.input, other.output);
+    for (std::size_t i = 0; i < table.position.size(); ++i) {
+      table.forward[i] -= other.table.forward[i];
+      table.backward[i] -= other.table.backward[i];
     }
   }
 
@@ -156,12 +160,7 @@ class CecProducts {
 
 /// +1 where values are corrections, -1 where they are errors.
 double cec_sign(const TableFormatOptions& options) {
-  const std::string sign = table_setting(kCecSettings, options, "cec_sign");
-  if (sign == "compensation") return 1.0;
-  if (sign == "error") return -1.0;
-  throw InputError({}, "sinumerik-cec: the sign of $AN_CEC values is not confirmed",
-                   "find it out on the machine (--list says how), then give --set cec_sign=error or "
-                   "--set cec_sign=compensation");
+  return is_first_word(kCecSettings, options, "cec_sign", "compensation", "error") ? 1.0 : -1.0;
 }
 
 std::vector<TableFile> write_cec(const FitResult& result, const TableFormatOptions& options) {

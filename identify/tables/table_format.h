@@ -101,6 +101,11 @@ std::string table_setting(std::span<const TableSetting> settings, const TableFor
 double table_setting_number(std::span<const TableSetting> settings, const TableFormatOptions& options,
                             std::string_view name);
 
+/// Whether a setting is the first of two words. Throws InputError for another; where it must be given and is
+/// not, it is something about the controller that is not confirmed publicly.
+bool is_first_word(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                   std::string_view name, std::string_view first, std::string_view second);
+
 /// The tool that the options name. Throws InputError.
 const Tool& tool_of(const Machine& machine, const TableFormatOptions& options);
 /// Errors that tables must correct: those identified, and those that the active tables correct.

@@ -115,6 +115,18 @@ double table_setting_number(std::span<const TableSetting> settings, const TableF
   return line.number(option.content, "the setting");
 }
 
+bool is_first_word(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                   std::string_view name, std::string_view first, std::string_view second) {
+  const std::string given = table_setting(settings, options, name);
+  if (given == first || given == second) return given == first;
+  const std::string set = "--set " + std::string(name);
+  const std::string words = set + "=" + std::string(first) + " or " + set + "=" + std::string(second);
+  if (given.empty())
+    throw InputError({}, std::string(name) + " is not confirmed publicly and must be given",
+                     "find it out on the machine (--list says how), then give " + words);
+  throw InputError({}, set + "=" + given.substr(0, 40), "give " + words);
+}
+
 const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
   static const Tool kNoTool;
   if (options.tool.empty()) return machine.tools.empty() ? kNoTool : machine.tools.front();

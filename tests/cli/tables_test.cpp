@@ -192,7 +192,7 @@ TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
       {"--format linuxcnc --type L-VOL", "acts on its own joint only"},
       {"--format klipper --type L-POS", "three skew factors"},
       {"--format sinumerik-cec", "cec_sign is not confirmed publicly"},
-      {"--format sinumerik-cec --set cec_sign=up", "give --set cec_sign=error"},
+      {"--format sinumerik-cec --set cec_sign=up", "--set cec_sign=error"},
       {"--format fanuc", "sign is not confirmed publicly"},
       {"--format fanuc --set sign=error", "give --set output=even"},
       {"--format fanuc --type L-STR", "acts on its own axis only"},

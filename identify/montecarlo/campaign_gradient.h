@@ -15,6 +15,8 @@ class CampaignGradient {
   /// Everything given must outlive the object.
   CampaignGradient(const MeasurementModel& model, const Whitener& whitener);
 
+  const BlockModel& model() const { return model_; }
+
   /// Memory of one thread.
   struct Workspace {
     explicit Workspace(const CampaignGradient& gradient);

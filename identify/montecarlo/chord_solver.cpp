@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace volcal {
 namespace {
@@ -16,14 +17,57 @@ double shortened(double before, double after) { return std::max(kShortest, befor
 }  // namespace
 
 ChordSolver::ChordSolver(const RepeatedCampaign& campaign)
-    : campaign_(campaign), gradient_(campaign.linear_model().model(), campaign.whitener()) {}
+    : campaign_(campaign), gradient_(campaign.linear_model().model(), campaign.whitener()) {
+  if (StateMap::is_exact_for(campaign.linear_model().model()))
+    together_.emplace(gradient_.model(), campaign.whitener());
+}
+
+ChordSolver::Workspace::Workspace(const ChordSolver& solver) : one(solver.gradient_) {
+  if (solver.together_) several.emplace(*solver.together_);
+}
 
 Eigen::VectorXd ChordSolver::gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& readings,
-                                         const Eigen::VectorXd& deviation,
-                                         CampaignGradient::Workspace& work) const {
+                                         const Eigen::VectorXd& deviation, Workspace& work) const {
   const Eigen::VectorXd raw = campaign_.datum().raw(campaign_.identified() + deviation);
-  return campaign_.datum().reduce_gradient(gradient_.at(raw, readings, work)) +
+  return campaign_.datum().reduce_gradient(gradient_.at(raw, readings, work.one)) +
          campaign_.prior_precision() * (deviation - draw.statement);
+}
+
+Eigen::MatrixXd ChordSolver::first_gradients(const std::vector<CampaignDraw>& draws,
+                                             const Eigen::MatrixXd& deviations, Workspace& work) const {
+  Eigen::MatrixXd gradients(deviations.rows(), deviations.cols());
+  const std::size_t at_once = together_ ? DrawGradients::kDraws : 1;
+  for (std::size_t first = 0; first < draws.size(); first += at_once) {
+    const auto column = static_cast<Eigen::Index>(first);
+    if (together_) {
+      const std::size_t count = std::min(at_once, draws.size() - first);
+      find_together(std::span(draws).subspan(first, count), column, deviations, work, gradients);
+    } else {
+      const Eigen::VectorXd readings = campaign_.predicted() + draws[first].errors;
+      gradients.col(column) = gradient_at(draws[first], readings, deviations.col(column), work);
+    }
+  }
+  return gradients;
+}
+
+/// Gradients of some of the draws, from column `first` on.
+void ChordSolver::find_together(std::span<const CampaignDraw> draws, Eigen::Index first,
+                                const Eigen::MatrixXd& deviations, Workspace& work,
+                                Eigen::MatrixXd& gradients) const {
+  const auto count = static_cast<Eigen::Index>(draws.size());
+  Eigen::MatrixXd raw(campaign_.linear_model().model().layout().size, count);
+  Eigen::MatrixXd readings(campaign_.observations(), count), beside(campaign_.parameters(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const CampaignDraw& draw = draws[static_cast<std::size_t>(k)];
+    const Eigen::VectorXd deviation = deviations.col(first + k);
+    raw.col(k) = campaign_.datum().raw(campaign_.identified() + deviation);
+    readings.col(k) = campaign_.predicted() + draw.errors;
+    beside.col(k) = deviation - draw.statement;
+  }
+  const Eigen::MatrixXd of_readings = together_->at(raw, readings, *work.several);
+  gradients.middleCols(first, count) = campaign_.prior_precision() * beside;
+  for (Eigen::Index k = 0; k < count; ++k)
+    gradients.col(first + k) += campaign_.datum().reduce_gradient(of_readings.col(k));
 }
 
 Eigen::VectorXd ChordSolver::step_from(const Eigen::VectorXd& gradient,
@@ -40,14 +84,14 @@ Eigen::VectorXd ChordSolver::step_from(const Eigen::VectorXd& gradient,
   return -step;
 }
 
-ChordSolver::Outcome ChordSolver::solve(const CampaignDraw& draw, Eigen::Ref<Eigen::VectorXd> deviation,
-                                        CampaignGradient::Workspace& work) const {
+ChordSolver::Outcome ChordSolver::solve(const CampaignDraw& draw, Eigen::VectorXd gradient,
+                                        Eigen::Ref<Eigen::VectorXd> deviation, Workspace& work) const {
   const Eigen::VectorXd readings = campaign_.predicted() + draw.errors;
   std::vector<Curvature> known;
   // The linear step has about one standard deviation per parameter.
   double before = std::sqrt(static_cast<double>(deviation.size()));
   Outcome outcome;
-  Point at{deviation, gradient_at(draw, readings, deviation, work)};
+  Point at{deviation, std::move(gradient)};
   for (outcome.gradients = 1;; ++outcome.gradients) {
     Eigen::VectorXd step = step_from(at.gradient, known);
     const double along = at.gradient.dot(step);

@@ -14,9 +14,12 @@
 /// second-order remainder, the expansion of effects about their shape) stays that of the identified machine.
 
 #include <Eigen/Core>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "volcal/identify/montecarlo/campaign_gradient.h"
+#include "volcal/identify/montecarlo/draw_gradients.h"
 #include "volcal/identify/montecarlo/repeated_campaign.h"
 
 namespace volcal {
@@ -29,16 +32,26 @@ class ChordSolver {
   /// `campaign` must outlive the object.
   explicit ChordSolver(const RepeatedCampaign& campaign);
 
-  const CampaignGradient& gradient() const { return gradient_; }
+  /// Memory of one thread.
+  struct Workspace {
+    explicit Workspace(const ChordSolver& solver);
+
+    CampaignGradient::Workspace one;
+    std::optional<DrawGradients::Workspace> several;
+  };
 
   struct Outcome {
     int gradients = 0;     ///< taken
     double to_come = 0.0;  ///< bound on what further steps would change, standard deviations
     bool converged = false;
   };
-  /// From the linear estimate of the draw (a deviation z - z^, without roughness) to the solution.
-  Outcome solve(const CampaignDraw& draw, Eigen::Ref<Eigen::VectorXd> deviation,
-                CampaignGradient::Workspace& work) const;
+  /// Gradients at the linear estimates of draws (deviations z - z^, without roughness), a column per draw:
+  /// side by side where the model allows it, one after another where it does not.
+  Eigen::MatrixXd first_gradients(const std::vector<CampaignDraw>& draws, const Eigen::MatrixXd& deviations,
+                                  Workspace& work) const;
+  /// From the linear estimate of a draw and the gradient there to the solution.
+  Outcome solve(const CampaignDraw& draw, Eigen::VectorXd gradient, Eigen::Ref<Eigen::VectorXd> deviation,
+                Workspace& work) const;
 
  private:
   /// Of one draw.
@@ -54,11 +67,14 @@ class ChordSolver {
   };
 
   Eigen::VectorXd gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& readings,
-                              const Eigen::VectorXd& deviation, CampaignGradient::Workspace& work) const;
+                              const Eigen::VectorXd& deviation, Workspace& work) const;
+  void find_together(std::span<const CampaignDraw> draws, Eigen::Index first,
+                     const Eigen::MatrixXd& deviations, Workspace& work, Eigen::MatrixXd& gradients) const;
   Eigen::VectorXd step_from(const Eigen::VectorXd& gradient, const std::vector<Curvature>& known) const;
 
   const RepeatedCampaign& campaign_;
   CampaignGradient gradient_;
+  std::optional<DrawGradients> together_;
 };
 
 }  // namespace volcal

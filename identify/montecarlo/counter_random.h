@@ -31,7 +31,7 @@ class CounterRandom {
 
  private:
   template <class Use>
-  void for_each_pair(std::size_t begin, std::size_t end, const Use& use) const;
+  void for_each_stretch(std::size_t size, const Use& use) const;
 
   std::uint32_t key_[2];
   std::uint32_t source_;

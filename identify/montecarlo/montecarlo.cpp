@@ -23,12 +23,18 @@ namespace {
 constexpr double kShareOfTolerance = 0.2;  // that a path may differ from refits: as 8.2 asks of Monte Carlo
 constexpr double kEndScatter = 2.67;       // sqrt(p (1 - p)) / density of a normal end at p = 0.025
 
-std::uint64_t draws_of_block(DrawPath path) {
-  return path == DrawPath::Linear ? 10000 : path == DrawPath::Chord ? 1000 : 100;
-}
+/// Draws between two looks at the sums, and of them those that one thread makes at a time.
+struct BlockSize {
+  std::uint64_t block;
+  std::uint64_t batch;
+};
 
-/// Batches of a block: what one thread makes at a time.
-constexpr std::uint64_t kBatches = 40;
+/// A block is a whole part of StudySums::kSequence, so that a study can end with it.
+BlockSize block_size(DrawPath path) {
+  if (path == DrawPath::Linear) return {10000, 250};
+  if (path == DrawPath::Chord) return {2500, 8 * DrawGradients::kDraws};
+  return {100, 2};
+}
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -224,8 +230,7 @@ class MonteCarloStudy::Work {
 
   /// This rank's batches of the next block.
   BlockShare draw_share() {
-    const std::uint64_t block = draws_of_block(path_),
-                        of_batch = std::max<std::uint64_t>(1, block / kBatches);
+    const auto [block, of_batch] = block_size(path_);
     std::uint64_t count = block;
     if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
     const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);

@@ -35,7 +35,7 @@ class PathSolvers {
  private:
   const RepeatedCampaign& repeated_;
   ChordSolver chord_;
-  IdlePool<CampaignGradient::Workspace> workspaces_;
+  IdlePool<ChordSolver::Workspace> workspaces_;
   IdlePool<CampaignRefit> refits_;
 };
 

@@ -232,7 +232,22 @@ void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Ei
   }
 }
 
+void Whitener::scale_block(const Track& track, Eigen::Index width, const Place& place) {
+  for (Eigen::Index c = 0; c < width; ++c) {
+    const double* const in = place.in + c * place.in_stride;
+    double* const out = place.out + c * place.out_stride;
+    for (std::size_t i = 0; i < track.steps.size(); ++i) {
+      const std::size_t row = track.steps[i].observation - place.origin;
+      out[place.packed ? i : row] = in[row] * track.scale[i];
+    }
+  }
+}
+
 void Whitener::whiten_block(const Track& track, Eigen::Index width, const Place& place) {
+  if (track.independent) {
+    scale_block(track, width, place);
+    return;
+  }
   std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
   std::vector<double> tile(static_cast<std::size_t>(width) * kTile);
   const auto wide = static_cast<std::size_t>(width);

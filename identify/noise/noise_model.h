@@ -136,6 +136,8 @@ class Whitener {
     std::size_t origin;  ///< observation of the first row of `in`
     bool packed;         ///< steps leave one after another; else at their observations
   };
+  /// whiten_block() of independent observations.
+  static void scale_block(const Track& track, Eigen::Index width, const Place& place);
   static void whiten_block(const Track& track, Eigen::Index width, const Place& place);
   template <class Fill>
   static void add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum);

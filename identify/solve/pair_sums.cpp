@@ -145,13 +145,10 @@ bool PairSums::pay(const BlockModel& model) {
 }
 
 PairSums::PairSums(const BlockModel& model)
-    : model_(model), segments_(segments_of(model)), pairs_(pairs_of(model, segments_)) {
-  const CampaignBinding& binding = model.model().binding();
-  for (const MotionTerm& term : binding.shared_terms) shared_parameters_.push_back(term.parameter);
-  for (const EffectBinding& effect : binding.effects) {
-    for (int k = 0; k < effect.parameter_count(); ++k)
-      shared_parameters_.push_back(effect.first_parameter + k);
-  }
+    : model_(model),
+      segments_(segments_of(model)),
+      pairs_(pairs_of(model, segments_)),
+      shared_parameters_(model.shared_parameters()) {
   if (pairs_.empty()) return;
   const Pair& last = pairs_.back();
   sums_.resize(static_cast<std::ptrdiff_t>(last.begin + last.blocks * block_size(last)));

@@ -60,6 +60,13 @@ struct ToolStateLanes {
   Lanes rotation_workpiece_side[3];
 };
 
+/// Component 0 to kStateSize - 1 of ToolStateLanes, in the order of ToolState.
+template <class StateLanes>
+auto& state_component(StateLanes& state, int number) {
+  if (number < 3) return state.point_w[number];
+  return number < 6 ? state.rotation_tool_side[number - 3] : state.rotation_workpiece_side[number - 6];
+}
+
 /// Linearization of consecutive readings, side by side.
 class LinearizationLanes {
  public:

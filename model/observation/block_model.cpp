@@ -111,6 +111,16 @@ std::uint32_t BlockModel::own_number(const std::vector<int>& parameters) {
   return static_cast<std::uint32_t>(found - own_.begin());
 }
 
+std::vector<int> BlockModel::shared_parameters() const {
+  const CampaignBinding& binding = model_.binding();
+  std::vector<int> parameters;
+  for (const MotionTerm& term : binding.shared_terms) parameters.push_back(term.parameter);
+  for (const EffectBinding& effect : binding.effects) {
+    for (int k = 0; k < effect.parameter_count(); ++k) parameters.push_back(effect.first_parameter + k);
+  }
+  return parameters;
+}
+
 BlockLevers BlockModel::make_levers() const {
   const CampaignBinding& binding = model_.binding();
   const std::size_t joints = model_.chain().joint_count();
@@ -300,26 +310,36 @@ void BlockModel::tilt_floor(BlockLevers& levers, BlockLinearization& out) const 
   add_cross(tilt, out.floor_arm_w.data(), tool.point_w);
 }
 
-void BlockModel::linearize(const ReadingBlock& block, const Eigen::VectorXd& parameters,
-                           const TabulatedFunctions& tabulated, BlockLevers& levers,
-                           BlockLinearization& out) const {
+void BlockModel::find_state(const ReadingBlock& block, const Eigen::VectorXd& parameters,
+                            const TabulatedFunctions& tabulated, BlockLevers& levers,
+                            BlockLinearization& out) const {
   find_levers(block, parameters, levers);
   set_zero(levers.motion.data(), 6 * static_cast<int>(model_.chain().joint_count()));
-  const bool has_effects = !model_.binding().effects.empty();
-  if (has_effects) set_zero(&levers.motion[kToolDisturbance], kDisturbances - kToolDisturbance);
+  if (!model_.binding().effects.empty())
+    set_zero(&levers.motion[kToolDisturbance], kDisturbances - kToolDisturbance);
   add_functions(block, tabulated, levers);
   add_terms(block, parameters, levers);
   move_tool(block, parameters, levers, out);
-  const SetupBinding& place = model_.binding().setups[block.setup];
-  const BoundSetup& bound = *place.bound;
+}
+
+void BlockModel::measure(const ReadingBlock& block, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                         const ToolStateLanes& tool, LinearizationLanes& out) const {
+  const BoundSetup& bound = *model_.binding().setups[block.setup].bound;
   const int local_size = bound.local_nuisance_size();
   const std::vector<int>& own = own_[block.own];
   double nuisance[kMaxLocalNuisance];
   for (int k = 0; k < local_size; ++k)
     nuisance[k] = parameters[own[own.size() - static_cast<std::size_t>(local_size - k)]];
-  out.reading.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, local_size);
-  bound.linearize_lanes(block.first_row, block.size, levers.tool, nuisance, out.reading);
-  for (int channel = 0; channel < bound.channels() && has_effects; ++channel) {
+  out.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, local_size);
+  bound.linearize_lanes(block.first_row, block.size, tool, nuisance, out);
+}
+
+void BlockModel::linearize(const ReadingBlock& block, const Eigen::VectorXd& parameters,
+                           const TabulatedFunctions& tabulated, BlockLevers& levers,
+                           BlockLinearization& out) const {
+  find_state(block, parameters, tabulated, levers, out);
+  measure(block, parameters, levers.tool, out.reading);
+  for (int channel = 0; channel < out.reading.channels() && !model_.binding().effects.empty(); ++channel) {
     add_scaled(levers.motion[motion_index(kReadingDisturbance + channel)], 1.0,
                out.reading.predicted(channel));
   }
@@ -420,30 +440,51 @@ void BlockModel::make_rows(const ReadingBlock& block, const BlockLinearization& 
   find_work(linearized, load, reading.state_size() == kStateSize ? load + 3 : nullptr, levers);
   set_zero(&levers.motion[kReadingDisturbance], reading.channels());
   levers.motion[motion_index(kReadingDisturbance + channel)] = scale;
+  make_rows_of_work(block, levers, rows);
+  std::ptrdiff_t own = segment_begin_[group_count() + 1];
+  if (model_.binding().setups[block.setup].tool_error >= 0) own += 3;
+  for (int k = 0; k < reading.nuisance_size(); ++k) {
+    Lanes product = {};
+    add_product(scale, reading.d_nuisance(channel)[k], product);
+    add_column(product, block.size, rows + own + k);
+  }
+}
+
+void BlockModel::make_rows_of_state(const ReadingBlock& block, int component, BlockLevers& levers,
+                                    double* rows) const {
+  Lanes load[kStateSize];
+  set_zero(load, kStateSize);
+  set_zero(&levers.motion[kReadingDisturbance], kMaxChannels);
+  (component < kStateSize ? load[component]
+                          : levers.motion[motion_index(kReadingDisturbance + component - kStateSize)])
+      .fill(1.0);
+  find_work({}, load, load + 3, levers);
+  make_rows_of_work(block, levers, rows);
+}
+
+void BlockModel::add_column(const Lanes& lanes, int size, double* column) const {
   const std::ptrdiff_t width = row_width();
-  std::fill_n(rows, width * block.size, 0.0);
-  const auto add_column = [&](std::ptrdiff_t column, const Lanes& lanes) {
-    for (int i = 0; i < block.size; ++i) rows[i * width + column] += lanes[i];
-  };
+  for (int i = 0; i < size; ++i) column[i * width] += lanes[i];
+}
+
+/// Rows from the work on a unit of every disturbance; nothing at the places of the nuisance.
+void BlockModel::make_rows_of_work(const ReadingBlock& block, const BlockLevers& levers, double* rows) const {
+  std::fill_n(rows, static_cast<std::ptrdiff_t>(row_width()) * block.size, 0.0);
   const int* slot_motion = model_.slot_motion().data();
   for (std::size_t g = 0; g < group_count(); ++g) {
     for (int slot = 0; slot < model_.layout().groups[g].count(); ++slot)
-      add_column(segment_begin_[g] + slot, levers.motion[static_cast<std::size_t>(*slot_motion++)]);
+      add_column(levers.motion[static_cast<std::size_t>(*slot_motion++)], block.size,
+                 rows + segment_begin_[g] + slot);
   }
   for_each_shared(model_.binding(), levers,
                   [&](int place, int /*parameter*/, const Lanes& driver, int disturbance) {
                     Lanes product = {};
                     add_product(driver, levers.motion[static_cast<std::size_t>(disturbance)], product);
-                    add_column(segment_begin_[group_count()] + place, product);
+                    add_column(product, block.size, rows + segment_begin_[group_count()] + place);
                   });
-  std::ptrdiff_t own = segment_begin_[group_count() + 1];
+  double* own = rows + segment_begin_[group_count() + 1];
   for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    add_column(own++, levers.motion[motion_index(kToolDisturbance + k)]);
-  for (int k = 0; k < reading.nuisance_size(); ++k) {
-    Lanes product = {};
-    add_product(scale, reading.d_nuisance(channel)[k], product);
-    add_column(own + k, product);
-  }
+    add_column(levers.motion[motion_index(kToolDisturbance + k)], block.size, own + k);
 }
 
 }  // namespace volcal

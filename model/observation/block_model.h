@@ -54,11 +54,19 @@ class BlockModel {
   const std::vector<ReadingBlock>& blocks() const { return blocks_; }
   /// Distinct lists of the parameters that only some readings have: tool offset error, then nuisance.
   const std::vector<std::vector<int>>& own_parameters() const { return own_; }
+  /// Parameters of the shared tail, place by place.
+  std::vector<int> shared_parameters() const;
   BlockLevers make_levers() const;
 
   /// Levers and linearisation of a block. `tabulated`: MeasurementModel::tabulate(parameters).
   void linearize(const ReadingBlock& block, const Eigen::VectorXd& parameters,
                  const TabulatedFunctions& tabulated, BlockLevers& levers, BlockLinearization& out) const;
+  /// The levers, sizes of all disturbances and the tool's state: linearize() without the instrument.
+  void find_state(const ReadingBlock& block, const Eigen::VectorXd& parameters,
+                  const TabulatedFunctions& tabulated, BlockLevers& levers, BlockLinearization& out) const;
+  /// What the instrument reads of the tool's state, without effects on the reading itself.
+  void measure(const ReadingBlock& block, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+               const ToolStateLanes& tool, LinearizationLanes& out) const;
   /// The levers alone, for a linearisation made earlier.
   void find_levers(const ReadingBlock& block, const Eigen::VectorXd& parameters, BlockLevers& levers) const;
   /// sums += J^T e, `error` per channel; lanes beyond the block's size must be 0. Uses up `levers.motion`.
@@ -71,6 +79,9 @@ class BlockModel {
   /// then the block's own parameters. Uses up `levers.motion`.
   void make_rows(const ReadingBlock& block, const BlockLinearization& linearized, int channel,
                  const Lanes& scale, BlockLevers& levers, double* rows) const;
+  /// The same for one number that the instrument sees: `component` of the tool's state (ToolState, in its
+  /// order), or, from kStateSize on, the offset of a channel. Not where effects tilt the floor.
+  void make_rows_of_state(const ReadingBlock& block, int component, BlockLevers& levers, double* rows) const;
   static constexpr int kRowAlignment = 8;
   std::size_t group_count() const { return model_.layout().groups.size(); }
   int segment_begin(std::size_t segment) const { return segment_begin_[segment]; }
@@ -90,6 +101,8 @@ class BlockModel {
   void tilt_floor(BlockLevers& levers, BlockLinearization& out) const;
   void find_work(const BlockLinearization& linearized, const Lanes* force, const Lanes* torque,
                  BlockLevers& levers) const;
+  void add_column(const Lanes& lanes, int size, double* column) const;
+  void make_rows_of_work(const ReadingBlock& block, const BlockLevers& levers, double* rows) const;
   void gather(const ReadingBlock& block, const BlockLevers& levers, GradientSums& sums) const;
 
   const MeasurementModel& model_;

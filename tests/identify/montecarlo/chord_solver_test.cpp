@@ -1,0 +1,162 @@
+// Draws solved by chord steps against refits, and what they tell where the linear path goes wrong.
+
+#include "volcal/identify/montecarlo/chord_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/montecarlo_studies.h"
+#include "volcal/identify/montecarlo/campaign_refit.h"
+#include "volcal/identify/solve/correlated_adjustment.h"
+#include "volcal/identify/solve/normal_equations.h"
+#include "volcal/model/effects/effect_keys.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::studied;
+using testing_support::TracerStudy;
+using testing_support::value_of;
+
+TEST_F(TracerStudy, GradientIsThatOfTheNormalEquations) {
+  const RepeatedCampaign repeated(campaign(), result(), {});
+  const MeasurementModel& model = repeated.linear_model().model();
+  const ReadingIndex index(model);
+  std::vector<double> weight;
+  for (const double sigma : total_sigma(repeated.linear_model().problem().data,
+                                        repeated.linear_model().stated_sigma(), repeated.noise()))
+    weight.push_back(1.0 / (sigma * sigma));
+  NormalAccumulator accumulator(index, weight, nullptr, 1);
+  Eigen::VectorXd parameters = result().parameters;
+  parameters.array() += 1e-6;
+  const Eigen::VectorXd expected = accumulator.accumulate(parameters).gradient;
+  Eigen::VectorXd readings(repeated.observations());
+  for (std::size_t i = 0; i < repeated.linear_model().size(); ++i) {
+    const ObservationPlace& place = repeated.linear_model().observations()[i];
+    readings[static_cast<Eigen::Index>(i)] =
+        campaign().setups[place.setup].readings.value[static_cast<std::size_t>(place.channel)][place.row];
+  }
+  const CampaignGradient gradient(model, repeated.whitener());
+  CampaignGradient::Workspace work(gradient);
+  const Eigen::VectorXd computed = gradient.at(parameters, readings, work);
+  EXPECT_LT((computed - expected).norm(), 1e-9 * expected.norm());
+}
+
+/// Largest difference of the estimates of some draws from refits, in standard deviations of the parameters.
+struct PathDifferences {
+  double linear = 0.0;
+  double chord = 0.0;
+};
+
+PathDifferences differences(const Campaign& campaign, const FitResult& result) {
+  const RepeatedCampaign repeated(campaign, result, {});
+  const ChordSolver chord(repeated);
+  CampaignRefit refit(repeated);
+  ChordSolver::Workspace work(chord);
+  const Eigen::ArrayXd u = repeated.gain().diagonal().cwiseSqrt();
+  PathDifferences largest;
+  for (std::uint64_t number = 0; number < 5; ++number) {
+    const CampaignDraw draw = repeated.draw(4, number);
+    const Eigen::VectorXd linear = repeated.linear_estimates({draw});
+    Eigen::VectorXd stepped = linear;
+    const Eigen::MatrixXd gradient = chord.first_gradients({draw}, linear, work);
+    EXPECT_TRUE(chord.solve(draw, gradient.col(0), stepped, work).converged);
+    const CampaignRefit::Outcome full = refit.solve(draw);
+    EXPECT_TRUE(full.converged);
+    EXPECT_GT(full.deviation.norm(), 0.0);
+    largest.linear = std::max(largest.linear, ((linear - full.deviation).array() / u).abs().maxCoeff());
+    largest.chord = std::max(largest.chord, ((stepped - full.deviation).array() / u).abs().maxCoeff());
+  }
+  return largest;
+}
+
+// A refit ends where its cost no longer tells two steps apart.
+constexpr double kEndOfRefits = 1e-3;
+
+TEST_F(TracerStudy, PathsAgreeDrawByDraw) {
+  const PathDifferences white = differences(campaign(), result());
+  EXPECT_LT(white.linear, kEndOfRefits);
+  EXPECT_LT(white.chord, kEndOfRefits);
+}
+
+TEST_F(TracerStudy, PathsAgreeDrawByDrawWithCorrelatedNoise) {
+  const sim::SimulatedCampaign wandering = simulated(1e-6);
+  const FitResult fitted = fit(wandering.campaign, {}, FitOptions{});
+  ASSERT_TRUE(fitted.noise.more_than_white);
+  const PathDifferences correlated = differences(wandering.campaign, fitted);
+  EXPECT_LT(correlated.linear, kEndOfRefits);
+  EXPECT_LT(correlated.chord, kEndOfRefits);
+}
+
+// A time constant that is estimated multiplies amplitudes, so that draws are solved one after another. Refits
+// expand the effect anew about each time constant, steps keep that of the identified machine.
+TEST_F(TracerStudy, PathsAgreeWhereTheShapeOfAnEffectIsEstimated) {
+  ModelSpec model;
+  model.effects.push_back(effect_spec("screw-heating", {{"axis", std::string("X")},
+                                                        {"time_constant", 600.0},
+                                                        {"time_constant_sigma", 60.0},
+                                                        {"amplitude", 1e-5}}));
+  const FitResult fitted = fit(campaign(), model, white_noise());
+  const RepeatedCampaign repeated(campaign(), fitted, {});
+  EXPECT_FALSE(StateMap::is_exact_for(repeated.linear_model().model()));
+  constexpr double kOfExpansion = 0.02;
+  EXPECT_LT(differences(campaign(), fitted).chord, kOfExpansion);
+}
+
+/// A tracer and a ball-bar circle in the plane XY; every error function is one cubic.
+struct CircleStudy {
+  static constexpr double kRadius = 0.15;  // m
+  Campaign campaign = measured();
+  FitResult result = fitted(campaign);
+
+  static Campaign measured() {
+    sim::Study study;
+    study.machine = sim::reference_machines()[0];
+    study.seed = 5;
+    sim::Tracking tracking;
+    tracking.grid = {4, 4, 3};
+    study.measurements.emplace_back().settings = tracking;
+    sim::BallBarCircles circles;
+    circles.planes = {"XY"};
+    circles.radius = kRadius;
+    study.measurements.emplace_back().settings = circles;
+    return sim::simulate(study).campaign;
+  }
+  static FitResult fitted(const Campaign& campaign) {
+    ModelSpec model;
+    model.default_function.knots = KnotChoice::IntervalCount;
+    model.default_function.intervals = 1;
+    FitOptions options;
+    options.noise = NoisePolicy::White;
+    return fit(campaign, model, options);
+  }
+};
+
+// The centre of a circle across its plane is known to its prior alone: to first order the bar's length does
+// not feel it, to second order a centre that is c off makes the bar c^2 / (2 radius) longer. Of normal c with
+// standard deviation s that has mean s^2 / (2 radius) and standard deviation s^2 / (sqrt(2) radius).
+TEST(BallBarStudy, CentreAcrossThePlaneBiasesTheBarsLength) {
+  const CircleStudy circle;
+  const PathDifferences paths = differences(circle.campaign, circle.result);
+  EXPECT_LT(paths.chord, 3.0 * kEndOfRefits);
+  EXPECT_GT(paths.linear, 0.1);
+  MonteCarloOptions options;
+  options.path = DrawPath::Chord;
+  options.draws = 4000;
+  options.threads = 2;
+  const MonteCarloResult study = studied(circle.campaign, circle.result, options);
+  EXPECT_EQ(study.not_converged, 0U);
+  const double s = value_of(study, "ballbar_XY: centre z").u_linear;
+  const QuantityResult& length = value_of(study, "ballbar_XY: bar length error");
+  EXPECT_NEAR(std::abs(length.bias), s * s / (2.0 * CircleStudy::kRadius), 5.0 * length.bias_error);
+  const double squares =
+      length.u_linear * length.u_linear + std::pow(s * s / (std::numbers::sqrt2 * CircleStudy::kRadius), 2);
+  EXPECT_NEAR(length.u / std::sqrt(squares), 1.0, 0.1);
+  EXPECT_EQ(length.verdict, LinearVerdict::NotValidated);
+}
+
+}  // namespace
+}  // namespace volcal

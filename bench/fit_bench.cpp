@@ -18,6 +18,7 @@
 #include "measure.h"
 #include "reference_problem.h"
 #include "volcal/identify/solve/minimise.h"
+#include "volcal/identify/solve/stated_sigma.h"
 
 namespace volcal::bench {
 namespace {
@@ -58,13 +59,10 @@ struct Problem {
         index(model),
         start(model.initial_parameters()),
         datum(model.layout(), problem.campaign.machine, start),
-        prior(GaussianPrior::none(datum.size())) {
-    for (std::size_t setup = 0; setup < problem.campaign.setups.size(); ++setup) {
-      for (std::size_t row = 0; row < problem.campaign.setups[setup].readings.size(); ++row) {
-        sigma.push_back(model.sigma(setup, row, 0, start));
-        weight.push_back(1.0 / (sigma.back() * sigma.back()));
-      }
-    }
+        prior(GaussianPrior::none(datum.size())),
+        sigma(stated_sigma(index, start)) {
+    weight.reserve(sigma.size());
+    for (const double s : sigma) weight.push_back(1.0 / (s * s));
   }
 
   MinimiseSummary fit(const MinimiseOptions& options, Eigen::VectorXd& z) const {

@@ -9,6 +9,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/nearest_name.h"
+#include "volcal/identify/numeric/memory.h"
 #include "volcal/model/description/errors.h"
 
 namespace {
@@ -89,6 +90,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  volcal::keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const volcal::InputError& error) {

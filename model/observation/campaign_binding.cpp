@@ -132,8 +132,7 @@ class CampaignBinder {
     for (const EffectSpec& effect : spec_.effects) add_effect(effect);
     for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
     for (const Setup& setup : campaign_.setups) add_setup(setup);
-    const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
-    for (EffectBinding& effect : binding_.effects) tabulate_drivers(views, effect);
+    tabulate_effects();
     return std::move(binding_);
   }
 
@@ -262,6 +261,12 @@ class CampaignBinder {
     if (parameter >= 0) binding_.shared_terms.push_back(expansion.term);
   }
 
+  void tabulate_effects() {
+    if (binding_.effects.empty()) return;
+    const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
+    for (EffectBinding& effect : binding_.effects) tabulate_drivers(views, effect);
+  }
+
   void add_tool(std::size_t tool) {
     if (machine_.tools[tool].offset_sigma == 0.0 || tool_parameter_.contains(tool)) return;
     tool_parameter_[tool] = add_block(tool_block(machine_.tools[tool]));
@@ -281,6 +286,9 @@ class CampaignBinder {
       const ParameterBlock& block = add_nuisance(nuisance, setup);
       for (int k = 0; k < block.size(); ++k) binding.nuisance.push_back(block.offset + k);
     }
+    for (int channel = 0; channel < binding.bound->channels(); ++channel)
+      binding.noise_constant[channel] = binding.bound->noise_constant(setup.noise, channel);
+    binding.noise_per_metre = setup.noise.number("per_metre").value_or(0.0);
     binding_.setups.push_back(std::move(binding));
   }
 

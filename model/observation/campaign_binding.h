@@ -90,6 +90,8 @@ struct SetupBinding {
   int tool_error = -1;        ///< global index of the tool's offset error, -1 = exact
   Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();
   std::vector<ExpansionBinding> expansions;
+  double noise_constant[kMaxChannels] = {};  ///< of the noise table, m or rad
+  double noise_per_metre = 0.0;
 };
 
 struct CampaignBinding {

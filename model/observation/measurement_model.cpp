@@ -124,18 +124,17 @@ void MeasurementModel::expand_effects(const Eigen::VectorXd& parameters) {
 double MeasurementModel::sigma(std::size_t setup, std::size_t row, int channel,
                                const Eigen::VectorXd& parameters) const {
   const Setup& source = campaign_.setups[setup];
-  const BoundSetup& bound = *binding_.setups[setup].bound;
+  const SetupBinding& place = binding_.setups[setup];
+  const BoundSetup& bound = *place.bound;
   double variance = 0.0;
   if (!source.readings.sigma.empty()) {
     variance = source.readings.sigma[row] * source.readings.sigma[row];
   } else {
-    const double constant = bound.noise_constant(source.noise, channel);
-    const double per_metre =
-        source.noise.number("per_metre").value_or(0.0) * bound.noise_length(row, channel);
+    const double constant = place.noise_constant[channel];
+    const double per_metre = place.noise_per_metre * bound.noise_length(row, channel);
     variance = constant * constant + per_metre * per_metre;
   }
   if (source.repeatability > 0.0) {
-    const SetupBinding& place = binding_.setups[setup];
     ToolState<double> state;
     state.point_w = chain_.nominal_point_w(commanded_position(campaign_.machine, source.readings, row),
                                            place.tool_offset);

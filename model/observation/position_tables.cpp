@@ -6,11 +6,16 @@
 namespace volcal {
 namespace {
 
-/// Numbers the distinct positions of one axis; neighbouring readings often share one.
+/// Numbers the distinct positions of one axis; neighbouring readings often share one, or walk through them in
+/// their order again and again.
 class PositionNumbers {
  public:
   std::uint32_t number_of(double position) {
-    if (!positions_.empty() && position == positions_[last_]) return last_;
+    if (!positions_.empty()) {
+      if (position == positions_[last_]) return last_;
+      const std::size_t next = last_ + 1 < positions_.size() ? last_ + 1 : 0;
+      if (position == positions_[next]) return last_ = static_cast<std::uint32_t>(next);
+    }
     const auto [place, is_new] =
         numbers_.try_emplace(position, static_cast<std::uint32_t>(positions_.size()));
     if (is_new) positions_.push_back(position);

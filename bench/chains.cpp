@@ -102,16 +102,12 @@ class TwistLanes {
         arm_(3 * joints_.size()),
         rotation_(9 * joints_.size()) {}
 
-  void errors(const Poses& poses, std::size_t first, Vector3d* errors) {
-    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
-      for (int lane = 0; lane < kLanes; ++lane)
-        position_[axis][lane] = poses.position[first + static_cast<std::size_t>(lane)][axis];
-    }
-    chain_.levers(position_.data(), poses.tool_offset, point_.data(), arm_.data(),
+  void errors(const PoseLanes& poses, const Vector3d& tool_offset, Vector3d* errors) {
+    chain_.levers(poses.position.data(), tool_offset, point_.data(), arm_.data(),
                   turns_ ? rotation_.data() : nullptr);
     std::array<Lanes, 3> sum{};
     for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-      gather(poses, first, joint);
+      find_motion(poses, joint);
       add_cross(turn_.data(), arm_.data() + 3 * joint, shift_.data());
       if (turns_) {
         rotate(rotation_.data() + 9 * joint, shift_.data(), false, turned_.data());
@@ -126,39 +122,53 @@ class TwistLanes {
 
  private:
   /// Displacement and rotation of a joint, its location errors included.
-  void gather(const Poses& poses, std::size_t first, std::size_t joint) {
+  void find_motion(const PoseLanes& poses, std::size_t joint) {
     const AxisName axis = joints_[joint].axis;
     const auto own = static_cast<std::size_t>(direction_of(axis));
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const PoseErrors<double>& errors = poses.errors[first + static_cast<std::size_t>(lane)];
-      const auto& motion = errors.motion[index_of(axis)];
-      const auto& location = errors.location[index_of(axis)];
+    const auto& motion = poses.motion[index_of(axis)];
+    const auto& location = poses.location[index_of(axis)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      shift_[k] = motion[k];
+      turn_[k] = motion[k + 3];
+    }
+    if (is_rotary(axis)) {
+      const double sign = joints_[joint].workpiece_side ? -1.0 : 1.0;
       for (std::size_t k = 0; k < 3; ++k) {
-        shift_[k][lane] = motion[k];
-        turn_[k][lane] = motion[k + 3];
+        add_scaled(location[k], sign, shift_[k]);
+        add_scaled(location[k + 3], k == own ? 1.0 : sign, turn_[k]);
       }
-      if (is_rotary(axis)) {
-        const double sign = joints_[joint].workpiece_side ? -1.0 : 1.0;
-        for (std::size_t k = 0; k < 3; ++k) {
-          shift_[k][lane] += sign * location[k];
-          turn_[k][lane] += (k == own ? 1.0 : sign) * location[k + 3];
-        }
-      } else {
-        const double q = position_[index_of(axis)][lane];
-        const std::size_t next = (own + 1) % 3, last = (own + 2) % 3;
-        shift_[next][lane] += q * location[3 + last];
-        shift_[last][lane] -= q * location[3 + next];
-      }
+    } else {
+      const std::size_t next = (own + 1) % 3, last = (own + 2) % 3;
+      const Lanes& q = poses.position[index_of(axis)];
+      add_product(q, location[3 + last], shift_[next]);
+      turned_[0].fill(0.0);
+      add_scaled(q, -1.0, turned_[0]);
+      add_product(turned_[0], location[3 + next], shift_[last]);
     }
   }
 
   KinematicChain chain_;
   std::vector<Joint> joints_;
   bool turns_;
-  std::array<Lanes, kAxisCount> position_;
   std::array<Lanes, 3> point_, shift_, turn_, turned_;
   std::vector<Lanes> arm_, rotation_;
 };
+
+/// Poses `first` to first + kLanes.
+PoseLanes side_by_side(const Poses& poses, std::size_t first) {
+  PoseLanes lanes;
+  for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const std::size_t pose = first + static_cast<std::size_t>(lane);
+      lanes.position[axis][lane] = poses.position[pose][axis];
+      for (std::size_t k = 0; k < 6; ++k) {
+        lanes.motion[axis][k][lane] = poses.errors[pose].motion[axis][k];
+        lanes.location[axis][k][lane] = poses.errors[pose].location[axis][k];
+      }
+    }
+  }
+  return lanes;
+}
 
 }  // namespace
 
@@ -178,6 +188,8 @@ Poses random_poses(const std::string& structure, std::size_t count) {
       for (std::size_t k = is_rotary(axis.name) ? 0 : 3; k < 6; ++k) location[k] = any(kLargestError);
     }
   }
+  for (std::size_t first = 0; first < count; first += kLanes)
+    poses.lanes.push_back(side_by_side(poses, first));
   return poses;
 }
 
@@ -185,10 +197,11 @@ void volumetric_errors(const Poses& poses, Transforms transforms, std::vector<Ve
   const KinematicChain chain(poses.machine);
   const SmallAngleChain small(poses.machine);
   TwistLanes lanes(poses.machine);
-  const std::size_t count = poses.position.size() / kLanes * kLanes;
+  const std::size_t count = poses.position.size();
   errors.resize(count);
   if (transforms == Transforms::TwistsInLanes) {
-    for (std::size_t i = 0; i < count; i += kLanes) lanes.errors(poses, i, errors.data() + i);
+    for (std::size_t i = 0; i < poses.lanes.size(); ++i)
+      lanes.errors(poses.lanes[i], poses.tool_offset, errors.data() + i * kLanes);
     return;
   }
   for (std::size_t i = 0; i < count; ++i) {

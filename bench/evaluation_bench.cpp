@@ -47,7 +47,7 @@ constexpr std::array<int, 3> kGrid = {11, 9, 8};
 constexpr int kCovarianceNodes = 21;      // per axis
 constexpr int kFieldNodes = 300;          // per axis
 constexpr std::size_t kPoints = 200'000;  // at random
-constexpr std::size_t kPoses = 1 << 16;
+constexpr std::size_t kPoses = 16384;
 constexpr std::size_t kReadings = 1'000'000;
 constexpr std::uint64_t kSeedOfEvaluation = 5;
 

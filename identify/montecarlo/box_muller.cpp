@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/unit_vector.h"
 
 namespace volcal {
 namespace {
@@ -26,33 +27,12 @@ namespace {
   return exponent * std::numbers::ln2 + 2.0 * f * series;
 }
 
-struct UnitVector {
-  double cosine, sine;
-};
-
-/// Direction of u turns, u in [0, 1]: the nearest quarter turn, and Taylor series over the rest.
-[[gnu::always_inline]] inline UnitVector direction(double u) {
-  constexpr double kRounds = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
-  const double shifted = 4.0 * u + kRounds;
-  const auto quarter = std::bit_cast<std::uint64_t>(shifted);
-  const double x = (4.0 * u - (shifted - kRounds)) * (0.5 * std::numbers::pi), z = -x * x;
-  double sine = 1.0, cosine = 1.0;
-  for (int n = 16; n >= 2; n -= 2) {
-    sine = 1.0 + sine * (z * (1.0 / (n * (n + 1))));
-    cosine = 1.0 + cosine * (z * (1.0 / (n * (n - 1))));
-  }
-  sine *= x;
-  const bool swaps = (quarter & 1U) != 0;
-  const double across = swaps ? cosine : sine, along = swaps ? sine : cosine;
-  return {((quarter + 1U) & 2U) != 0 ? -along : along, (quarter & 2U) != 0 ? -across : across};
-}
-
 }  // namespace
 
 VOLCAL_VECTOR_LOOPS void box_muller(std::size_t count, double* __restrict first, double* __restrict second) {
   for (std::size_t i = 0; i < count; ++i) {
     const double radius = std::sqrt(-2.0 * natural_log(first[i]));
-    const UnitVector unit = direction(second[i]);
+    const UnitVector unit = unit_vector(second[i]);
     first[i] = radius * unit.cosine;
     second[i] = radius * unit.sine;
   }

@@ -1,5 +1,9 @@
 #include "volcal/model/kinematics/chain.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace volcal {
 namespace {
 
@@ -92,39 +96,68 @@ Vector3d KinematicChain::levers(const AxisPosition& position, const Vector3d& to
   return point;
 }
 
-void KinematicChain::levers_and_rotations(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w,
-                                          Lanes* arm_s, Lanes* rotation_ws) const {
-  std::vector<JointLever> of_reading(joints_.size());
-  for (int i = 0; i < kLanes; ++i) {
-    AxisPosition at{};
-    for (const ChainJoint& joint : joints_) at[index_of(joint.axis)] = position[index_of(joint.axis)][i];
-    const Vector3d point = levers(at, tool_offset, of_reading.data());
-    for (int k = 0; k < 3; ++k) point_w[k][i] = point[k];
-    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-      const JointLever& lever = of_reading[joint];
-      for (int k = 0; k < 3; ++k) arm_s[3 * joint + static_cast<std::size_t>(k)][i] = lever.arm_s[k];
-      for (int k = 0; k < 9; ++k)
-        rotation_ws[9 * joint + static_cast<std::size_t>(k)][i] = lever.rotation_ws(k / 3, k % 3);
-    }
-  }
+namespace {
+
+/// Of the positions of a rotary axis.
+struct Turns {
+  Lanes cosine, sine;
+};
+
+Turns turns_of(const Lanes& angle) {
+  Turns turns;
+  find_unit_vectors(angle, turns.cosine, turns.sine);
+  return turns;
 }
+
+/// v = R v, R about a coordinate axis.
+void turn_vector(const Turns& turns, int direction, Lanes* v) {
+  turn(turns.cosine, turns.sine, v[(direction + 1) % 3], v[(direction + 2) % 3]);
+}
+
+/// M = M R, M row by row.
+void turn_frame(const Turns& turns, int direction, Lanes* m) {
+  for (int row = 0; row < 3; ++row)
+    turn(turns.cosine, turns.sine, m[3 * row + (direction + 2) % 3], m[3 * row + (direction + 1) % 3]);
+}
+
+void add_vector(const Vector3d& v, double sign, Lanes* to) {
+  for (int k = 0; k < 3; ++k) add_number(sign * v[k], to[k]);
+}
+
+}  // namespace
 
 void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w, Lanes* arm_s,
                             Lanes* rotation_ws) const {
-  if (rotation_ws != nullptr) {
-    levers_and_rotations(position, tool_offset, point_w, arm_s, rotation_ws);
-    return;
-  }
+  std::array<Turns, kAxisCount> turns;  // of the joints that are rotary
   for (int k = 0; k < 3; ++k) point_w[k].fill(tool_offset[k]);
-  for (std::size_t joint = joints_.size(); joint-- > 0;) {
-    const ChainJoint& own = joints_[joint];
-    const auto move = [&] { add_scaled(position[index_of(own.axis)], 1.0, point_w[direction_of(own.axis)]); };
-    if (own.workpiece_side) move();
-    for (int k = 0; k < 3; ++k) {
-      arm_s[3 * joint + static_cast<std::size_t>(k)] = point_w[k];
-      add_number(-own.reference_point[k], arm_s[3 * joint + static_cast<std::size_t>(k)]);
+  for (std::size_t i = joints_.size(); i-- > 0;) {
+    const ChainJoint& joint = joints_[i];
+    const Lanes& q = position[index_of(joint.axis)];
+    const int direction = direction_of(joint.axis);
+    Lanes* const arm = arm_s + 3 * i;
+    if (is_rotary(joint.axis)) {
+      turns[i] = turns_of(q);
+      add_vector(joint.centre, -1.0, point_w);
+      if (joint.workpiece_side) std::copy_n(point_w, 3, arm);
+      turn_vector(turns[i], direction, point_w);
+      if (!joint.workpiece_side) std::copy_n(point_w, 3, arm);
+      add_vector(joint.centre, 1.0, point_w);
+    } else {
+      if (joint.workpiece_side) add_scaled(q, 1.0, point_w[direction]);
+      std::copy_n(point_w, 3, arm);
+      if (!joint.workpiece_side) add_scaled(q, 1.0, point_w[direction]);
+      add_vector(joint.reference_point, -1.0, arm);
     }
-    if (!own.workpiece_side) move();
+  }
+  if (rotation_ws == nullptr) return;
+  Lanes rotation[9];
+  for (int k = 0; k < 9; ++k) rotation[k].fill(k % 4 == 0 ? 1.0 : 0.0);
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    const bool turns_itself = is_rotary(joints_[i].axis), workpiece_side = joints_[i].workpiece_side;
+    const int direction = direction_of(joints_[i].axis);
+    if (turns_itself && workpiece_side) turn_frame(turns[i], direction, rotation);
+    std::copy_n(rotation, 9, rotation_ws + 9 * i);
+    if (turns_itself && !workpiece_side) turn_frame(turns[i], direction, rotation);
   }
 }
 

@@ -121,8 +121,6 @@ class KinematicChain {
     Eigen::Vector3d reference_point;
     Eigen::Vector3d centre;
   };
-  void levers_and_rotations(const Lanes* position, const Eigen::Vector3d& tool_offset, Lanes* point_w,
-                            Lanes* arm_s, Lanes* rotation_ws) const;
 
   std::vector<ChainJoint> joints_;
 };

@@ -1,5 +1,9 @@
 #include "volcal/model/kinematics/lanes.h"
 
+#include <numbers>
+
+#include "volcal/model/kinematics/unit_vector.h"
+
 namespace volcal {
 
 VOLCAL_VECTOR_LOOPS void add_number(double number, Lanes& to) {
@@ -45,6 +49,24 @@ VOLCAL_VECTOR_LOOPS void add_cross(const Lanes* __restrict a, const Lanes* __res
     to[0].value[i] += ay * bz - az * by;
     to[1].value[i] += az * bx - ax * bz;
     to[2].value[i] += ax * by - ay * bx;
+  }
+}
+
+VOLCAL_VECTOR_LOOPS void find_unit_vectors(const Lanes& __restrict angle, Lanes& __restrict cosine,
+                                           Lanes& __restrict sine) {
+  for (int i = 0; i < kLanes; ++i) {
+    const UnitVector unit = unit_vector(angle.value[i] / (2.0 * std::numbers::pi));
+    cosine.value[i] = unit.cosine;
+    sine.value[i] = unit.sine;
+  }
+}
+
+VOLCAL_VECTOR_LOOPS void turn(const Lanes& __restrict cosine, const Lanes& __restrict sine,
+                              Lanes& __restrict a, Lanes& __restrict b) {
+  for (int i = 0; i < kLanes; ++i) {
+    const double before = a.value[i];
+    a.value[i] = cosine.value[i] * before - sine.value[i] * b.value[i];
+    b.value[i] = sine.value[i] * before + cosine.value[i] * b.value[i];
   }
 }
 

@@ -39,6 +39,10 @@ double dot(const Lanes& a, const Lanes& b);
 double sum(const Lanes& lanes);
 /// to += a x b
 void add_cross(const Lanes* a, const Lanes* b, Lanes* to);
+/// Of angles in rad.
+void find_unit_vectors(const Lanes& angle, Lanes& cosine, Lanes& sine);
+/// (a, b) = (c a - s b, s a + c b)
+void turn(const Lanes& cosine, const Lanes& sine, Lanes& a, Lanes& b);
 /// to = R v, R row by row; with `transposed` R^T v.
 void rotate(const Lanes* rotation, const Lanes* v, bool transposed, Lanes* to);
 

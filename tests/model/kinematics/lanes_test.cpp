@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -18,6 +19,8 @@
 #define sum baseline_sum
 #define add_cross baseline_add_cross
 #define rotate baseline_rotate
+#define turn baseline_turn
+#define find_unit_vectors baseline_find_unit_vectors
 #undef VOLCAL_VECTOR_LOOPS
 #define VOLCAL_VECTOR_LOOPS
 #include "model/kinematics/lanes.cpp"  // NOLINT(bugprone-suspicious-include): compiled a second time on purpose
@@ -29,6 +32,8 @@
 #undef sum
 #undef add_cross
 #undef rotate
+#undef turn
+#undef find_unit_vectors
 
 namespace volcal {
 namespace {
@@ -85,6 +90,53 @@ TEST_F(VectorLoops, CrossProductsAndRotations) {
     baseline_rotate(rotation.data(), a.data(), transposed, plain.data());
     expect_same_bits(by_vector, plain);
   }
+}
+
+TEST_F(VectorLoops, UnitVectorsAndTurns) {
+  const Lanes angle = drawn(), v = drawn(), w = drawn();
+  std::vector<Lanes> by_vector = {angle, angle, v, w}, plain = by_vector;
+  find_unit_vectors(angle, by_vector[0], by_vector[1]);
+  baseline_find_unit_vectors(angle, plain[0], plain[1]);
+  turn(by_vector[0], by_vector[1], by_vector[2], by_vector[3]);
+  baseline_turn(plain[0], plain[1], plain[2], plain[3]);
+  expect_same_bits(by_vector, plain);
+}
+
+// Against the library's functions in long double: rounding of a turn, and of the angle's own size.
+TEST(UnitVectors, AreSineAndCosine) {
+  std::mt19937_64 random(5);
+  constexpr double kRounding = 5e-16;
+  for (const double largest : {1e-9, 0.5, 4.0, 100.0}) {
+    std::uniform_real_distribution<double> uniform(-largest, largest);
+    for (int block = 0; block < 50; ++block) {
+      Lanes angle, cosine, sine;
+      for (double& value : angle.value) value = uniform(random);
+      angle[0] = 0.0;
+      angle[1] = std::numbers::pi;
+      angle[2] = -0.5 * std::numbers::pi;
+      angle[3] = 0.25 * std::numbers::pi;
+      find_unit_vectors(angle, cosine, sine);
+      for (int i = 0; i < kLanes; ++i) {
+        const long double exact = angle[i];
+        const double tolerance = kRounding * (1.0 + std::abs(angle[i]));
+        EXPECT_NEAR(cosine[i], static_cast<double>(std::cos(exact)), tolerance) << angle[i];
+        EXPECT_NEAR(sine[i], static_cast<double>(std::sin(exact)), tolerance) << angle[i];
+      }
+      EXPECT_EQ(cosine[0], 1.0);
+      EXPECT_EQ(sine[0], 0.0);
+    }
+  }
+}
+
+TEST(Turns, TurnAVectorAgainstTheClock) {
+  Lanes cosine, sine, a, b;
+  cosine.fill(0.6);
+  sine.fill(0.8);
+  a.fill(2.0);
+  b.fill(1.0);
+  turn(cosine, sine, a, b);
+  EXPECT_DOUBLE_EQ(a[0], 0.4);
+  EXPECT_DOUBLE_EQ(b[kLanes - 1], 2.2);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 namespace volcal {
 
 const TableFormat& isg_csv_format();
-const TableFormat& isg_ssfk_format();
 
 namespace {
 

@@ -3,9 +3,6 @@
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
-
-const TableFormat& isg_ssfk_format();
-
 namespace {
 
 std::vector<TableFile> write_ssfk(const FitResult& result, const TableFormatOptions& options) {

@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "volcal/identify/tables/compensation_tables.h"
+#include "volcal/identify/tables/table_format.h"
 #include "volcal/identify/tables/table_text.h"
 
 namespace volcal {
 
 inline constexpr double kSsfkUnit = 1e-7;      ///< m
 inline constexpr int kMostSsfkEntries = 1499;  ///< below the 1500 of P-COMP-00059
+
+/// The format of these lists alone; others write them beside their own tables.
+const TableFormat& isg_ssfk_format();
 
 /// achskw1.lis to achskw3.lis. `table`: corrections of `axis` by its own position. Throws InputError for
 /// lengths beyond 32 bits.

@@ -30,6 +30,22 @@ TEST(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHold)
   EXPECT_GT(json.at("summary").back().at("mean_coverage95").get<double>(), 0.88);
 }
 
+// The laser's scale and the tools are wrong in every campaign by what it states.
+TEST(ClosedLoopStudy, IntervalsHoldWithSharedSources) {
+  const auto coverage = [](const std::string& options) {
+    const auto run = run_program("study closed-loop -n 8 --seed 401 --small --json" + options);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output).at("campaigns");
+  };
+  const auto shared = coverage(" --shared"), plain = coverage("");
+  double sum = 0.0;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    sum += shared[i].at("coverage95").get<double>();
+    EXPECT_NE(shared[i].at("rms_after_um"), plain[i].at("rms_after_um"));
+  }
+  EXPECT_GT(sum / static_cast<double>(shared.size()), 0.88);
+}
+
 TEST(ClosedLoopStudy, DoesNotDependOnTheNumberOfThreads) {
   const auto one = run_program("study closed-loop -n 2 --small --json --threads 1");
   const auto two = run_program("study closed-loop -n 2 --small --json --threads 2");

@@ -21,6 +21,8 @@ namespace {
 constexpr double kWander = 0.4e-6;  // m
 constexpr double kWanderTime = 600.0;
 constexpr double kLineOffset = 0.2e-6;
+constexpr double kScale = 0.3e-6;     // relative
+constexpr double kToolOffset = 3e-6;  // m
 
 sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
   const std::vector<Machine> machines = sim::reference_machines();
@@ -33,6 +35,10 @@ sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
     tracking.noise.wander = kWander;
     tracking.noise.wander_time = kWanderTime;
     tracking.noise.line = kLineOffset;
+  }
+  if (options.shared_sources) {
+    tracking.length_scale_sigma = kScale;
+    for (Tool& tool : study.machine.tools) tool.offset_sigma = kToolOffset;
   }
   study.measurements.emplace_back().settings = tracking;
   return study;

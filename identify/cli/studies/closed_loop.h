@@ -21,6 +21,9 @@ struct ClosedLoopOptions {
   /// Besides independent noise, readings wander slowly (0.4 um, 600 s) and lines have offsets (0.2 um); white
   /// weights are fitted as well.
   bool correlated_noise = false;
+  /// The laser's scale (0.3 um/m) and the tools' offsets (3 um) are wrong by what the campaign states, drawn
+  /// anew for every campaign.
+  bool shared_sources = false;
   int threads = 0;  ///< 0 = all; results do not depend on it
   std::function<void(int done, int all)> progress;
 };

@@ -151,7 +151,9 @@ std::string closed_loop_text(const ClosedLoopArguments& arguments, const ClosedL
 }
 
 nlohmann::ordered_json json_of(const ClosedLoopArguments& arguments, const ClosedLoopCampaigns& campaigns) {
-  nlohmann::ordered_json json = {{"study", "closed-loop"}, {"seed", arguments.options.seed}};
+  nlohmann::ordered_json json = {{"study", "closed-loop"},
+                                 {"seed", arguments.options.seed},
+                                 {"shared_sources", arguments.options.shared_sources}};
   for (const ClosedLoopCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"structure", campaign.structure},
                                     {"seed", campaign.seed},
@@ -225,6 +227,10 @@ std::function<int()> define_closed_loop_study(CLI::App& app) {
          "(0.2 um), fitted with white weights too")
       ->check(CLI::IsMember({"white", "correlated"}))
       ->capture_default_str();
+  app.add_flag(
+      "--shared", options.shared_sources,
+      "with a scale of the laser (0.3 um/m) and offsets of the tools (3 um) that are wrong by what the "
+      "campaign states, drawn anew for every campaign");
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
@@ -238,6 +244,7 @@ const Command& closed_loop_study() {
       "closed-loop", "simulated machines identified: error left, resolution and coverage of U95, counted",
       "  volcal study closed-loop -n 80 --fixed\n"
       "  volcal study closed-loop -n 20 --noise correlated\n"
+      "  volcal study closed-loop -n 200 --shared\n"
       "  volcal study closed-loop -n 4 --small --json\n",
       define_closed_loop_study};
   return command;

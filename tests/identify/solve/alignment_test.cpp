@@ -111,10 +111,10 @@ struct PointSet {
   Eigen::MatrixXd rest;
 };
 
-PointSet random_points(std::mt19937_64& random, int count) {
+PointSet random_points(std::mt19937_64& random, Eigen::Index count) {
   PointSet set;
   Eigen::MatrixXd motions(3 * count, 6);
-  for (int i = 0; i < count; ++i) {
+  for (Eigen::Index i = 0; i < count; ++i) {
     AxisPosition position{};
     Eigen::Vector3d p;
     for (std::size_t k = 0; k < 3; ++k)

@@ -167,7 +167,7 @@ TEST_P(InstrumentContract, ReadingsSideBySideAreTheSameAsOneByOne) {
   bound->linearize_lanes(kFirst, kCount, side_by_side, nuisance, lanes);
   for (int i = 0; i < kCount; ++i) {
     Linearization single;
-    bound->linearize(static_cast<std::size_t>(kFirst + i), states[static_cast<std::size_t>(i)], nuisance,
+    bound->linearize(kFirst + static_cast<std::size_t>(i), states[static_cast<std::size_t>(i)], nuisance,
                      single);
     for (int channel = 0; channel < bound->channels(); ++channel) {
       EXPECT_NEAR(lanes.predicted(channel)[i], single.predicted[channel], 1e-14);

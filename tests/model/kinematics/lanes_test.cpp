@@ -47,8 +47,8 @@ class VectorLoops : public ::testing::Test {
     return lanes;
   }
   std::vector<Lanes> drawn(int count) {
-    std::vector<Lanes> all;
-    for (int i = 0; i < count; ++i) all.push_back(drawn());
+    std::vector<Lanes> all(static_cast<std::size_t>(count));
+    for (Lanes& lanes : all) lanes = drawn();
     return all;
   }
   static void expect_same_bits(const std::vector<Lanes>& a, const std::vector<Lanes>& b) {

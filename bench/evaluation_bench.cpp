@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -29,6 +30,7 @@
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/tables/csv_tables.h"
 #include "volcal/identify/tables/error_field.h"
 #include "volcal/identify/tables/error_grid.h"
 #include "volcal/identify/tables/error_tables.h"
@@ -47,6 +49,8 @@ constexpr std::array<int, 3> kGrid = {11, 9, 8};
 constexpr int kCovarianceNodes = 21;      // per axis
 constexpr int kFieldNodes = 300;          // per axis
 constexpr std::size_t kPoints = 200'000;  // at random
+constexpr int kFileNodes = 215;           // per axis of a grid of 10^7 points
+constexpr int kFileRepeats = 1;
 constexpr std::size_t kPoses = 16384;
 constexpr std::size_t kReadings = 1'000'000;
 constexpr std::uint64_t kSeedOfEvaluation = 5;
@@ -293,6 +297,35 @@ Json csv_part(const Arguments& arguments) {
   return json;
 }
 
+/// Writes text again and again, `bytes` in all.
+void write_bytes(const std::string& path, std::size_t bytes) {
+  const std::string text(std::size_t{1} << 20U, '7');
+  std::ofstream file(path, std::ios::binary);
+  for (std::size_t done = 0; done < bytes; done += text.size())
+    file.write(text.data(), static_cast<std::streamsize>(std::min(text.size(), bytes - done)));
+}
+
+Json grid_file_part(const Arguments& arguments) {
+  const Identified machine(arguments.threads);
+  const std::string path = arguments.folder + "/volumetric_grid.csv";
+  const TableFile grid =
+      spatial_grid_file("volumetric_grid.csv", machine.result, kFileNodes, TableContent::Errors);
+  std::size_t bytes = 0;
+  Rounds rounds;
+  rounds.add("own", [&] {
+    std::ofstream file(path, std::ios::binary);
+    file << grid.content;
+    grid.further([&file](std::string_view text) { file << text; });
+    bytes = static_cast<std::size_t>(file.tellp());
+  });
+  rounds.add("write", [&] { write_bytes(path, bytes); });
+  Json json = rounds.json(std::min(arguments.repeats, kFileRepeats));
+  std::remove(path.c_str());
+  json["points"] = kFileNodes * kFileNodes * kFileNodes;
+  json["bytes"] = bytes;
+  return json;
+}
+
 Json run(const Arguments& arguments) {
   const std::map<std::string, Json (*)(const Arguments&)> parts = {{"covariance", covariance_part},
                                                                    {"volume", volume_part},
@@ -300,7 +333,8 @@ Json run(const Arguments& arguments) {
                                                                    {"points", points_part},
                                                                    {"transforms_3", transforms_3_part},
                                                                    {"transforms_5", transforms_5_part},
-                                                                   {"csv", csv_part}};
+                                                                   {"csv", csv_part},
+                                                                   {"grid_file", grid_file_part}};
   const auto found = parts.find(arguments.part);
   if (found == parts.end()) throw std::invalid_argument("there is no part " + arguments.part);
   use_single_threaded_blas();

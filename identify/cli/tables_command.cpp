@@ -173,7 +173,7 @@ std::vector<std::string> file_names(const MadeTables& made) {
 
 void write_files(const MadeTables& made, const std::string& target) {
   AtomicFolder folder(target);
-  for (const TableFile& file : made.files) folder.write(file.name, file.content);
+  for (const TableFile& file : made.files) folder.write(file);
   folder.commit();
 }
 
@@ -305,7 +305,7 @@ std::function<int()> define_tables(CLI::App& app) {
                  "rows per function of the csv tables; default: round steps, 21 to 51 rows")
       ->check(CLI::Range(2, 100000));
   app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid of the csv tables")
-      ->check(CLI::Range(1, 101));
+      ->check(CLI::Range(1, 301));
   app.add_option("--zero", arguments->zero,
                  "csv tables with reversal: mean of both directions is zero at home, or the + direction "
                  "(ISO/TR 16907, Table 1)")

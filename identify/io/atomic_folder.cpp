@@ -62,18 +62,27 @@ void flush_tree(const fs::path& folder) {
   flush(folder.string());
 }
 
-/// `shown`: what the message calls the file.
-void write_all(const std::string& path, const std::string& content, const std::string& shown) {
-  const Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (!file.open()) fail_system(shown, "creating the file");
-  std::size_t done = 0;
-  while (done < content.size()) {
-    const auto count = ::write(file.number(), content.data() + done, content.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_system(shown, "writing");
-    done += static_cast<std::size_t>(count);
+/// A file that is made. `shown`: what messages call it.
+class NewFile {
+ public:
+  NewFile(const std::string& path, std::string shown)
+      : shown_(std::move(shown)), file_(path, O_WRONLY | O_CREAT | O_TRUNC, 0666) {
+    if (!file_.open()) fail_system(shown_, "creating the file");
   }
-}
+
+  void append(std::string_view text) const {
+    while (!text.empty()) {
+      const auto count = ::write(file_.number(), text.data(), text.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) fail_system(shown_, "writing");
+      text.remove_prefix(static_cast<std::size_t>(count));
+    }
+  }
+
+ private:
+  std::string shown_;
+  Descriptor file_;
+};
 
 std::string temporary_prefix(const fs::path& target) { return "." + target.filename().string() + ".tmp-"; }
 
@@ -191,7 +200,13 @@ AtomicFolder::~AtomicFolder() {
 }
 
 void AtomicFolder::write(const std::string& name, const std::string& content) const {
-  write_all(path(name), content, target_ + "/" + name);
+  NewFile(path(name), target_ + "/" + name).append(content);
+}
+
+void AtomicFolder::write(const TableFile& file) const {
+  const NewFile written(path(file.name), target_ + "/" + file.name);
+  written.append(file.content);
+  if (file.further) file.further([&written](std::string_view text) { written.append(text); });
 }
 
 void AtomicFolder::carry_over_user_files() const {
@@ -211,7 +226,7 @@ void AtomicFolder::write_list() const {
   std::ranges::sort(names);
   std::string text;
   for (const std::string& name : names) text += name + "\n";
-  write_all(path(kList), text, target_ + "/" + kList);
+  NewFile(path(kList), target_ + "/" + kList).append(text);
 }
 
 void AtomicFolder::exchange() const {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/tables/table_text.h"
+
 namespace volcal {
 
 class AtomicFolder {
@@ -29,6 +31,7 @@ class AtomicFolder {
   std::string path(const std::string& name) const { return temporary_ + "/" + name; }
   /// Writes one file.
   void write(const std::string& name, const std::string& content) const;
+  void write(const TableFile& file) const;
   /// Puts the folder in the place of the target. Throws InputError when the system refuses.
   void commit();
 

@@ -27,9 +27,7 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
   folder.write("result.json", result_json(result));
   TableFormatOptions options;
   options.grid_per_axis = kGridPointsPerAxis;
-  for (const TableFile& file : result_tables(result, options)) {
-    folder.write(file.name, file.content);
-  }
+  for (const TableFile& file : result_tables(result, options)) folder.write(file);
   write_residuals_csv(folder.path("residuals.csv"), result, campaign);
   folder.write("machine.toml", machine_toml(result.machine));
   folder.write(

@@ -59,8 +59,8 @@ std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptio
   std::vector<TableFile> files = result_tables(result, options);
   files.push_back({"compensation_tables.csv",
                    function_table_csv(error_table(result, options.functions), TableContent::Compensations)});
-  files.push_back({"compensation_grid.csv", spatial_grid_csv(volumetric_grid(result, options.grid_per_axis),
-                                                             result.machine, TableContent::Compensations)});
+  files.push_back(
+      spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis, TableContent::Compensations));
   files.push_back({"metadata.csv", table_metadata_csv(result, options)});
   return files;
 }

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "volcal/identify/tables/csv_cell.h"
+#include "volcal/identify/tables/decimal_text.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -145,21 +147,71 @@ std::vector<ErrorTableRow> read_function_table(const TableFile& file, TableConte
   return rows;
 }
 
+namespace {
+
+constexpr int kDecimalsOfPosition = 7;
+constexpr int kDecimalsOfError = 7;
+
+/// Rows of a spatial grid as text.
+class GridRows {
+ public:
+  GridRows(const Machine& machine, TableContent content)
+      : axes_(axes_of_grid(machine)), sign_(sign_of(content)) {}
+
+  void append(const VolumetricError& point) {
+    for (const AxisName axis : axes_) {
+      append_decimal(point.position[index_of(axis)] / position_factor(axis), kDecimalsOfPosition, text_);
+      text_.push_back(',');
+    }
+    append_cell(point.tool);
+    for (const double value : point.value) append_number(sign_ * value);
+    for (const double u : point.u) append_number(u);
+    text_.push_back(',');
+    text_.push_back(point.extrapolated ? '1' : '0');
+    text_.push_back('\n');
+  }
+  std::string_view text() const { return {text_.data(), text_.size()}; }
+  void clear() { text_.clear(); }
+
+ private:
+  void append_cell(const std::string& tool) {
+    if (tool != tool_) {
+      tool_ = tool;
+      cell_ = csv_cell(tool);
+    }
+    text_.append(cell_);
+  }
+  void append_number(double value) {
+    text_.push_back(',');
+    append_decimal(value / kMicro, kDecimalsOfError, text_);
+  }
+
+  std::vector<AxisName> axes_;
+  double sign_;
+  std::string tool_, cell_;
+  fmt::memory_buffer text_;
+};
+
+}  // namespace
+
+TableFile spatial_grid_file(std::string name, const FitResult& result, int per_axis, TableContent content) {
+  const auto kept = std::make_shared<const FitResult>(result);
+  return {std::move(name), grid_header(result.machine, content) + "\n",
+          [kept, per_axis, content](const TextTaker& take) {
+            GridRows rows(kept->machine, content);
+            for_each_plane_of_grid(*kept, per_axis, [&](std::span<const VolumetricError> plane) {
+              for (const VolumetricError& point : plane) rows.append(point);
+              take(rows.text());
+              rows.clear();
+            });
+          }};
+}
+
 std::string spatial_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine,
                              TableContent content) {
-  fmt::memory_buffer text;
-  auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}\n", grid_header(machine, content));
-  for (const VolumetricError& point : grid) {
-    for (const AxisName axis : axes_of_grid(machine))
-      fmt::format_to(out, "{:.10g},", point.position[index_of(axis)] / position_factor(axis));
-    fmt::format_to(out, "{}", csv_cell(point.tool));
-    for (const double value : point.value)
-      fmt::format_to(out, ",{:.9g}", signed_value(value, content) / kMicro);
-    for (const double u : point.u) fmt::format_to(out, ",{:.6g}", u / kMicro);
-    fmt::format_to(out, ",{}\n", point.extrapolated ? 1 : 0);
-  }
-  return fmt::to_string(text);
+  GridRows rows(machine, content);
+  for (const VolumetricError& point : grid) rows.append(point);
+  return grid_header(machine, content) + "\n" + std::string(rows.text());
 }
 
 std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Machine& machine,
@@ -186,8 +238,7 @@ std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Mach
 std::vector<TableFile> result_tables(const FitResult& result, const TableFormatOptions& options) {
   return {
       {"error_tables.csv", function_table_csv(error_table(result, options.functions), TableContent::Errors)},
-      {"volumetric_grid.csv", spatial_grid_csv(volumetric_grid(result, options.grid_per_axis), result.machine,
-                                               TableContent::Errors)}};
+      spatial_grid_file("volumetric_grid.csv", result, options.grid_per_axis, TableContent::Errors)};
 }
 
 }  // namespace volcal

@@ -348,16 +348,26 @@ MatrixXd ErrorGrid::at_nodes(Rows rows, std::size_t axis, Eigen::Index count) co
   return blocks;
 }
 
-std::vector<Covariance3> ErrorGrid::displacement_covariances() const {
+void ErrorGrid::for_each_plane_of_covariances(const UseOfPlane& use) const {
   const auto own = [&](std::size_t axis) { return at_nodes(&AxisErrors::errors, axis, kErrorsOfNode); };
   const auto both = [&](std::size_t i, std::size_t j) { return between(&AxisErrors::errors, i, j); };
   const ErrorBlocks blocks{own(0), own(1), own(2), both(0, 1), both(0, 2), both(1, 2)};
   const auto [a, b, c] = grid_.counts();
-  std::vector<Covariance3> covariances(a * b * c);
+  std::vector<Covariance3> plane(b * c);
   CovarianceSums sums(grid_, blocks);
   for (std::size_t i = 0; i < a; ++i) {
-    for (std::size_t j = 0; j < b; ++j) sums.along_third(i, j, covariances.data() + (i * b + j) * c);
+    for (std::size_t j = 0; j < b; ++j) sums.along_third(i, j, plane.data() + j * c);
+    use(i, plane);
   }
+}
+
+std::vector<Covariance3> ErrorGrid::displacement_covariances() const {
+  const auto [a, b, c] = grid_.counts();
+  std::vector<Covariance3> covariances;
+  covariances.reserve(a * b * c);
+  for_each_plane_of_covariances([&](std::size_t /*first*/, std::span<const Covariance3> plane) {
+    covariances.insert(covariances.end(), plane.begin(), plane.end());
+  });
   return covariances;
 }
 

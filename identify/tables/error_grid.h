@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "volcal/identify/solve/result.h"
@@ -50,6 +52,9 @@ class ErrorGrid {
   PlaneTables rotations() const;
   /// At every node, the last axis fastest.
   std::vector<Covariance3> displacement_covariances() const;
+  /// The same for the nodes of the second and third axis at node after node of the first.
+  using UseOfPlane = std::function<void(std::size_t first, std::span<const Covariance3> plane)>;
+  void for_each_plane_of_covariances(const UseOfPlane& use) const;
   /// Of ea eb ec, rad^2.
   PlaneTables rotation_variances() const;
 

@@ -179,19 +179,27 @@ std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis) {
   return axis_grid(machine, per_axis).positions();
 }
 
-std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
-  std::vector<VolumetricError> grid;
-  const AxisGrid axes = axis_grid(result.machine, per_axis);
-  const std::vector<AxisPosition> positions = axes.positions();
-  for (const Tool& tool : result.machine.tools) {
-    const ErrorGrid errors(result, tool, axes);
-    const auto displacement = sum_planes(errors.displacements());
-    const auto rotation = sum_planes(errors.rotations());
-    const auto covariance = errors.displacement_covariances();
-    const auto rotation_variance = sum_planes(errors.rotation_variances());
-    const double of_tool = stated_variance(result, tool);
+namespace {
+
+using UseOfNodes = std::function<void(std::span<const VolumetricError>)>;
+
+void for_each_plane_of_tool(const FitResult& result, const Tool& tool, const AxisGrid& axes,
+                            const UseOfNodes& use) {
+  const ErrorGrid errors(result, tool, axes);
+  const PlaneTables displacements = errors.displacements(), rotations = errors.rotations(),
+                    rotation_variances = errors.rotation_variances();
+  const double of_tool = stated_variance(result, tool);
+  AxisGrid plane = axes;
+  std::vector<VolumetricError> nodes;
+  errors.for_each_plane_of_covariances([&](std::size_t first, std::span<const Covariance3> covariance) {
+    plane.nodes[0] = {axes.nodes[0][first]};
+    const std::vector<AxisPosition> positions = plane.positions();
+    const auto displacement = sum_planes(plane_of(displacements, first));
+    const auto rotation = sum_planes(plane_of(rotations, first));
+    const auto rotation_variance = sum_planes(plane_of(rotation_variances, first));
+    nodes.resize(positions.size());
     for (std::size_t i = 0; i < positions.size(); ++i) {
-      VolumetricError& error = grid.emplace_back();
+      VolumetricError& error = nodes[i];
       error.position = positions[i];
       error.tool = tool.name;
       error.value << displacement[i], rotation[i];
@@ -199,7 +207,23 @@ std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_ax
       error.u = error.u.cwiseMax(0.0).cwiseSqrt().eval();
       error.extrapolated = is_extrapolated(result, positions[i]);
     }
-  }
+    use(nodes);
+  });
+}
+
+}  // namespace
+
+void for_each_plane_of_grid(const FitResult& result, int per_axis,
+                            const std::function<void(std::span<const VolumetricError>)>& use) {
+  const AxisGrid axes = axis_grid(result.machine, per_axis);
+  for (const Tool& tool : result.machine.tools) for_each_plane_of_tool(result, tool, axes, use);
+}
+
+std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis) {
+  std::vector<VolumetricError> grid;
+  for_each_plane_of_grid(result, per_axis, [&grid](std::span<const VolumetricError> nodes) {
+    grid.insert(grid.end(), nodes.begin(), nodes.end());
+  });
   return grid;
 }
 

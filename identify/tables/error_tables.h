@@ -3,6 +3,8 @@
 /// volumetric errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR 16907, 8.2
 /// and 9).
 
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,5 +58,8 @@ bool is_extrapolated(const FitResult& result, const AxisPosition& position);
 std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis);
 /// Grid over the travel, `per_axis` positions each, for every tool.
 std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis);
+/// The same plane by plane of the first axis of axis_grid(), for grids too large for memory.
+void for_each_plane_of_grid(const FitResult& result, int per_axis,
+                            const std::function<void(std::span<const VolumetricError>)>& use);
 
 }  // namespace volcal

@@ -85,6 +85,15 @@ void sum_row(const PlaneTables& tables, std::size_t i, std::size_t j, bool past_
 
 }  // namespace
 
+PlaneTables plane_of(const PlaneTables& tables, std::size_t first) {
+  const std::size_t second = tables.nodes[1], third = tables.nodes[2];
+  PlaneTables plane({1, second, third});
+  std::copy_n(&tables.first_second[first * second], second, plane.first_second.begin());
+  std::copy_n(&tables.first_third[first * third], third, plane.first_third.begin());
+  plane.second_third = tables.second_third;
+  return plane;
+}
+
 void sum_planes(const PlaneTables& tables, int threads, std::span<Eigen::Vector3d> field) {
   if (field.size() != tables.size()) throw std::invalid_argument("as many vectors as nodes are needed");
   if (field.empty()) return;

@@ -46,6 +46,9 @@ PlaneTables sample_planes(const std::array<std::size_t, 3>& nodes, const Field& 
   return tables;
 }
 
+/// The field at node `first` of the first axis alone.
+PlaneTables plane_of(const PlaneTables& tables, std::size_t first);
+
 /// Writes the field at every node, the third axis fastest; `field` has tables.size() entries.
 void sum_planes(const PlaneTables& tables, int threads, std::span<Eigen::Vector3d> field);
 std::vector<Eigen::Vector3d> sum_planes(const PlaneTables& tables);

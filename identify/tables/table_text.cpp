@@ -36,6 +36,12 @@ const TableFile* find_file(std::span<const TableFile> files, std::string_view na
   return found == files.end() ? nullptr : &*found;
 }
 
+std::string whole_content(const TableFile& file) {
+  std::string text = file.content;
+  if (file.further) file.further([&text](std::string_view piece) { text += piece; });
+  return text;
+}
+
 const TableFile& file_named(std::span<const TableFile> files, std::string_view name) {
   if (const TableFile* found = find_file(files, name)) return *found;
   throw InputError({std::string(name), 0}, "the file is missing among the tables",

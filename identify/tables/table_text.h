@@ -3,6 +3,7 @@
 /// table formats.
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,10 +13,17 @@
 
 namespace volcal {
 
+using TextTaker = std::function<void(std::string_view text)>;
+
 struct TableFile {
   std::string name;  ///< no folder in it
   std::string content;
+  /// What follows `content`, made piece by piece while it is written; null where that is all.
+  std::function<void(const TextTaker& take)> further = {};
 };
+
+/// Of a file, with what follows its `content`.
+std::string whole_content(const TableFile& file);
 
 /// The file of that name. Throws InputError when it is not among them.
 const TableFile& file_named(std::span<const TableFile> files, std::string_view name);

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/table_samples.h"
 #include "volcal/identify/tables/csv_tables.h"
 #include "volcal/model/description/errors.h"
@@ -275,6 +277,15 @@ TEST(NativeTables, GridsAreReadBackAsWritten) {
       EXPECT_LT((read[i].u - written[i].u).cwiseAbs().maxCoeff(), 1e-12);
       EXPECT_EQ(read[i].extrapolated, written[i].extrapolated);
     }
+  }
+}
+
+TEST(NativeTables, GridsMadePieceByPieceAreTheWholeGrid) {
+  for (const TableContent content : {TableContent::Errors, TableContent::Compensations}) {
+    const TableFile file = spatial_grid_file("g.csv", small_result(), 3, content);
+    EXPECT_EQ(whole_content(file),
+              spatial_grid_csv(volumetric_grid(small_result(), 3), small_result().machine, content));
+    EXPECT_EQ(std::ranges::count(file.content, '\n'), 1) << "the header alone";
   }
 }
 

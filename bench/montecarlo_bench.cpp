@@ -28,8 +28,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr Eigen::Index kLinearBatch = 250;  // draws, as in a study
 constexpr int kLinearBatches = 80;
-constexpr int kChordBatches = 10;
-constexpr Eigen::Index kChordBatch = 64;
+constexpr int kChordBatches = 20;
+constexpr Eigen::Index kChordBatch = 32;
 constexpr Eigen::Index kRefits = 4;  // of one thread
 
 /// Draws per second of each row, by round.

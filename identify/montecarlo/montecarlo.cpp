@@ -32,7 +32,7 @@ struct BlockSize {
 /// A block is a whole part of StudySums::kSequence, so that a study can end with it.
 BlockSize block_size(DrawPath path) {
   if (path == DrawPath::Linear) return {10000, 250};
-  if (path == DrawPath::Chord) return {2500, 8 * DrawGradients::kDraws};
+  if (path == DrawPath::Chord) return {1250, 4 * DrawGradients::kDraws};
   return {100, 2};
 }
 

@@ -169,7 +169,7 @@ TEST_F(TracerStudy, ThreadsDoNotChangeABit) {
       options.path = path;
       options.threads = threads;
       options.refits = 2;
-      options.draws = path == DrawPath::Linear ? 12000 : path == DrawPath::Chord ? 2600 : 12;
+      options.draws = path == DrawPath::Linear ? 12000 : path == DrawPath::Chord ? 1300 : 12;
       MonteCarloStudy study(campaign(), result(), options);
       while (!study.done()) study.run_block();
       EXPECT_EQ(study.draws(), options.draws);
@@ -211,7 +211,7 @@ TEST_F(TracerStudy, RanksDoNotChangeABit) {
     options.path = path;
     options.refits = 1;
     options.threads = 1;
-    options.draws = path == DrawPath::Linear ? 20250 : 2510;  // a last block of one batch
+    options.draws = path == DrawPath::Linear ? 20250 : 1260;  // a last block of one batch
     MonteCarloStudy alone(campaign(), result(), options);
     while (!alone.done()) alone.run_block();
     TwoRanks ranks;

@@ -158,6 +158,7 @@ MadeTables make_tables(const FitResult& result, const TablesArguments& arguments
     made.step = choose_step(*made.format, result, made.options, made.tolerance);
     made.options.step = made.step.step;
   }
+  if (made.format->step_of != nullptr) made.options.step = made.format->step_of(made.options);
   made.files = write_tables(*made.format, result, made.options);
   made.read_back = made.format->read(made.files);
   made.check = check_in_volume(result, made.options, made.read_back);

@@ -87,6 +87,10 @@ int spacing_below(double step) {
   return std::clamp(exponent, 0, kLargestSpacing);
 }
 
+double com_step(const TableFormatOptions& options) {
+  return has_spacing(options) ? std::ldexp(kComDigit, spacing_below(options.step)) : options.step;
+}
+
 /// 0.0 in place of what would be written as -0.0000.
 double com_value(double value) {
   return without_negative_zero(std::round(value / kComDigit) * kComDigit) / kMetrePerMillimetre;
@@ -136,7 +140,7 @@ std::vector<TableFile> write_com(const FitResult& result, const TableFormatOptio
   TableFormatOptions options = given;
   const bool spacing = has_spacing(options);
   const int exponent = spacing_below(options.step);
-  if (spacing) options.step = std::ldexp(kComDigit, exponent);
+  options.step = com_step(options);
   std::vector<TableFile> files;
   std::string causes = "ACTIVE", names = "*";
   for (const ComTable& table : com_tables(result, options)) {
@@ -316,7 +320,8 @@ const TableFormat& heidenhain_format() {
                  .equidistant = true},
       .settings = kComSettings,
       .write = write_com,
-      .read = read_com};
+      .read = read_com,
+      .step_of = com_step};
   return format;
 }
 

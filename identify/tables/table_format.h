@@ -74,6 +74,8 @@ struct TableFormat {
   /// The files as the controller evaluates them: its interpolation, its quantisation, its sign. Throws
   /// InputError with file, line and remedy.
   CompensationTables (*read)(std::span<const TableFile> files);
+  /// Step that is written for the one asked for, where the format has not every step; null otherwise.
+  double (*step_of)(const TableFormatOptions& options) = nullptr;
 };
 
 std::span<const TableFormat* const> table_formats();

@@ -149,6 +149,9 @@ TEST_F(TablesAtPoints, WriteTablesThatAreEnteredByHand) {
   EXPECT_THAT(heidenhain.output, HasSubstr("sign of the values is NOT confirmed"));
   EXPECT_THAT(content(path("heidenhain/X.COM.txt")), HasSubstr("ERRORS\nAXISPOS X Y Z\n-400.0000 "));
   EXPECT_THAT(content(path("heidenhain/CONFIG.CMA.txt")), HasSubstr("* X.COM Y.COM Z.COM"));
+  const auto spacing = tables("--format heidenhain --set sign=error --set rows=spacing --step 20 --dry-run");
+  ASSERT_EQ(spacing.exit_code, 0) << spacing.errors;
+  EXPECT_THAT(spacing.output, HasSubstr("step 13.1072 mm")) << "2^17 digits of 0.1 um";
   const auto fanuc = tables(
       "--format fanuc --set sign=compensation --set output=even --set directions=mean -o " + path("fanuc"));
   ASSERT_EQ(fanuc.exit_code, 0) << fanuc.errors;

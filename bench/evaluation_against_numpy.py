@@ -125,7 +125,8 @@ def csv_rows(parts):
 def grid_file_rows(parts):
     figures = parts[("grid_file", 1)]
     own, write = median(figures, "own"), median(figures, "write")
-    yield (f"spatial grid of {figures['points']:,} points as CSV, {figures['bytes'] / 1e9:.2f} GB{mark(figures)}", 1,
+    yield (f"spatial grid of {figures['points']:,} points for {figures['tools']} tools as CSV, "
+           f"{figures['bytes'] / 1e9:.2f} GB{mark(figures)}", 1,
            f"{own:.1f} s", f"writing as many bytes: {write:.2f} s", f"{own / write:.1f} times as long")
 
 

@@ -322,6 +322,7 @@ Json grid_file_part(const Arguments& arguments) {
   Json json = rounds.json(std::min(arguments.repeats, kFileRepeats));
   std::remove(path.c_str());
   json["points"] = kFileNodes * kFileNodes * kFileNodes;
+  json["tools"] = machine.result.machine.tools.size();
   json["bytes"] = bytes;
   return json;
 }

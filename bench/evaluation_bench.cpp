@@ -176,9 +176,9 @@ void write_in_parts(std::vector<Eigen::Vector3d>& field, int threads, const Writ
   for (std::thread& other : others) other.join();
 }
 
-void write_ordinary(double* begin, double* end) { std::fill(begin, end, 1.5); }
+void write_ordinary(double* begin, const double* end) { std::fill_n(begin, end - begin, 1.5); }
 
-void write_streaming(double* begin, double* end) {
+void write_streaming(double* begin, const double* end) {
 #if defined(__SSE2__)
   const __m128d number = _mm_set1_pd(1.5);
   while (reinterpret_cast<std::uintptr_t>(begin) % 16 != 0) *begin++ = 1.5;

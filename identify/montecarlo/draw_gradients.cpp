@@ -27,7 +27,7 @@ Eigen::MatrixXd DrawGradients::at(const Eigen::MatrixXd& parameters, const Eigen
   Eigen::Index observation = 0;
   for (std::size_t b = 0; b < model_.blocks().size(); ++b) {
     add_loads(b, observation, work);
-    observation += model_.blocks()[b].size * work.readings[b * kDraws].channels();
+    observation += Eigen::Index{model_.blocks()[b].size} * work.readings[b * kDraws].channels();
   }
   return states_.gradients(work.sums).leftCols(parameters.cols());
 }
@@ -71,7 +71,7 @@ void DrawGradients::add_loads(std::size_t block, Eigen::Index first_observation,
     for (int channel = 0; channel < reading.channels(); ++channel) {
       Lanes& error = load.offset[channel];
       for (int i = 0; i < place.size; ++i)
-        error[i] = work.errors(first_observation + i * reading.channels() + channel, k);
+        error[i] = work.errors(first_observation + Eigen::Index{i} * reading.channels() + channel, k);
       for (int c = 0; c < reading.state_size(); ++c)
         add_product(error, reading.d_state(channel)[c], state_component(load.tool, c));
       for (int n = 0; n < reading.nuisance_size(); ++n) {

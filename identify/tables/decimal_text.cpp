@@ -17,7 +17,7 @@ void append_decimal(double value, int decimals, fmt::memory_buffer& text) {
     fmt::format_to(std::back_inserter(text), "{:.9g}", value);
     return;
   }
-  const auto whole = static_cast<std::uint64_t>(std::abs(scaled) + 0.5);
+  const auto whole = static_cast<std::uint64_t>(std::llround(std::abs(scaled)));
   if (scaled < 0.0 && whole > 0) text.push_back('-');
   const fmt::format_int before(whole / power);
   text.append(before.data(), before.data() + before.size());

@@ -124,6 +124,20 @@ void add_vector(const Vector3d& v, double sign, Lanes* to) {
   for (int k = 0; k < 3; ++k) add_number(sign * v[k], to[k]);
 }
 
+/// Of the stator frames, workpiece to tool. `turns`: of the joints that are rotary.
+template <class Joints>
+void find_rotations(const Joints& joints, const Turns* turns, Lanes* rotation_ws) {
+  Lanes rotation[9];
+  for (int k = 0; k < 9; ++k) rotation[k].fill(k % 4 == 0 ? 1.0 : 0.0);
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const bool turns_itself = is_rotary(joints[i].axis), workpiece_side = joints[i].workpiece_side;
+    const int direction = direction_of(joints[i].axis);
+    if (turns_itself && workpiece_side) turn_frame(turns[i], direction, rotation);
+    std::copy_n(rotation, 9, rotation_ws + 9 * i);
+    if (turns_itself && !workpiece_side) turn_frame(turns[i], direction, rotation);
+  }
+}
+
 }  // namespace
 
 void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, Lanes* point_w, Lanes* arm_s,
@@ -149,16 +163,7 @@ void KinematicChain::levers(const Lanes* position, const Vector3d& tool_offset, 
       add_vector(joint.reference_point, -1.0, arm);
     }
   }
-  if (rotation_ws == nullptr) return;
-  Lanes rotation[9];
-  for (int k = 0; k < 9; ++k) rotation[k].fill(k % 4 == 0 ? 1.0 : 0.0);
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    const bool turns_itself = is_rotary(joints_[i].axis), workpiece_side = joints_[i].workpiece_side;
-    const int direction = direction_of(joints_[i].axis);
-    if (turns_itself && workpiece_side) turn_frame(turns[i], direction, rotation);
-    std::copy_n(rotation, 9, rotation_ws + 9 * i);
-    if (turns_itself && !workpiece_side) turn_frame(turns[i], direction, rotation);
-  }
+  if (rotation_ws != nullptr) find_rotations(joints_, turns.data(), rotation_ws);
 }
 
 ToolTwist KinematicChain::first_order(const AxisPosition& position, const Vector3d& tool_offset,

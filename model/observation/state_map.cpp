@@ -57,7 +57,7 @@ template <int kCount>
     Vectors sum[kCount];
     for (int k = 0; k < kCount; ++k) sum[k] = Vectors{} + constant[first + k].value[i];
     for_each_slot(sweep, i, first, [&](const Octet& number, const double* coefficient) {
-      const Vectors& values = reinterpret_cast<const Vectors&>(number);
+      const auto& values = reinterpret_cast<const Vectors&>(number);
       for (int k = 0; k < kCount; ++k) sum[k] += values * coefficient[k];
     });
     for (int k = 0; k < kCount; ++k) {
@@ -93,7 +93,7 @@ template <int kCount>
     Vectors loads[kCount];
     for (int k = 0; k < kCount; ++k) loads[k] = reinterpret_cast<const Vectors&>(own[k]);
     for_each_slot(sweep, i, first, [&](Octet& number, const double* coefficient) {
-      Vectors sum = reinterpret_cast<Vectors&>(number);
+      auto sum = reinterpret_cast<Vectors&>(number);
       for (int k = 0; k < kCount; ++k) sum += loads[k] * coefficient[k];
       reinterpret_cast<Vectors&>(number) = sum;
     });

@@ -138,12 +138,9 @@ class TwistLanes {
         add_scaled(location[k + 3], k == own ? 1.0 : sign, turn_[k]);
       }
     } else {
-      const std::size_t next = (own + 1) % 3, last = (own + 2) % 3;
-      const Lanes& q = poses.position[index_of(axis)];
-      add_product(q, location[3 + last], shift_[next]);
-      turned_[0].fill(0.0);
-      add_scaled(q, -1.0, turned_[0]);
-      add_product(turned_[0], location[3 + next], shift_[last]);
+      std::array<Lanes, 3> travelled{};
+      travelled[own] = poses.position[index_of(axis)];
+      add_cross(&location[3], travelled.data(), shift_.data());
     }
   }
 

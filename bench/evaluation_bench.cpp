@@ -50,7 +50,6 @@ constexpr int kCovarianceNodes = 21;      // per axis
 constexpr int kFieldNodes = 300;          // per axis
 constexpr std::size_t kPoints = 200'000;  // at random
 constexpr int kFileNodes = 215;           // per axis of a grid of 10^7 points
-constexpr int kFileRepeats = 1;
 constexpr std::size_t kPoses = 16384;
 constexpr std::size_t kReadings = 1'000'000;
 constexpr std::uint64_t kSeedOfEvaluation = 5;
@@ -319,7 +318,7 @@ Json grid_file_part(const Arguments& arguments) {
     bytes = static_cast<std::size_t>(file.tellp());
   });
   rounds.add("write", [&] { write_bytes(path, bytes); });
-  Json json = rounds.json(std::min(arguments.repeats, kFileRepeats));
+  Json json = rounds.json(1);  // gigabytes
   std::remove(path.c_str());
   json["points"] = kFileNodes * kFileNodes * kFileNodes;
   json["tools"] = machine.result.machine.tools.size();

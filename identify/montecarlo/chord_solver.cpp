@@ -35,39 +35,37 @@ Eigen::VectorXd ChordSolver::gradient_at(const CampaignDraw& draw, const Eigen::
 
 Eigen::MatrixXd ChordSolver::first_gradients(const std::vector<CampaignDraw>& draws,
                                              const Eigen::MatrixXd& deviations, Workspace& work) const {
-  Eigen::MatrixXd gradients(deviations.rows(), deviations.cols());
-  const std::size_t at_once = together_ ? DrawGradients::kDraws : 1;
-  for (std::size_t first = 0; first < draws.size(); first += at_once) {
-    const auto column = static_cast<Eigen::Index>(first);
-    if (together_) {
-      const std::size_t count = std::min(at_once, draws.size() - first);
-      find_together(std::span(draws).subspan(first, count), column, deviations, work, gradients);
-    } else {
-      const Eigen::VectorXd readings = campaign_.predicted() + draws[first].errors;
-      gradients.col(column) = gradient_at(draws[first], readings, deviations.col(column), work);
-    }
+  constexpr Eigen::Index kAtOnce = DrawGradients::kDraws;
+  const auto count = static_cast<Eigen::Index>(draws.size());
+  Eigen::MatrixXd gradients(deviations.rows(), count);
+  for (Eigen::Index first = 0; together_ && first < count; first += kAtOnce) {
+    const Eigen::Index several = std::min(kAtOnce, count - first);
+    gradients.middleCols(first, several) =
+        together(draws.data() + first, deviations.middleCols(first, several), work);
+  }
+  for (Eigen::Index k = 0; !together_ && k < count; ++k) {
+    const CampaignDraw& draw = draws[static_cast<std::size_t>(k)];
+    gradients.col(k) = gradient_at(draw, campaign_.predicted() + draw.errors, deviations.col(k), work);
   }
   return gradients;
 }
 
-/// Gradients of some of the draws, from column `first` on.
-void ChordSolver::find_together(std::span<const CampaignDraw> draws, Eigen::Index first,
-                                const Eigen::MatrixXd& deviations, Workspace& work,
-                                Eigen::MatrixXd& gradients) const {
-  const auto count = static_cast<Eigen::Index>(draws.size());
+/// Of as many draws as there are deviations.
+Eigen::MatrixXd ChordSolver::together(const CampaignDraw* draws, const Eigen::MatrixXd& deviations,
+                                      Workspace& work) const {
+  const Eigen::Index count = deviations.cols();
   Eigen::MatrixXd raw(campaign_.linear_model().model().layout().size, count);
   Eigen::MatrixXd readings(campaign_.observations(), count), beside(campaign_.parameters(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
-    const CampaignDraw& draw = draws[static_cast<std::size_t>(k)];
-    const Eigen::VectorXd deviation = deviations.col(first + k);
-    raw.col(k) = campaign_.datum().raw(campaign_.identified() + deviation);
-    readings.col(k) = campaign_.predicted() + draw.errors;
-    beside.col(k) = deviation - draw.statement;
+    raw.col(k) = campaign_.datum().raw(campaign_.identified() + deviations.col(k));
+    readings.col(k) = campaign_.predicted() + draws[k].errors;
+    beside.col(k) = deviations.col(k) - draws[k].statement;
   }
   const Eigen::MatrixXd of_readings = together_->at(raw, readings, *work.several);
-  gradients.middleCols(first, count) = campaign_.prior_precision() * beside;
+  Eigen::MatrixXd gradients = campaign_.prior_precision() * beside;
   for (Eigen::Index k = 0; k < count; ++k)
-    gradients.col(first + k) += campaign_.datum().reduce_gradient(of_readings.col(k));
+    gradients.col(k) += campaign_.datum().reduce_gradient(of_readings.col(k));
+  return gradients;
 }
 
 Eigen::VectorXd ChordSolver::step_from(const Eigen::VectorXd& gradient,

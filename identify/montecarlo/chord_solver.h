@@ -15,7 +15,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "volcal/identify/montecarlo/campaign_gradient.h"
@@ -68,8 +67,8 @@ class ChordSolver {
 
   Eigen::VectorXd gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& readings,
                               const Eigen::VectorXd& deviation, Workspace& work) const;
-  void find_together(std::span<const CampaignDraw> draws, Eigen::Index first,
-                     const Eigen::MatrixXd& deviations, Workspace& work, Eigen::MatrixXd& gradients) const;
+  Eigen::MatrixXd together(const CampaignDraw* draws, const Eigen::MatrixXd& deviations,
+                           Workspace& work) const;
   Eigen::VectorXd step_from(const Eigen::VectorXd& gradient, const std::vector<Curvature>& known) const;
 
   const RepeatedCampaign& campaign_;

@@ -1,6 +1,7 @@
 #include "volcal/identify/montecarlo/draw_gradients.h"
 
 #include <algorithm>
+#include <span>
 
 namespace volcal {
 namespace {
@@ -63,7 +64,7 @@ void DrawGradients::take_errors(const Eigen::MatrixXd& readings, Workspace& work
 /// What the errors of a block's readings do on the tool, on the readings and on parameters of their own.
 void DrawGradients::add_loads(std::size_t block, Eigen::Index first_observation, Workspace& work) const {
   const ReadingBlock& place = model_.blocks()[block];
-  const std::vector<int>& own = model_.own_parameters()[place.own];
+  const std::span<const int> nuisance = model_.nuisance_of(place);
   for (Eigen::Index k = 0; k < work.errors.cols(); ++k) {
     const LinearizationLanes& reading = work.readings[block * kDraws + static_cast<std::size_t>(k)];
     StateMap::Seen& load = work.seen[static_cast<std::size_t>(k)];
@@ -74,10 +75,8 @@ void DrawGradients::add_loads(std::size_t block, Eigen::Index first_observation,
         error[i] = work.errors(first_observation + Eigen::Index{i} * reading.channels() + channel, k);
       for (int c = 0; c < reading.state_size(); ++c)
         add_product(error, reading.d_state(channel)[c], state_component(load.tool, c));
-      for (int n = 0; n < reading.nuisance_size(); ++n) {
-        const int parameter = own[own.size() - static_cast<std::size_t>(reading.nuisance_size() - n)];
-        work.sums.of_parameter(parameter).value[k] += dot(error, reading.d_nuisance(channel)[n]);
-      }
+      for (std::size_t n = 0; n < nuisance.size(); ++n)
+        work.sums.of_parameter(nuisance[n]).value[k] += dot(error, reading.d_nuisance(channel)[n]);
     }
   }
   states_.add_work(block, work.seen.data(), work.sums);

@@ -1,6 +1,6 @@
 #pragma once
-/// The gradients of campaign_gradient.h for several draws side by side: the same to rounding, several times
-/// as fast. A draw's gradient is the same to the bit whatever draws stand beside it.
+/// The gradients of campaign_gradient.h for several draws side by side, the same to rounding. A draw's
+/// gradient is the same to the bit whatever draws stand beside it.
 
 #include <Eigen/Core>
 #include <vector>

@@ -23,8 +23,10 @@ std::vector<ErrorTableRow> read_function_table(const TableFile& file, TableConte
 
 /// Columns x_mm,y_mm,z_mm (and a_deg ... as the machine has axes),tool,ex_um ... ec_urad,u_ex_um ...
 /// u_ec_urad,extrapolated; dx_um ... dc_urad in a file of compensations.
-/// Errors to 0.1 pm or 0.1 prad, positions to 0.1 nm. The rows are made while the file is written.
+/// Errors to 0.1 pm or 0.1 prad, positions to 0.1 nm or 1e-7 deg. The rows are made while the file is
+/// written.
 TableFile spatial_grid_file(std::string name, const FitResult& result, int per_axis, TableContent content);
+/// The same of given points.
 std::string spatial_grid_csv(const std::vector<VolumetricError>& grid, const Machine& machine,
                              TableContent content);
 std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Machine& machine,

@@ -12,8 +12,8 @@ struct UnitVector {
   double cosine, sine;
 };
 
-/// Direction of `turns` turns, at most 2^48 of them: the nearest quarter turn, and Taylor series over the
-/// rest. To 4e-16 of a double's own rounding in `turns`, 2 pi |turns| epsilon.
+/// Direction of `turns` turns, |turns| below 10^5: the nearest quarter turn, and Taylor series over the rest.
+/// To 5e-16 (1 + 2 pi |turns|), of which the part in proportion is the rounding of `turns` itself.
 [[gnu::always_inline]] inline UnitVector unit_vector(double turns) {
   constexpr double kRounds = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
   const double shifted = 4.0 * turns + kRounds;

@@ -111,6 +111,11 @@ std::uint32_t BlockModel::own_number(const std::vector<int>& parameters) {
   return static_cast<std::uint32_t>(found - own_.begin());
 }
 
+std::span<const int> BlockModel::nuisance_of(const ReadingBlock& block) const {
+  const int count = model_.binding().setups[block.setup].bound->local_nuisance_size();
+  return std::span(own_[block.own]).last(static_cast<std::size_t>(count));
+}
+
 std::vector<int> BlockModel::shared_parameters() const {
   const CampaignBinding& binding = model_.binding();
   std::vector<int> parameters;
@@ -325,12 +330,9 @@ void BlockModel::find_state(const ReadingBlock& block, const Eigen::VectorXd& pa
 void BlockModel::measure(const ReadingBlock& block, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                          const ToolStateLanes& tool, LinearizationLanes& out) const {
   const BoundSetup& bound = *model_.binding().setups[block.setup].bound;
-  const int local_size = bound.local_nuisance_size();
-  const std::vector<int>& own = own_[block.own];
   double nuisance[kMaxLocalNuisance];
-  for (int k = 0; k < local_size; ++k)
-    nuisance[k] = parameters[own[own.size() - static_cast<std::size_t>(local_size - k)]];
-  out.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, local_size);
+  std::ranges::transform(nuisance_of(block), nuisance, [&](int parameter) { return parameters[parameter]; });
+  out.resize(bound.channels(), bound.sees_rotation() ? kStateSize : 3, bound.local_nuisance_size());
   bound.linearize_lanes(block.first_row, block.size, tool, nuisance, out);
 }
 
@@ -408,12 +410,13 @@ void BlockModel::add_work(const ReadingBlock& block, const BlockLinearization& l
       model_.binding(), levers, [&](int /*place*/, int parameter, const Lanes& driver, int disturbance) {
         sums.add_to_parameter(parameter, dot(driver, levers.motion[static_cast<std::size_t>(disturbance)]));
       });
-  const int* own = own_[block.own].data();
-  for (int k = 0; k < 3 && model_.binding().setups[block.setup].tool_error >= 0; ++k)
-    sums.add_to_parameter(*own++, sum(levers.motion[motion_index(kToolDisturbance + k)]));
-  for (int k = 0; k < reading.nuisance_size(); ++k) {
+  const int tool_error = model_.binding().setups[block.setup].tool_error;
+  for (int k = 0; k < 3 && tool_error >= 0; ++k)
+    sums.add_to_parameter(tool_error + k, sum(levers.motion[motion_index(kToolDisturbance + k)]));
+  const std::span<const int> nuisance = nuisance_of(block);
+  for (std::size_t k = 0; k < nuisance.size(); ++k) {
     for (int channel = 0; channel < reading.channels(); ++channel)
-      sums.add_to_parameter(own[k], dot(error[channel], reading.d_nuisance(channel)[k]));
+      sums.add_to_parameter(nuisance[k], dot(error[channel], reading.d_nuisance(channel)[k]));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "volcal/model/instruments/instrument.h"
@@ -54,6 +55,8 @@ class BlockModel {
   const std::vector<ReadingBlock>& blocks() const { return blocks_; }
   /// Distinct lists of the parameters that only some readings have: tool offset error, then nuisance.
   const std::vector<std::vector<int>>& own_parameters() const { return own_; }
+  /// Of the own parameters, those of the instrument.
+  std::span<const int> nuisance_of(const ReadingBlock& block) const;
   /// Parameters of the shared tail, place by place.
   std::vector<int> shared_parameters() const;
   BlockLevers make_levers() const;

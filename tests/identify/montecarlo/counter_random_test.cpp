@@ -1,7 +1,9 @@
 #include "volcal/identify/montecarlo/counter_random.h"
 
+#include <Random123/philox.h>
 #include <gtest/gtest.h>
 
+#include <Random123/uniform.hpp>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -22,6 +24,22 @@ TEST(CounterRandom, IsPhilox) {
   CounterRandom(0, 0, RandomSource::Parameters).uniforms(uniform);
   EXPECT_NEAR(uniform[0], std::ldexp(static_cast<double>(0xe169c58d6627e8d5U), -64), 1e-15);
   EXPECT_NEAR(uniform[1], std::ldexp(static_cast<double>(0x9b00dbd8bc57ac4cU), -64), 1e-15);
+}
+
+// What Random123 makes of the same counters one at a time.
+TEST(CounterRandom, IsRandom123ToTheBit) {
+  constexpr std::uint32_t kSeed = 11, kDraw = 23;
+  std::vector<double> numbers(2001);
+  CounterRandom(kSeed, kDraw, RandomSource::Lines).uniforms(numbers);
+  r123::Philox4x32 philox;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto words = philox(
+        {{static_cast<std::uint32_t>(i / 2), static_cast<std::uint32_t>(RandomSource::Lines), kDraw, 0}},
+        {{kSeed, 0}});
+    const std::size_t low = 2 * (i % 2);
+    const std::uint64_t whole = static_cast<std::uint64_t>(words[low + 1]) << 32U | words[low];
+    EXPECT_EQ(numbers[i], r123::u01<double>(whole)) << i;
+  }
 }
 
 TEST(CounterRandom, NumberDoesNotDependOnHowManyAreMade) {

@@ -81,18 +81,37 @@ Draws draws_of(const MeasurementModel& model, std::mt19937_64& random, int count
   return draws;
 }
 
+/// Gradients with independent noise.
+class Gradients {
+ public:
+  explicit Gradients(const MeasurementModel& model)
+      : sigma(sigmas(observations_of(model))),
+        whitener_(noise_of(sigma), std::vector<NoiseParameters>(1)),
+        blocks_(model),
+        gradients_(blocks_, whitener_),
+        work_(gradients_) {}
+
+  Eigen::MatrixXd at(const Eigen::MatrixXd& parameters, const Eigen::MatrixXd& readings) {
+    return gradients_.at(parameters, readings, work_);
+  }
+
+  const std::vector<double> sigma;
+
+ private:
+  Whitener whitener_;
+  BlockModel blocks_;
+  DrawGradients gradients_;
+  DrawGradients::Workspace work_;
+};
+
 void expect_sums_of_rows(const MeasurementModel& model, std::mt19937_64& random, int count) {
-  const std::vector<double> sigma = sigmas(observations_of(model));
-  const std::vector<NoiseParameters> white(1);
-  const Whitener whitener(noise_of(sigma), white);
-  const BlockModel blocks(model);
-  const DrawGradients gradients(blocks, whitener);
-  DrawGradients::Workspace work(gradients);
+  Gradients gradients(model);
   const Draws draws = draws_of(model, random, count);
-  const Eigen::MatrixXd found = gradients.at(draws.parameters, draws.readings, work);
+  const Eigen::MatrixXd found = gradients.at(draws.parameters, draws.readings);
   ASSERT_EQ(found.cols(), count);
   for (int k = 0; k < count; ++k) {
-    const Sums expected = sums_of_rows(model, sigma, draws.parameters.col(k), draws.readings.col(k));
+    const Sums expected =
+        sums_of_rows(model, gradients.sigma, draws.parameters.col(k), draws.readings.col(k));
     EXPECT_GT(expected.gradient.norm(), 0.0);
     for (Eigen::Index i = 0; i < found.rows(); ++i)
       EXPECT_NEAR(found(i, k), expected.gradient[i], kRounding * expected.sizes[i]) << i;
@@ -118,16 +137,11 @@ TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsWithTheSecondOrderRemainder) 
 
 TEST_P(DrawGradientsOnRandomChains, DoNotDependOnTheirNeighbours) {
   const MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
-  const std::vector<double> sigma = sigmas(observations_of(model));
-  const std::vector<NoiseParameters> white(1);
-  const Whitener whitener(noise_of(sigma), white);
-  const BlockModel blocks(model);
-  const DrawGradients gradients(blocks, whitener);
-  DrawGradients::Workspace work(gradients);
+  Gradients gradients(model);
   const Draws draws = draws_of(model, random_, kDraws);
-  const Eigen::MatrixXd together = gradients.at(draws.parameters, draws.readings, work);
+  const Eigen::MatrixXd together = gradients.at(draws.parameters, draws.readings);
   for (int k = 0; k < kDraws; ++k) {
-    const Eigen::MatrixXd alone = gradients.at(draws.parameters.col(k), draws.readings.col(k), work);
+    const Eigen::MatrixXd alone = gradients.at(draws.parameters.col(k), draws.readings.col(k));
     EXPECT_TRUE(alone.col(0) == together.col(k)) << k;
   }
 }

@@ -31,12 +31,17 @@ std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, 
 
 void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
                        const NoiseEstimate& estimate, int threads, FamilyTest& test) {
-  problem.residual -= family_columns(model, family, test.shape) * test.score.amplitude;
+  const Eigen::VectorXd moved = family_columns(model, family, test.shape) * test.score.amplitude;
   NoiseOptions options;
   options.threads = threads;
   options.uncertainty = false;
+  problem.residual -= moved;
   const NoiseEstimate beside = estimate_noise(problem, options, &estimate);
-  test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - estimate.log_likelihood));
+  problem.residual += moved;
+  // The likelihood of noise has several maxima: what is one of the noise alone is no gain of the effect's.
+  const NoiseEstimate alone = estimate_noise(problem, options, &beside);
+  const double without = std::max(estimate.log_likelihood, alone.log_likelihood);
+  test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - without));
   test.score.log10_p = log10_chi_squared_exceedance(test.score.lm, test.score.dof);
   test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));
 }

@@ -276,19 +276,34 @@ class Diagnostician {
     for (const GenericTest* test : order) {
       if (!seen.insert(test->variables).second || diagnosis_.unknown.size() == kMostUnknown) continue;
       diagnosis_.unknown.push_back(
-          {test->variables, test->direction, test->rms, search_.family_wise_log10_p(*test)});
+          {test->variables, test->direction, test->rotation, test->rms, search_.family_wise_log10_p(*test)});
     }
     if (diagnosis_.unknown.empty()) collect_given_up();
   }
 
-  /// Of those that stand out nearly as much as the most improbable one, the first of a single variable.
+  /// Of those that stand out nearly as much as the most improbable one, the first of the simplest.
   static void put_simplest_first(std::vector<const GenericTest*>& order) {
-    if (order.empty() || order.front()->variables.size() == 1) return;
+    if (order.empty()) return;
     const double nearly = (1.0 - kNearlyAsImprobable) * order.front()->log10_p;
-    const auto simplest = std::ranges::find_if(order, [nearly](const GenericTest* test) {
-      return test->variables.size() == 1 && test->log10_p <= nearly;
-    });
-    if (simplest != order.end()) std::rotate(order.begin(), simplest, simplest + 1);
+    const auto end =
+        std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
+    const auto simplest = std::ranges::min_element(order.begin(), end, {},
+                                                   [](const GenericTest* test) { return trouble(*test); });
+    std::rotate(order.begin(), simplest, simplest + 1);
+  }
+
+  /// How much has to be believed: one variable before two; time before temperatures for a station, which is
+  /// no part of the machine, and temperatures before time for a beam, whose wavelength follows the air's; and
+  /// whatever depends on time and a temperature is a function of time.
+  static int trouble(const GenericTest& test) {
+    const auto holds = [&](std::string_view beginning) {
+      return std::ranges::any_of(test.variables,
+                                 [&](const std::string& name) { return name.starts_with(beginning); });
+    };
+    if (test.variables.size() == 1) return 0;
+    if (holds("time") && holds("T_")) return 3;
+    const bool far_fetched = test.direction == "beam" ? holds("time") : holds("station ") && holds("T_");
+    return far_fetched ? 2 : 1;
   }
 
   /// What stood out under names that are none, and no generic test sees for itself.
@@ -298,7 +313,9 @@ class Diagnostician {
       if (search_.is_added(family) || search_.family_wise_log10_p(test) > kLog10FamilyRisk) continue;
       const Eigen::VectorXd moved =
           family_columns(model_, families_[family], test.shape) * test.score.amplitude;
-      diagnosis_.unknown.push_back({scan_variables_of(families_[family].name()), direction_of_change(moved),
+      diagnosis_.unknown.push_back({scan_variables_of(families_[family].name()),
+                                    direction_of_change(moved),
+                                    {},
                                     moved.norm() / std::sqrt(static_cast<double>(moved.size())),
                                     search_.family_wise_log10_p(test)});
     }
@@ -426,7 +443,7 @@ class Diagnostician {
                                       ? "nothing recorded that was tried"
                                       : fmt::format("{}", fmt::join(unknown.variables, " and "));
     return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings", variables,
-                       unknown.direction, unknown.rms * 1e6);
+                       unknown.action(), unknown.rms * 1e6);
   }
 
   const DiagnoseOptions& options_;

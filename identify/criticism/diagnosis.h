@@ -65,9 +65,13 @@ struct EffectFinding {
 /// Something moves the readings, and no effect of the catalogue explains it better.
 struct UnknownFinding {
   std::vector<std::string> variables;
-  std::string direction;
-  double rms = 0.0;      ///< SI
-  double log10_p = 0.0;  ///< family-wise
+  std::string direction;  ///< of kScanDirections
+  std::string rotation;   ///< "EBX": with the arms of this error motion; empty: as a displacement
+  double rms = 0.0;       ///< SI
+  double log10_p = 0.0;   ///< family-wise
+
+  /// "X", or "X, as EBX".
+  std::string action() const { return rotation.empty() ? direction : direction + ", as " + rotation; }
 };
 
 /// One step of the ladder, all against the noise model at the last step. SI.

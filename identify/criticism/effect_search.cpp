@@ -6,12 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
 #include "volcal/identify/criticism/beside_noise.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
+#include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
 
@@ -33,6 +35,7 @@ constexpr double kMoreGain = 2.0;        // of a scan that does better than the 
 constexpr double kLessProbable = 0.03;   // the same, share of log10 p, family-wise
 constexpr double kLessProbableByComponents = 0.1;  // those that are not there cost probability
 constexpr int kMostChanges = 4;
+constexpr int kMostTogether = 3;
 constexpr std::size_t kMostBesideNoise = 3;
 constexpr int kNoiseRounds = 2;
 
@@ -89,7 +92,7 @@ void EffectSearch::start() {
     noise_estimate_ = first_noise_->estimate;
     noise_ = noise_estimate_->parameters();
     model_.set_smoothing(first_noise_->smoothing);
-    projector_ = projector_without(std::nullopt);
+    projector_ = projector_without({});
   } else {
     find_noise();
     first_noise_ = FirstNoise{*noise_estimate_, model_.smoothing()};
@@ -107,13 +110,13 @@ void EffectSearch::find_noise() {
     noise_estimate_ =
         estimate_noise(problem_with_added(), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
     noise_ = noise_estimate_->parameters();
-    projector_ = projector_without(std::nullopt);
+    projector_ = projector_without({});
     if (model_.smoothing().empty()) return;
     const std::vector<SmoothingTerm> before = model_.smoothing();
     model_.smooth(projector_->gram(), projector_->observations());
     if (alike(before, model_.smoothing())) break;
   }
-  projector_ = projector_without(std::nullopt);
+  projector_ = projector_without({});
 }
 
 NoiseEstimate EffectSearch::noise_with_uncertainty() const {
@@ -126,18 +129,18 @@ std::unique_ptr<Projector> EffectSearch::projector_of_all_readings() const {
   return projector_of(model_.problem().data, noise_);
 }
 
-std::unique_ptr<Projector> EffectSearch::projector_without(std::optional<std::size_t> left_out) const {
+std::unique_ptr<Projector> EffectSearch::projector_without(const std::set<std::size_t>& left_out) const {
   return projector_of(without(model_.problem().data, heldout_), noise_, left_out);
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_of(const NoiseData& data,
                                                       const std::vector<NoiseParameters>& noise,
-                                                      std::optional<std::size_t> left_out) const {
+                                                      const std::set<std::size_t>& left_out) const {
   auto projector =
       std::make_unique<Projector>(model_.problem(), data, noise, options_.threads, model_.parts());
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
   for (std::size_t i = 0; i < added_.size(); ++i) {
-    if (i != left_out) append(columns, added_[i].columns);
+    if (!left_out.contains(i)) append(columns, added_[i].columns);
   }
   if (columns.cols() > 0) projector->accept(columns);
   return projector;
@@ -185,17 +188,22 @@ void EffectSearch::climb() {
       first_generic_ = generic_;
     }
     if (static_cast<int>(added_.size()) >= options_.most) return;
-    if (!add_leading() && (something_stands_out() || !add_hidden_in_noise())) return;
+    if (!add_leading() && !add_several() && (something_stands_out() || !add_hidden_in_noise())) return;
   }
 }
 
 bool EffectSearch::something_stands_out() const {
   const FamilyTest* best = leading(tests_, std::nullopt);
-  return (best != nullptr && family_wise_log10_p(*best) <= kLog10FamilyRisk) ||
-         std::ranges::any_of(generic_, [this](const GenericTest& test) {
-           return family_wise_log10_p(test) <= kLog10GenericRisk;
-         });
+  return (best != nullptr && family_wise_log10_p(*best) <= kLog10FamilyRisk) || !scans_are_silent();
 }
+
+double EffectSearch::least_family_wise_of_scans() const {
+  double least = 0.0;
+  for (const GenericTest& test : generic_) least = std::min(least, family_wise_log10_p(test));
+  return least;
+}
+
+bool EffectSearch::scans_are_silent() const { return least_family_wise_of_scans() > kLog10GenericRisk; }
 
 /// False when nothing stands out, or something that is in no catalogue stands out more.
 bool EffectSearch::add_leading() {
@@ -205,6 +213,53 @@ bool EffectSearch::add_leading() {
   if (generic_does_better(*best)) return false;
   add(FamilyTest(*best));
   return true;
+}
+
+/// A scan sees two effects that share a variable at once, and then does better than the name of either.
+/// False, and nothing added, unless a few names leave the scans silent and are, together, as improbable as
+/// the scan.
+bool EffectSearch::add_several() {
+  std::vector<FamilyTest> kept;
+  std::set<std::size_t> start;
+  for (const AddedEffect& effect : added_) {
+    kept.push_back(effect.test);
+    start.insert(effect.test.family);
+  }
+  if (!tried_together_.insert(start).second) return false;
+  for (int names = 1; names <= kMostTogether && static_cast<int>(added_.size()) < options_.most; ++names) {
+    const FamilyTest* best = leading(tests_, std::nullopt);
+    if (best == nullptr || family_wise_log10_p(*best) > kLog10FamilyRisk) break;
+    add(FamilyTest(*best));
+    test();
+    if (names > 1 && scans_are_silent() && explain_together(kept.size())) return true;
+  }
+  if (added_.size() > kept.size()) {
+    add_again(kept);
+    test();
+  }
+  return false;
+}
+
+/// No scan does better than the names from `first` on, at the noise that they leave: what was estimated
+/// without them holds part of what they explain. Each name beyond the first pays for its choice.
+bool EffectSearch::explain_together(std::size_t first) const {
+  std::set<std::size_t> names;
+  double price = 0.0, log10_choices = 0.0;
+  Eigen::Index dof = 0;
+  for (std::size_t i = first; i < added_.size(); ++i) {
+    const FamilyTest& test = added_[i].test;
+    names.insert(i);
+    price += test.score.lm - test.gain + (i > first ? 2.0 * std::numbers::ln10 * log10_families_ : 0.0);
+    log10_choices += log10_families_ + std::log10(test.multiplicity);
+    dof += added_[i].columns.cols();
+  }
+  const auto before = projector_of(without(model_.problem().data, heldout_), noise_, names);
+  const double lm = before->residual_squares() - projector_->residual_squares();
+  const double log10_p =
+      std::min(0.0, log10_chi_squared_exceedance(lm, static_cast<double>(dof)) + log10_choices);
+  const std::vector<GenericTest> scans = generic_scan(model_, variables_, *before, options_.threads);
+  return std::ranges::none_of(
+      scans, [&](const GenericTest& scan) { return does_better(scan, lm - price, log10_p, kLessProbable); });
 }
 
 /// Noise that was estimated without an effect can have taken it for wander: the most promising are tested
@@ -310,7 +365,7 @@ bool EffectSearch::reconsider(bool may_change) {
   for (const AddedEffect& effect : added_) kept.push_back(effect.test);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
-    std::vector<FamilyTest> tests = refined_tests(*projector_without(i));
+    std::vector<FamilyTest> tests = refined_tests(*projector_without({i}));
     const FamilyTest& own = tests[kept[i].family];
     if (may_change && family_wise_log10_p(own) > kLog10FamilyRisk) {
       dropped_.insert(own.family);
@@ -383,9 +438,13 @@ bool EffectSearch::generic_does_better(const FamilyTest& best) const {
   const bool components = families_[best.family].independent_components();
   const double share = components ? kLessProbableByComponents : kLessProbable;
   return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    if (!test.kernel && test.gain > best.gain + kMoreGain) return true;
-    return family_wise_log10_p(test) < (1.0 + share) * family_wise_log10_p(best) - 1.0;
+    return does_better(test, best.gain, family_wise_log10_p(best), share);
   });
+}
+
+bool EffectSearch::does_better(const GenericTest& scan, double gain, double log10_p, double share) const {
+  return (!scan.kernel && scan.gain > gain + kMoreGain) ||
+         family_wise_log10_p(scan) < (1.0 + share) * log10_p - 1.0;
 }
 
 double EffectSearch::family_wise_log10_p(const FamilyTest& test) const {

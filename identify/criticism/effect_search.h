@@ -82,15 +82,17 @@ class EffectSearch {
 
   void start();
   void find_noise();
-  std::unique_ptr<Projector> projector_without(std::optional<std::size_t> left_out) const;
+  std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
   std::unique_ptr<Projector> projector_of(const NoiseData& data, const std::vector<NoiseParameters>& noise,
-                                          std::optional<std::size_t> left_out = std::nullopt) const;
+                                          const std::set<std::size_t>& left_out = {}) const;
   NoiseProblem problem_with_added() const;
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
   void climb();
   bool something_stands_out() const;
   bool add_leading();
+  bool add_several();
+  bool explain_together(std::size_t first) const;
   bool add_hidden_in_noise();
   void add(const FamilyTest& test);
   Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;
@@ -117,6 +119,9 @@ class EffectSearch {
   bool may_be_added(const FamilyTest& test) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
   bool generic_does_better(const FamilyTest& best) const;
+  bool does_better(const GenericTest& scan, double gain, double log10_p, double share) const;
+  bool scans_are_silent() const;
+  double least_family_wise_of_scans() const;
 
   LinearModel& model_;
   const std::vector<bool>& heldout_;
@@ -133,8 +138,9 @@ class EffectSearch {
   std::vector<GenericTest> generic_;
   std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
-  std::map<std::size_t, std::string> given_up_;  ///< no names; reason
-  std::set<std::size_t> dropped_;                ///< not significant beside the others
+  std::map<std::size_t, std::string> given_up_;     ///< no names; reason
+  std::set<std::size_t> dropped_;                   ///< not significant beside the others
+  std::set<std::set<std::size_t>> tried_together_;  ///< added when several more were tried in vain
   bool more_is_known_ = false;
   std::vector<LadderStep> ladder_;
   std::vector<std::vector<SmoothingTerm>> smoothing_of_steps_;

@@ -47,8 +47,7 @@ void EffectSearch::find_no_names() {
 
 /// What the scans still see is less probable than the effect.
 bool EffectSearch::leaves_more(const AddedEffect& effect) const {
-  double remains = 0.0;
-  for (const GenericTest& test : generic_) remains = std::min(remains, family_wise_log10_p(test));
+  const double remains = least_family_wise_of_scans();
   return remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test);
 }
 
@@ -77,7 +76,7 @@ ConstancyTest EffectSearch::constancy_of(const Family& family, const Eigen::Matr
 double EffectSearch::constancy_of_rival(std::size_t added, const FamilyTest& rival) const {
   const Family& family = families_[rival.family];
   if (!family.effect) return 0.0;
-  const auto projector = projector_without(added);
+  const auto projector = projector_without({added});
   const Eigen::Index first = projector->parameters();
   const Eigen::MatrixXd columns = accept(rival, *projector);
   return constancy_of(family, columns, first, *projector).log10_p;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "volcal/identify/criticism/effect_words.h"
@@ -19,8 +20,7 @@ namespace {
 
 constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
-constexpr std::size_t kDirections = 4;
-constexpr std::size_t kBeam = 3;
+constexpr std::size_t kBeam = 3;  // of kScanDirections
 
 /// What the columns of a variable are made of.
 struct Features {
@@ -34,29 +34,66 @@ bool is_machine_state(const std::string& variable) {
   return variable.size() == 1 || variable.starts_with("dir_");
 }
 
-/// Does a displacement along X, Y or Z, or a change of what a beam reads, have a reason to follow these
-/// variables? The machine does not know the beam, nor which station looks at it; a station that moves does so
-/// in time; and a beam does not know the machine but by its own length and elevation.
-bool has_reason(const std::string& a, const std::string& b, bool along_beam) {
+bool is_of_environment(const std::string& variable) {
+  return variable == "time" || variable.starts_with("T_");
+}
+
+/// What a function of the variables may do.
+struct ScanAction {
+  enum class Kind { Displacement, Beam, Rotation } kind = Kind::Displacement;
+  std::string direction;   ///< not of a rotation
+  ErrorSymbol rotation;    ///< of a rotation
+  Eigen::VectorXd column;  ///< derivative of every observation
+};
+
+std::vector<ScanAction> scan_actions(const LinearModel& model) {
+  std::vector<ScanAction> actions;
+  for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
+    const auto kind = k == kBeam ? ScanAction::Kind::Beam : ScanAction::Kind::Displacement;
+    actions.push_back({kind, kScanDirections[k], {}, model.direction(static_cast<int>(k))});
+  }
+  for (const Axis& axis : model.campaign().machine.axes) {
+    for (const Component component : {Component::A, Component::B, Component::C}) {
+      const ErrorSymbol symbol{component, axis.name};
+      actions.push_back({ScanAction::Kind::Rotation, {}, symbol, model.motion(symbol)});
+    }
+  }
+  return actions;
+}
+
+/// Has an action a reason to follow these variables? The machine does not know the beam, nor which station
+/// looks at it; a station that moves does so in time; and a beam does not know the machine but by its own
+/// length and elevation.
+bool has_reason(const std::string& a, const std::string& b, ScanAction::Kind kind) {
   const auto of_either = [&](const auto& is) { return is(a) || is(b); };
-  if (along_beam) return !of_either(is_machine_state);
+  if (kind == ScanAction::Kind::Beam) return !of_either(is_machine_state);
   if (of_either(is_beam_geometry)) return false;
   const auto is_station = [](const std::string& name) { return name.starts_with("station "); };
   const auto is_tool = [](const std::string& name) { return name.starts_with("tool "); };
-  return !of_either(is_station) || !(of_either(is_machine_state) || of_either(is_tool));
+  if (!of_either(is_station)) return true;
+  return kind == ScanAction::Kind::Displacement && !of_either(is_machine_state) && !of_either(is_tool);
 }
 
-/// One variable, or two.
+/// One variable, or two. Columns: polynomials of the displacements, their waves, then polynomials and waves
+/// of every other action.
 struct ScanItem {
   std::size_t a = 0;
   std::size_t b = 0;  ///< same as a: one
   Eigen::Index polynomials = 0;
   Eigen::Index waves = 0;
-  std::vector<std::size_t> directions;
+  std::vector<std::size_t> actions;  ///< displacements first, all of them or none
+  Eigen::Index displacements = 0;
   std::size_t first_test = 0;
 
-  Eigen::Index columns() const {
-    return static_cast<Eigen::Index>(directions.size()) * (polynomials + waves);
+  Eigen::Index columns() const { return static_cast<Eigen::Index>(actions.size()) * (polynomials + waves); }
+  /// One of every action, one of the displacements together; as polynomials and as a kernel.
+  std::size_t tests() const { return 2 * (actions.size() + (displacements > 0 ? 1 : 0)); }
+  Eigen::Index first_polynomial(Eigen::Index action) const {
+    return action < displacements ? action * polynomials : action * (polynomials + waves);
+  }
+  Eigen::Index first_wave(Eigen::Index action) const {
+    return action < displacements ? displacements * polynomials + action * waves
+                                  : first_polynomial(action) + polynomials;
   }
 };
 
@@ -69,8 +106,11 @@ class GenericScanner {
  public:
   GenericScanner(const LinearModel& model, const std::vector<ScanVariable>& variables,
                  const Projector& projector)
-      : model_(model), variables_(variables), projector_(projector), typical_sigma_(typical_sigma()) {
-    for (std::size_t k = 0; k < kDirections; ++k) direction_[k] = model.direction(static_cast<int>(k));
+      : model_(model),
+        variables_(variables),
+        projector_(projector),
+        actions_(scan_actions(model)),
+        typical_sigma_(typical_sigma()) {
     for (const ScanVariable& variable : variables)
       features_.push_back({scan_powers(variable), scan_waves(variable, kSingleWaves)});
     log_count_ = std::log(static_cast<double>(projector.observations()));
@@ -87,30 +127,38 @@ class GenericScanner {
     std::vector<ScanBlock> all;
     std::size_t tests = 0;
     const auto add = [&](ScanItem item) {
-      for (std::size_t d = 0; d < kDirections; ++d) {
-        if (has_reason(variables_[item.a].name, variables_[item.b].name, d == kBeam))
-          item.directions.push_back(d);
+      for (std::size_t k = 0; k < actions_.size(); ++k) {
+        if (has_reason(variables_[item.a].name, variables_[item.b].name, actions_[k].kind))
+          item.actions.push_back(k);
       }
-      if (item.directions.empty()) return;
+      if (item.actions.empty()) return;
+      item.displacements = std::ranges::count_if(
+          item.actions, [this](std::size_t k) { return actions_[k].kind == ScanAction::Kind::Displacement; });
       if (all.empty() || all.back().columns + item.columns() > kBlockColumns) all.emplace_back();
       item.first_test = tests;
       all.back().items.push_back(item);
       all.back().columns += item.columns();
-      tests += 2 * item.directions.size();
+      tests += item.tests();
     };
     for (std::size_t a = 0; a < variables_.size(); ++a) {
       add({a, a, features_[a].powers.cols(), features_[a].waves.cols(), {}});
       for (std::size_t b = a + 1; b < variables_.size(); ++b) {
         if (exclude_each_other(variables_[a], variables_[b])) continue;
-        add({a,
-             b,
-             1 + (variables_[a].two_valued ? 0 : 1) + (variables_[b].two_valued ? 0 : 1),
-             pair_waves(a) * pair_waves(b),
-             {}});
+        add({a, b, pair_polynomials(a, b), pair_waves(a) * pair_waves(b), {}});
       }
     }
     tests_.resize(tests);
     return all;
+  }
+
+  /// a b, a^2 b, a b^2; of temperatures and time a and b, too: an effect may follow their difference.
+  Eigen::Index pair_polynomials(std::size_t a, std::size_t b) const {
+    return 1 + (variables_[a].two_valued ? 0 : 1) + (variables_[b].two_valued ? 0 : 1) +
+           (follow_the_clock(a, b) ? 2 : 0);
+  }
+
+  bool follow_the_clock(std::size_t a, std::size_t b) const {
+    return is_of_environment(variables_[a].name) && is_of_environment(variables_[b].name);
   }
 
   Eigen::Index pair_waves(std::size_t variable) const {
@@ -123,32 +171,44 @@ class GenericScanner {
     return a.name.find(' ') != std::string::npos && family(a.name) == family(b.name);
   }
 
-  /// Of every direction: polynomials, then waves. Rows of one setup.
+  /// Rows of one setup.
   void fill(const ScanItem& item, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> columns) const {
     const Eigen::Index first = model_.parts()[setup], count = columns.rows();
-    const auto rows = [&](const auto& all) { return all.middleRows(first, count); };
-    Eigen::Index at = 0;
-    for (const std::size_t d : item.directions) {
-      const Eigen::VectorXd direction = rows(direction_[d]);
-      if (item.a == item.b) {
-        const Features& own = features_[item.a];
-        columns.middleCols(at, item.polynomials) = direction.asDiagonal() * rows(own.powers);
-        columns.middleCols(at + item.polynomials, item.waves) = direction.asDiagonal() * rows(own.waves);
-        at += item.polynomials + item.waves;
-        continue;
-      }
-      const ScanVariable &a = variables_[item.a], &b = variables_[item.b];
-      const Eigen::VectorXd product = direction.cwiseProduct(rows(a.value)).cwiseProduct(rows(b.value));
-      columns.col(at++) = product;
-      if (!a.two_valued) columns.col(at++) = product.cwiseProduct(rows(a.value));
-      if (!b.two_valued) columns.col(at++) = product.cwiseProduct(rows(b.value));
-      for (Eigen::Index k = 0; k < pair_waves(item.a); ++k) {
-        const Eigen::VectorXd left = direction.cwiseProduct(rows(features_[item.a].waves).col(k));
-        columns.middleCols(at, pair_waves(item.b)) =
-            left.asDiagonal() * rows(features_[item.b].waves).leftCols(pair_waves(item.b));
-        at += pair_waves(item.b);
-      }
+    const Eigen::MatrixXd polynomials = polynomials_of(item, first, count);
+    const Eigen::MatrixXd waves = waves_of(item, first, count);
+    for (std::size_t k = 0; k < item.actions.size(); ++k) {
+      const auto action = static_cast<Eigen::Index>(k);
+      const auto acts = actions_[item.actions[k]].column.segment(first, count).asDiagonal();
+      columns.middleCols(item.first_polynomial(action), item.polynomials) = acts * polynomials;
+      columns.middleCols(item.first_wave(action), item.waves) = acts * waves;
     }
+  }
+
+  Eigen::MatrixXd polynomials_of(const ScanItem& item, Eigen::Index first, Eigen::Index count) const {
+    if (item.a == item.b) return features_[item.a].powers.middleRows(first, count);
+    const ScanVariable &a = variables_[item.a], &b = variables_[item.b];
+    const auto of_a = a.value.segment(first, count), of_b = b.value.segment(first, count);
+    Eigen::MatrixXd columns(count, item.polynomials);
+    Eigen::Index at = 0;
+    columns.col(at++) = of_a.cwiseProduct(of_b);
+    if (!a.two_valued) columns.col(at++) = columns.col(0).cwiseProduct(of_a);
+    if (!b.two_valued) columns.col(at++) = columns.col(0).cwiseProduct(of_b);
+    if (follow_the_clock(item.a, item.b)) {
+      columns.col(at++) = of_a;
+      columns.col(at++) = of_b;
+    }
+    return columns;
+  }
+
+  Eigen::MatrixXd waves_of(const ScanItem& item, Eigen::Index first, Eigen::Index count) const {
+    const auto a = features_[item.a].waves.middleRows(first, count);
+    if (item.a == item.b) return a;
+    const Eigen::Index of_b = pair_waves(item.b);
+    const auto b = features_[item.b].waves.middleRows(first, count).leftCols(of_b);
+    Eigen::MatrixXd columns(count, item.waves);
+    for (Eigen::Index k = 0; k < pair_waves(item.a); ++k)
+      columns.middleCols(k * of_b, of_b) = a.col(k).asDiagonal() * b;
+    return columns;
   }
 
   void fill(const ScanBlock& block, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) const {
@@ -163,24 +223,57 @@ class GenericScanner {
     CandidateColumns candidates{block.columns, {}, [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
                                   fill(block, setup, rows);
                                 }};
-    for (const ScanItem& item : block.items) {
-      for (std::size_t d = 0; d < item.directions.size(); ++d) {
-        candidates.groups.insert(candidates.groups.end(), {item.polynomials, item.waves});
-      }
-    }
+    for (const ScanItem& item : block.items) add_groups(item, candidates.groups);
     const ProjectedColumns projected = projector_.project(candidates);
     Eigen::Index at = 0;
     for (const ScanItem& item : block.items) {
-      std::vector<std::string> names = {variables_[item.a].name};
-      if (item.b != item.a) names.push_back(variables_[item.b].name);
-      std::size_t test = item.first_test;
-      for (const std::size_t d : item.directions) {
-        tests_[test++] = polynomial(names, d, score_test(projected, at, item.polynomials));
-        at += item.polynomials;
-        tests_[test++] = kernel(names, d, projected, at, item.waves);
-        at += item.waves;
-      }
+      test(item, projected, at);
+      at += item.columns();
     }
+  }
+
+  /// Stretches of columns that are tested together.
+  static void add_groups(const ScanItem& item, std::vector<Eigen::Index>& groups) {
+    if (item.displacements > 0)
+      groups.insert(groups.end(), {item.displacements * item.polynomials, item.displacements * item.waves});
+    for (auto k = static_cast<std::size_t>(item.displacements); k < item.actions.size(); ++k)
+      groups.insert(groups.end(), {item.polynomials, item.waves});
+  }
+
+  void test(const ScanItem& item, const ProjectedColumns& projected, Eigen::Index first) {
+    std::vector<std::string> names = {variables_[item.a].name};
+    if (item.b != item.a) names.push_back(variables_[item.b].name);
+    std::size_t test = item.first_test;
+    const auto add = [&](const ScanAction& action, Eigen::Index begin, Eigen::Index several) {
+      tests_[test++] =
+          polynomial(names, action,
+                     score_test(projected, first + item.first_polynomial(begin), several * item.polynomials));
+      tests_[test++] = kernel(names, action, projected, first + item.first_wave(begin), several * item.waves);
+    };
+    for (std::size_t k = 0; k < item.actions.size(); ++k)
+      add(actions_[item.actions[k]], static_cast<Eigen::Index>(k), 1);
+    if (item.displacements > 0) add({ScanAction::Kind::Displacement, {}, {}, {}}, 0, item.displacements);
+    find_directions(std::span(tests_).subspan(item.first_test, item.tests()));
+  }
+
+  /// A rotation shows most where a displacement that it brings about stands out most; several displacements
+  /// together, in the one that stands out most.
+  static void find_directions(std::span<GenericTest> tests) {
+    for (GenericTest& test : tests) {
+      if (!test.direction.empty()) continue;
+      const GenericTest* most = nullptr;
+      for (const GenericTest& other : tests) {
+        if (other.direction.empty() || other.direction == kScanDirections[kBeam] || !other.rotation.empty())
+          continue;
+        if (!test.rotation.empty() && turns_about(test.rotation, other.direction)) continue;
+        if (most == nullptr || other.log10_p < most->log10_p) most = &other;
+      }
+      test.direction = most->direction;
+    }
+  }
+
+  static bool turns_about(const std::string& rotation, const std::string& direction) {
+    return kScanDirections[direction_of(ErrorSymbol::parse(rotation)->component)] == direction;
   }
 
   /// The best fit's size follows from the test: LM = |g~ a|^2 in units of the noise.
@@ -199,10 +292,15 @@ class GenericScanner {
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
   }
 
-  GenericTest polynomial(const std::vector<std::string>& names, std::size_t direction,
+  static std::string rotation_of(const ScanAction& action) {
+    return action.kind == ScanAction::Kind::Rotation ? action.rotation.name() : "";
+  }
+
+  GenericTest polynomial(const std::vector<std::string>& names, const ScanAction& action,
                          const ScoreTest& score) const {
     return {names,
-            kScanDirections[direction],
+            action.direction,
+            rotation_of(action),
             false,
             score.log10_p,
             score.lm,
@@ -211,18 +309,25 @@ class GenericScanner {
             explained_rms(score.lm)};
   }
 
-  GenericTest kernel(const std::vector<std::string>& names, std::size_t direction,
+  GenericTest kernel(const std::vector<std::string>& names, const ScanAction& action,
                      const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) const {
     const KernelTest test = kernel_test(projected, first, columns);
-    return {names, kScanDirections[direction],       true, test.log10_p, test.lm, test.dof,
-            0.0,   explained_rms(test.lm - test.dof)};
+    return {names,
+            action.direction,
+            rotation_of(action),
+            true,
+            test.log10_p,
+            test.lm,
+            test.dof,
+            0.0,
+            explained_rms(test.lm - test.dof)};
   }
 
   const LinearModel& model_;
   const std::vector<ScanVariable>& variables_;
   const Projector& projector_;
+  std::vector<ScanAction> actions_;
   double typical_sigma_;
-  Eigen::VectorXd direction_[kDirections];
   std::vector<Features> features_;
   std::vector<GenericTest> tests_;
   double log_count_ = 0.0;

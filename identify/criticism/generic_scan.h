@@ -1,12 +1,14 @@
 #pragma once
 /// Two scans that need no catalogue: does anything recorded move the residuals, in whatever way?
-///   polynomials  along X, Y, Z or the beam, in every recorded variable and pair of variables
+///   polynomials  along X, Y, Z or the beam, or as a rotation of an axis with its arms, in every recorded
+///                variable and pair of variables
 ///   kernel       the same with a sum of cosines whose weights fall with frequency, as a variance component:
 ///                sees bumps, waves and kinks (score test of a variance component, Lin 1997, Biometrika 84;
 ///                its tail is that of a weighted sum of chi-squared variables)
-/// What moves the machine along X, Y or Z is looked for in what the machine knows: positions, directions of
-/// approach, time, temperatures, tool, feed; a station that moves, in time and temperatures; what changes the
-/// reading of a beam, in all that is not the machine's: length, elevation, station, time, temperatures.
+/// What moves the machine along X, Y or Z, or turns one of its axes, is looked for in what the machine knows:
+/// positions, directions of approach, time, temperatures, tool, feed; a station that moves, in time and
+/// temperatures; what changes the reading of a beam, in all that is not the machine's: length, elevation,
+/// station, time, temperatures.
 
 #include <string>
 #include <vector>
@@ -42,7 +44,8 @@ inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
 
 struct GenericTest {
   std::vector<std::string> variables;  ///< one or two
-  std::string direction;               ///< of kScanDirections
+  std::string direction;               ///< of kScanDirections; of a rotation, where it shows most
+  std::string rotation;                ///< "EBX" if looked for with the arms of this error motion, else empty
   bool kernel = false;
   double log10_p = 0.0;  ///< for this test alone
   double lm = 0.0;

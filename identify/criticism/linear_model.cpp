@@ -110,6 +110,10 @@ Eigen::VectorXd LinearModel::direction(int which) const {
   return -sensitivity_.col(kStationDisturbance + which);
 }
 
+Eigen::VectorXd LinearModel::motion(ErrorSymbol symbol) const {
+  return sensitivity_.col(disturbance_of({TargetKind::Motion, symbol, 0}, campaign_.machine));
+}
+
 NoiseData without(const NoiseData& data, const std::vector<bool>& left_out) {
   NoiseData reduced = data;
   for (std::size_t i = 0; i < left_out.size(); ++i) {

@@ -66,6 +66,8 @@ class LinearModel {
   /// Derivative of every observation to the displacement of the functional point along a direction of the
   /// workpiece (0..2), or to the reading itself (3).
   Eigen::VectorXd direction(int which) const;
+  /// The same to an error motion.
+  Eigen::VectorXd motion(ErrorSymbol symbol) const;
 
  private:
   void add_sensitivity(const Eigen::VectorXd& parameters);

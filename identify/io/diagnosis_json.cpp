@@ -99,6 +99,7 @@ Json detectable_json(const std::vector<DetectableEffect>& effects) {
 Json unknown_json(const UnknownFinding& unknown) {
   return {{"variables", unknown.variables},
           {"direction", unknown.direction},
+          {"rotation", unknown.rotation},
           {"rms_um", micro(unknown.rms)},
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }

@@ -48,7 +48,7 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.further_one_of = {{third, other}};
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
-  diagnosis.unknown = {{{"x", "time"}, "Z", 0.3e-6, -6.5}};
+  diagnosis.unknown = {{{"x", "time"}, "Z", "EBX", 0.3e-6, -6.5}};
   MeasurementProposal visit;
   visit.action = "revisit";
   visit.setup = "P1_short";

@@ -150,7 +150,8 @@ class Answerer {
       drivers.insert(own_axis());
     }
     if (is({"screw-heating", "tool-growth", "tool-growth-on-off", "squareness-drift", "station-drift",
-            "station-event", "station-swing", "root-time", "heated-zone", "tool-clamping"}) ||
+            "station-event", "station-swing", "root-time", "heated-zone", "tool-clamping",
+            "lagged-temperature"}) ||
         (is({"dead-path-air"}) && !has("channel"))) {
       drivers.insert("time");
     }

@@ -132,7 +132,7 @@ Json after_json(const Diagnosis& diagnosis) {
     lines.push_back(fmt::format(
         "Still seen by the scan without a catalogue: something that depends on {}, along {}, "
         "about {} RMS (log10 p {:.1f}).",
-        fmt::join(unknown.variables, " and "), unknown.direction, micrometres(unknown.rms), unknown.log10_p));
+        fmt::join(unknown.variables, " and "), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
     if (lines.size() == 5) break;
   }
   return lines;

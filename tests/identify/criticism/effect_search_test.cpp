@@ -78,6 +78,32 @@ TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
             2);
 }
 
+/// A scan of both temperatures sees both effects at once, and does better than either name.
+TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
+  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 2.5e-6), second = first;
+  first.options.set("channel", "column");
+  second.options.set("channel", "ram");
+  sim::Study campaign = hiding({first, second}, kGrid);
+  campaign.environment.channels[0].amplitude = 1.0;
+  campaign.environment.channels.push_back(
+      {.name = "ram", .start = 20.0, .drift = 0.0, .amplitude = 1.0, .period = 2500.0});
+  FittedStudy study(campaign);
+  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false), {});
+  search.run();
+  double best_name = 0.0, best_scan = 0.0;
+  for (const FamilyTest& test : search.first_tests()) best_name = std::max(best_name, test.gain);
+  for (const GenericTest& test : search.first_generic()) best_scan = std::max(best_scan, test.gain);
+  EXPECT_GT(best_scan, best_name + 2.0);
+  std::set<std::string> drivers;
+  for (const AddedEffect& added : search.added()) {
+    const EffectName name = search.families()[added.test.family].name();
+    EXPECT_EQ(name.kind, "thermal-drift");
+    drivers.insert(name.driver);
+  }
+  EXPECT_EQ(drivers, (std::set<std::string>{"T_column", "T_ram"}));
+  EXPECT_EQ(search.added().size(), 2U);
+}
+
 TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
   sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);

@@ -46,6 +46,11 @@ TEST(GenericScan, LooksForWhatCouldHaveAReason) {
   EXPECT_TRUE(holds(tests, {"station P1"}, "beam"));
   EXPECT_FALSE(holds(tests, {"dir_x"}, "beam"));
   EXPECT_FALSE(holds(tests, {"x", "length"}, "beam"));
+  for (const GenericTest& test : tests) {
+    if (test.rotation.empty()) continue;
+    for (const std::string& name : test.variables)
+      EXPECT_FALSE(name.starts_with("station") || name == "length") << "of " << test.rotation;
+  }
   EXPECT_TRUE(std::ranges::none_of(tests, [](const GenericTest& test) { return test.variables.empty(); }));
 }
 
@@ -61,6 +66,70 @@ TEST(GenericScan, FindsAProductOfTwoVariables) {
   EXPECT_THAT(least->variables, ::testing::UnorderedElementsAre("T_column", "dir_y"));
   EXPECT_EQ(least->direction, "X");
   EXPECT_LT(least->log10_p, -10.0);
+}
+
+const GenericTest& least_probable(const std::vector<GenericTest>& tests) {
+  return *std::ranges::min_element(tests, {}, &GenericTest::log10_p);
+}
+
+/// Two temperatures that swing several times while each station measures.
+std::vector<ScanVariable> two_temperatures() {
+  const auto count = static_cast<Eigen::Index>(model_of_nothing_hidden().size());
+  const Eigen::ArrayXd reading = Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
+  std::vector<ScanVariable> variables;
+  add_scan_variable(variables, "T_air", (0.13 * reading).sin().matrix());
+  add_scan_variable(variables, "T_column", (0.31 * reading).cos().matrix());
+  return variables;
+}
+
+std::vector<GenericTest> scanned(const Eigen::VectorXd& residual,
+                                 const std::vector<ScanVariable>& variables) {
+  return generic_scan(model_of_nothing_hidden(), variables,
+                      white_projector(model_of_nothing_hidden(), residual), 2);
+}
+
+/// A tilt that a temperature brings about shows as a displacement, too, but less.
+TEST(GenericScan, FindsARotationByItsArms) {
+  std::mt19937_64 random(5);
+  const LinearModel& model = model_of_nothing_hidden();
+  const std::vector<ScanVariable> variables = two_temperatures();
+  const Eigen::VectorXd moved = model.motion(*ErrorSymbol::parse("EAZ")).cwiseProduct(variables[0].value);
+  const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 10e-6 * moved, variables);
+  const GenericTest& least = least_probable(tests);
+  EXPECT_THAT(least.variables, ::testing::ElementsAre("T_air"));
+  EXPECT_EQ(least.rotation, "EAZ");
+  EXPECT_THAT(least.direction, ::testing::AnyOf("Y", "Z"));
+  double as_displacement = 0.0;
+  for (const GenericTest& test : tests) {
+    if (test.rotation.empty()) as_displacement = std::min(as_displacement, test.log10_p);
+  }
+  EXPECT_LT(least.log10_p, as_displacement - 5.0);
+}
+
+TEST(GenericScan, FindsADisplacementInSeveralDirectionsAtOnce) {
+  std::mt19937_64 random(6);
+  const LinearModel& model = model_of_nothing_hidden();
+  const std::vector<ScanVariable> variables = two_temperatures();
+  const Eigen::VectorXd moved =
+      (model.direction(0) - model.direction(1) + 0.8 * model.direction(2)).cwiseProduct(variables[0].value);
+  const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 1e-6 * moved, variables);
+  const GenericTest& least = least_probable(tests);
+  EXPECT_THAT(least.variables, ::testing::ElementsAre("T_air"));
+  EXPECT_TRUE(least.rotation.empty());
+  EXPECT_THAT(least.direction, ::testing::AnyOf("X", "Y"));
+  EXPECT_NEAR(least.dof, 9.0, 0.0) << "three powers along three directions";
+}
+
+TEST(GenericScan, FindsTheDifferenceOfTwoTemperatures) {
+  std::mt19937_64 random(7);
+  const LinearModel& model = model_of_nothing_hidden();
+  const std::vector<ScanVariable> variables = two_temperatures();
+  const Eigen::VectorXd difference = variables[0].value - variables[1].value;
+  const std::vector<GenericTest> tests =
+      scanned(white_residual(model, random) + 1e-6 * model.direction(2).cwiseProduct(difference), variables);
+  const GenericTest& least = least_probable(tests);
+  EXPECT_THAT(least.variables, ::testing::UnorderedElementsAre("T_air", "T_column"));
+  EXPECT_EQ(least.direction, "Z");
 }
 
 }  // namespace

@@ -40,6 +40,7 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   const json& unknown = document.at("unknown").at(0);
   EXPECT_EQ(unknown.at("variables"), (json{"x", "time"}));
   EXPECT_EQ(unknown.at("direction"), "Z");
+  EXPECT_EQ(unknown.at("rotation"), "EBX");
   EXPECT_NEAR(unknown.at("rms_um").get<double>(), 0.3, 1e-12);
   EXPECT_TRUE(document.at("not_visible").at(0).at("mdb").is_null());
   EXPECT_EQ(document.at("next_measurement").size(), 1U);

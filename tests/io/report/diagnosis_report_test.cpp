@@ -118,7 +118,8 @@ TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
   EXPECT_NEAR(missing.at("amplitudes").at(0).at("U95").get<double>(), 0.196, 1e-9);
   EXPECT_THAT(missing.at("how").get<std::string>(), HasSubstr("log-likelihood of the held-out lines +33.5"));
   EXPECT_THAT(story.at("after").at(0).get<std::string>(), HasSubstr("falls from 1.5 µm to 0 µm"));
-  EXPECT_THAT(story.at("after").at(1).get<std::string>(), HasSubstr("x and time, along Z, as EBX, about 0.3 µm"));
+  EXPECT_THAT(story.at("after").at(1).get<std::string>(),
+              HasSubstr("x and time, along Z, as EBX, about 0.3 µm"));
   ASSERT_EQ(story.at("ladder").size(), 2U);
   EXPECT_EQ(story.at("ladder").at(1).at("systematic_high_um"), 0.5);
   const json& below = story.at("below").at(0);

@@ -186,7 +186,7 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
-                                 text(each, "direction"), text(each, "rotation"), micro(each, "rms_um"),
+                                 text(each, "direction"), each.value("rotation", ""), micro(each, "rms_um"),
                                  number_or_nan(each, "log10_p")});
   }
   diagnosis.not_visible = list_from(json.at("not_visible"));

@@ -32,7 +32,7 @@ struct BlockSize {
 /// A block is a whole part of StudySums::kSequence, so that a study can end with it.
 BlockSize block_size(DrawPath path) {
   if (path == DrawPath::Linear) return {10000, 250};
-  if (path == DrawPath::Chord) return {1250, 4 * DrawGradients::kDraws};
+  if (path == DrawPath::Chord) return {1250, std::uint64_t{4} * DrawGradients::kDraws};
   return {100, 2};
 }
 
@@ -230,8 +230,9 @@ class MonteCarloStudy::Work {
 
   /// This rank's batches of the next block.
   BlockShare draw_share() {
-    const auto [block, of_batch] = block_size(path_);
-    std::uint64_t count = block;
+    const BlockSize size = block_size(path_);
+    const std::uint64_t of_batch = size.batch;
+    std::uint64_t count = size.block;
     if (options_.draws > 0) count = std::min(count, options_.draws - sums_.draws());
     const auto batches = static_cast<std::size_t>((count + of_batch - 1) / of_batch);
     BlockShare share{std::vector<Moments>(batches, Moments(set_.items.size())), nullptr, {}};

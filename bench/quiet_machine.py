@@ -103,8 +103,9 @@ class QuietMachine:
         self.marked |= others > OTHERS
         return figures | {"marked": others > OTHERS}
 
-    def conditions(self, blas):
-        return (f"{time.strftime('%Y-%m-%d')}; {processor()}, {os.cpu_count()} processors; BLAS core {blas}; "
+    def conditions(self, blas=""):
+        core = f"BLAS core {blas}; " if blas else ""
+        return (f"{time.strftime('%Y-%m-%d')}; {processor()}, {os.cpu_count()} processors; {core}"
                 f"load average {os.getloadavg()[0]:.2f}; other programs used at most {self.most_noise:.2f} processors "
                 "during a measurement." + (" **Some figures are marked noisy.**" if self.marked else ""))
 

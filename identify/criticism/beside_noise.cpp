@@ -38,7 +38,6 @@ void test_beside_noise(const LinearModel& model, const Family& family, NoiseProb
   problem.residual -= moved;
   const NoiseEstimate beside = estimate_noise(problem, options, &estimate);
   problem.residual += moved;
-  // The likelihood of noise has several maxima: what is one of the noise alone is no gain of the effect's.
   const NoiseEstimate alone = estimate_noise(problem, options, &beside);
   const double without = std::max(estimate.log_likelihood, alone.log_likelihood);
   test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - without));

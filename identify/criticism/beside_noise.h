@@ -4,7 +4,8 @@
 ///
 /// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
 /// columns of the model are the same in both and G a is data, so that they can be compared
-/// (restricted_likelihood.h). By Wilks (1938, Ann. Math. Statist. 9, 60) chi-squared with the amplitudes as
+/// (restricted_likelihood.h); l(y) is the largest found, from the noise beside the effect as from its own,
+/// since it has several maxima. By Wilks (1938, Ann. Math. Statist. 9, 60) chi-squared with the amplitudes as
 /// degrees of freedom.
 
 #include <vector>

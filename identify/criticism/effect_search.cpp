@@ -219,12 +219,9 @@ bool EffectSearch::add_leading() {
 /// False, and nothing added, unless a few names leave the scans silent and are, together, as improbable as
 /// the scan.
 bool EffectSearch::add_several() {
-  std::vector<FamilyTest> kept;
+  const std::vector<FamilyTest> kept = added_tests();
   std::set<std::size_t> start;
-  for (const AddedEffect& effect : added_) {
-    kept.push_back(effect.test);
-    start.insert(effect.test.family);
-  }
+  for (const FamilyTest& test : kept) start.insert(test.family);
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kMostTogether && static_cast<int>(added_.size()) < options_.most; ++names) {
     const FamilyTest* best = leading(tests_, std::nullopt);
@@ -361,8 +358,7 @@ void EffectSearch::restate_ladder() {
 /// Each added effect against all others, now that the rest is in the model: true when one was exchanged or
 /// left, and the climb goes on from there.
 bool EffectSearch::reconsider(bool may_change) {
-  std::vector<FamilyTest> kept;
-  for (const AddedEffect& effect : added_) kept.push_back(effect.test);
+  std::vector<FamilyTest> kept = added_tests();
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
     std::vector<FamilyTest> tests = refined_tests(*projector_without({i}));
@@ -410,6 +406,12 @@ void EffectSearch::keep_one_step() {
 void EffectSearch::add_again(const std::vector<FamilyTest>& tests) {
   start();
   for (const FamilyTest& test : tests) add(test);
+}
+
+std::vector<FamilyTest> EffectSearch::added_tests() const {
+  std::vector<FamilyTest> tests;
+  for (const AddedEffect& effect : added_) tests.push_back(effect.test);
+  return tests;
 }
 
 bool EffectSearch::is_added(std::size_t family) const {

@@ -92,6 +92,7 @@ class EffectSearch {
   bool something_stands_out() const;
   bool add_leading();
   bool add_several();
+  std::vector<FamilyTest> added_tests() const;
   bool explain_together(std::size_t first) const;
   bool add_hidden_in_noise();
   void add(const FamilyTest& test);

@@ -38,6 +38,13 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
         problem.residual.segment(parts_[part], part_rows(part));
     whitened_[part] = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
   });
+  if (problem.local) {
+    local_rows_ = problem.local;
+    std::vector<std::vector<std::size_t>> order;
+    for (std::size_t part = 0; part < part_count(); ++part)
+      order.push_back(whitener_.order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
+    local_product_ = std::make_shared<LocalProduct>(*local_rows_, order);
+  }
   factorise();
 }
 
@@ -71,6 +78,49 @@ void Projector::factorise() {
   rotated_ = right;
 }
 
+Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const {
+  PartialProducts products;
+  products.with_others.setZero(parameters() + 1 - local_columns(), columns);
+  if (local_product_) {
+    for (Eigen::Index column = 0; column < columns; column += kColumnBlock)
+      products.with_local.push_back(local_product_->zero_sums());
+  }
+  return products;
+}
+
+Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd& rows,
+                                        PartialProducts& products) const {
+  const auto first = static_cast<std::size_t>(parts_[part]);
+  const auto others = whitened_[part].rightCols(parameters() + 1 - local_columns());
+  Eigen::MatrixXd whitened;
+  if (!local_product_) {
+    whitened = whitener_.whiten_part(first, rows);
+  } else {
+    whitened.resize(others.rows(), rows.cols());
+    Eigen::MatrixXd weighed;
+    for (Eigen::Index column = 0; column < rows.cols(); column += kColumnBlock) {
+      const Eigen::Index count = std::min(kColumnBlock, rows.cols() - column);
+      whitener_.weigh_part(first, rows.middleCols(column, count), whitened.middleCols(column, count),
+                           weighed);
+      local_product_->add(part, weighed,
+                          products.with_local[static_cast<std::size_t>(column / kColumnBlock)]);
+    }
+  }
+  add_transposed_product(others, whitened, products.with_others);
+  return whitened;
+}
+
+Eigen::MatrixXd Projector::combined(const PartialProducts& products, Eigen::Index columns) const {
+  Eigen::MatrixXd all(parameters() + 1, columns);
+  all.bottomRows(products.with_others.rows()) = products.with_others;
+  for (Eigen::Index column = 0; column < columns && local_product_; column += kColumnBlock) {
+    const Eigen::Index count = std::min(kColumnBlock, columns - column);
+    local_product_->combine(products.with_local[static_cast<std::size_t>(column / kColumnBlock)],
+                            all.block(0, column, local_columns(), count));
+  }
+  return all;
+}
+
 ProjectedColumns Projector::project(const CandidateColumns& candidates) const {
   ProjectedColumns out;
   Eigen::Index at = 0;
@@ -79,17 +129,17 @@ ProjectedColumns Projector::project(const CandidateColumns& candidates) const {
     out.grams.emplace_back(Eigen::MatrixXd::Zero(width, width));
     at += width;
   }
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(parameters() + 1, candidates.count);
+  PartialProducts partial = zero_products(candidates.count);
   Eigen::MatrixXd rows;
   for (std::size_t part = 0; part < part_count(); ++part) {
     rows.resize(part_rows(part), candidates.count);
     candidates.fill(part, rows);
-    const Eigen::MatrixXd whitened = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
-    add_transposed_product(whitened_[part], whitened, products);
+    const Eigen::MatrixXd whitened = add_products(part, rows, partial);
     for (std::size_t group = 0; group < out.grams.size(); ++group) {
       add_gram_upper(whitened.middleCols(out.first[group], candidates.groups[group]), 1.0, out.grams[group]);
     }
   }
+  const Eigen::MatrixXd products = combined(partial, candidates.count);
   Eigen::MatrixXd explained = scale_.asDiagonal() * products.topRows(parameters());
   solve_lower(lower_, explained);
   out.score = products.bottomRows(1).transpose() - explained.transpose() * rotated_;
@@ -110,13 +160,10 @@ ProjectedColumns Projector::project(const Eigen::MatrixXd& columns) const {
 }
 
 Eigen::MatrixXd Projector::imitation(const Eigen::MatrixXd& columns) const {
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(parameters() + 1, columns.cols());
-  for (std::size_t part = 0; part < part_count(); ++part) {
-    const Eigen::MatrixXd whitened = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]),
-                                                           columns.middleRows(parts_[part], part_rows(part)));
-    add_transposed_product(whitened_[part], whitened, products);
-  }
-  Eigen::MatrixXd rotated = scale_.asDiagonal() * products.topRows(parameters());
+  PartialProducts partial = zero_products(columns.cols());
+  for (std::size_t part = 0; part < part_count(); ++part)
+    add_products(part, columns.middleRows(parts_[part], part_rows(part)), partial);
+  Eigen::MatrixXd rotated = scale_.asDiagonal() * combined(partial, columns.cols()).topRows(parameters());
   solve_lower(lower_, rotated);
   return scale_.asDiagonal() * lower_.triangularView<Eigen::Lower>().transpose().solve(rotated).eval();
 }

@@ -7,13 +7,16 @@
 ///   g~^T g~ = g_w^T g_w - b^T A^-1 b,    g~^T r~ = g_w^T r_w - b^T A^-1 (J_w^T r_w + P m),    b = J_w^T g_w
 ///
 /// (added variables in generalised least squares; the prior counts as further observations). Nothing of size
-/// N x N and no orthogonal basis is formed.
+/// N x N and no orthogonal basis is formed. Where the problem tells which columns are local (local_rows.h),
+/// their part of b is J^T (Sigma^-1 g), knot cell by knot cell; equal to rounding.
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "volcal/identify/criticism/local_product.h"
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
 
@@ -75,12 +78,27 @@ class Projector {
   Eigen::Index accepted() const { return parameters() - base_parameters_; }
 
  private:
+  /// Products of columns with the model's, while parts are added.
+  struct PartialProducts {
+    Eigen::MatrixXd with_others;              ///< columns that are not local, residual last
+    std::vector<Eigen::MatrixXd> with_local;  ///< of kColumnBlock columns each
+  };
+
   void factorise();
+  PartialProducts zero_products(Eigen::Index columns) const;
+  /// Adds the products with a part's rows; gives L^-1 rows.
+  Eigen::MatrixXd add_products(std::size_t part, const Eigen::MatrixXd& rows,
+                               PartialProducts& products) const;
+  /// (parameters + 1) x columns, those with the residual last.
+  Eigen::MatrixXd combined(const PartialProducts& products, Eigen::Index columns) const;
+  Eigen::Index local_columns() const { return local_product_ ? local_product_->columns() : 0; }
   std::size_t part_count() const { return parts_.size() - 1; }
   Eigen::Index part_rows(std::size_t part) const { return parts_[part + 1] - parts_[part]; }
 
   Whitener whitener_;
   int threads_;
+  std::shared_ptr<const LocalRows> local_rows_;
+  std::shared_ptr<const LocalProduct> local_product_;
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
   std::vector<Eigen::MatrixXd> whitened_;  ///< per part, (observations in use) x (p + 1), residual last

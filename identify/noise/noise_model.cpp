@@ -8,13 +8,13 @@
 #include <string>
 #include <unordered_map>
 
+#include "volcal/identify/noise/filter_rows.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
 namespace {
 
-constexpr Eigen::Index kBlock = 64;        // columns whitened together
 constexpr std::size_t kTile = 64;          // steps of them that stay in the cache
 constexpr std::size_t kGramTile = 384;     // steps per matrix product
 constexpr std::size_t kGramParts = 8;      // fixed: sums do not depend on the number of threads
@@ -183,52 +183,58 @@ double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
   return log_determinant + std::log(product);
 }
 
-void Whitener::correct_offsets(const Track& track, const Step& step, const double* gain, double scale,
-                               Eigen::Index width, const double* innovation, double* state) {
+FilterStep Whitener::filter_step(const Track& track, std::size_t i) {
+  const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
+  return {track.decay[i], track.scale[i], gain[0], gain[track.steps[i].slot]};
+}
+
+template <class Visit>
+void Whitener::visit_held_offsets(const Track& track, std::size_t i, const Visit& visit) {
+  const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
   for (int other = 1; other < track.states; ++other) {
-    if (other == step.slot || gain[other] == 0.0) continue;
-    double* __restrict const offset = state + other * width;
-    const double* __restrict const v = innovation;
-    const double factor = gain[other] / scale;
-    for (Eigen::Index c = 0; c < width; ++c) offset[c] += factor * v[c];
+    if (other != track.steps[i].slot && gain[other] != 0.0) visit(other, gain[other] / track.scale[i]);
   }
 }
 
 void Whitener::filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width,
                       double* tile, double* state) {
-  if (track.independent) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (Eigen::Index c = 0; c < width; ++c) *tile++ *= track.scale[i];
+  for (std::size_t i = begin; i < end; ++i, tile += width) {
+    if (track.independent) {
+      scale_row(track.scale[i], width, tile);
+      continue;
     }
-    return;
-  }
-  double* const wander = state;
-  for (std::size_t i = begin; i < end; ++i) {
     const Step& step = track.steps[i];
-    double* __restrict const v = tile + static_cast<Eigen::Index>(i - begin) * width;
-    const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
-    const double decay = track.decay[i], scale = track.scale[i];
-    double* __restrict const w = wander;
     if (step.slot == 0) {
-      for (Eigen::Index c = 0; c < width; ++c) {
-        const double predicted = decay * w[c];
-        const double innovation = v[c] - predicted;
-        w[c] = predicted + gain[0] * innovation;
-        v[c] = scale * innovation;
-      }
+      filter_row(filter_step(track, i), width, tile, state);
     } else {
-      double* __restrict const offset = state + step.slot * width;
+      double* const offset = state + step.slot * width;
       if (step.opens) std::fill(offset, offset + width, 0.0);
-      const double gain0 = gain[0], own_gain = gain[step.slot];
-      for (Eigen::Index c = 0; c < width; ++c) {
-        const double predicted = decay * w[c];
-        const double innovation = v[c] - predicted - offset[c];
-        w[c] = predicted + gain0 * innovation;
-        offset[c] += own_gain * innovation;
-        v[c] = scale * innovation;
-      }
+      filter_row(filter_step(track, i), width, tile, state, offset);
     }
-    correct_offsets(track, step, gain, scale, width, v, state);
+    visit_held_offsets(
+        track, i, [&](int other, double factor) { add_row(factor, width, tile, state + other * width); });
+  }
+}
+
+void Whitener::filter_adjoint(const Track& track, Eigen::Index width, double* rows) {
+  std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
+  for (std::size_t i = track.steps.size(); i-- > 0;) {
+    double* const values = rows + static_cast<Eigen::Index>(i) * width;
+    if (track.independent) {
+      scale_row(track.scale[i], width, values);
+      continue;
+    }
+    visit_held_offsets(track, i, [&](int other, double factor) {
+      add_row(factor, width, state.data() + other * width, values);
+    });
+    const Step& step = track.steps[i];
+    if (step.slot == 0) {
+      filter_row_adjoint(filter_step(track, i), width, values, state.data());
+      continue;
+    }
+    double* const offset = state.data() + step.slot * width;
+    filter_row_adjoint(filter_step(track, i), width, values, state.data(), offset);
+    if (step.opens) std::fill(offset, offset + width, 0.0);
   }
 }
 
@@ -244,22 +250,24 @@ void Whitener::scale_block(const Track& track, Eigen::Index width, const Place& 
 }
 
 void Whitener::whiten_block(const Track& track, Eigen::Index width, const Place& place) {
-  if (track.independent) {
+  if (track.independent && place.rows == nullptr) {
     scale_block(track, width, place);
     return;
   }
-  std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
-  std::vector<double> tile(static_cast<std::size_t>(width) * kTile);
-  const auto wide = static_cast<std::size_t>(width);
+  const Eigen::Index stride = place.rows == nullptr ? width : kColumnBlock;
+  std::vector<double> state(static_cast<std::size_t>(track.states * stride), 0.0);
+  std::vector<double> buffer(place.rows == nullptr ? static_cast<std::size_t>(stride) * kTile : 0);
+  const auto wide = static_cast<std::size_t>(stride);
   for (std::size_t begin = 0; begin < track.steps.size(); begin += kTile) {
     const std::size_t end = std::min(begin + kTile, track.steps.size());
-    for (std::size_t c = 0; c < wide; ++c) {
+    double* const tile = place.rows == nullptr ? buffer.data() : place.rows + begin * wide;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(width); ++c) {
       const double* const in = place.in + static_cast<Eigen::Index>(c) * place.in_stride;
       for (std::size_t i = begin; i < end; ++i)
         tile[(i - begin) * wide + c] = in[track.steps[i].observation - place.origin];
     }
-    filter(track, begin, end, width, tile.data(), state.data());
-    for (std::size_t c = 0; c < wide; ++c) {
+    filter(track, begin, end, stride, tile, state.data());
+    for (std::size_t c = 0; c < static_cast<std::size_t>(width); ++c) {
       double* const out = place.out + static_cast<Eigen::Index>(c) * place.out_stride;
       for (std::size_t i = begin; i < end; ++i)
         out[place.packed ? i : track.steps[i].observation - place.origin] = tile[(i - begin) * wide + c];
@@ -270,38 +278,66 @@ void Whitener::whiten_block(const Track& track, Eigen::Index width, const Place&
 void Whitener::whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const {
   require(columns.rows() == static_cast<Eigen::Index>(rows_), "one row per observation");
   if (&columns != &whitened) whitened.resize(columns.rows(), columns.cols());
-  const auto blocks = static_cast<std::size_t>((columns.cols() + kBlock - 1) / kBlock);
+  const auto blocks = static_cast<std::size_t>((columns.cols() + kColumnBlock - 1) / kColumnBlock);
   run_parallel(blocks * tracks_.size(), threads, [&](std::size_t item) {
-    const auto first = static_cast<Eigen::Index>(item / tracks_.size()) * kBlock;
-    whiten_block(
-        tracks_[item % tracks_.size()], std::min(kBlock, columns.cols() - first),
-        {columns.col(first).data(), columns.rows(), whitened.col(first).data(), whitened.rows(), 0, false});
+    const auto first = static_cast<Eigen::Index>(item / tracks_.size()) * kColumnBlock;
+    whiten_block(tracks_[item % tracks_.size()], std::min(kColumnBlock, columns.cols() - first),
+                 {columns.col(first).data(), columns.rows(), whitened.col(first).data(), whitened.rows(),
+                  nullptr, 0, false});
   });
   for (const std::size_t i : missing_) whitened.row(static_cast<Eigen::Index>(i)).setZero();
 }
 
-Eigen::MatrixXd Whitener::whiten_part(std::size_t first,
-                                      const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  const std::size_t end = first + static_cast<std::size_t>(columns.rows());
+std::vector<const Whitener::Track*> Whitener::tracks_of_part(std::size_t first, Eigen::Index rows) const {
+  const std::size_t end = first + static_cast<std::size_t>(rows);
   std::vector<const Track*> inside;
-  std::size_t rows = 0;
   for (const Track& track : tracks_) {
     if (track.last < first || track.first >= end) continue;
     require(track.first >= first && track.last < end, "a part holds whole sequences");
     inside.push_back(&track);
-    rows += track.steps.size();
   }
+  return inside;
+}
+
+std::vector<std::size_t> Whitener::order_of_part(std::size_t first, Eigen::Index rows) const {
+  std::vector<std::size_t> order;
+  for (const Track* const track : tracks_of_part(first, rows)) {
+    for (const Step& step : track->steps) order.push_back(step.observation);
+  }
+  return order;
+}
+
+Eigen::MatrixXd Whitener::whiten_part(std::size_t first,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
+  const std::vector<const Track*> inside = tracks_of_part(first, columns.rows());
+  std::size_t rows = 0;
+  for (const Track* const track : inside) rows += track->steps.size();
   Eigen::MatrixXd whitened(static_cast<Eigen::Index>(rows), columns.cols());
   double* out = whitened.data();
   for (const Track* const track : inside) {
-    for (Eigen::Index column = 0; column < columns.cols(); column += kBlock) {
-      whiten_block(*track, std::min(kBlock, columns.cols() - column),
+    for (Eigen::Index column = 0; column < columns.cols(); column += kColumnBlock) {
+      whiten_block(*track, std::min(kColumnBlock, columns.cols() - column),
                    {columns.data() + column * columns.outerStride(), columns.outerStride(),
-                    out + column * whitened.rows(), whitened.rows(), first, true});
+                    out + column * whitened.rows(), whitened.rows(), nullptr, first, true});
     }
     out += track->steps.size();
   }
   return whitened;
+}
+
+void Whitener::weigh_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                          Eigen::Ref<Eigen::MatrixXd> whitened, Eigen::MatrixXd& weighed) const {
+  require(columns.cols() <= kColumnBlock, "at most kColumnBlock columns");
+  weighed.setZero(kColumnBlock, whitened.rows());
+  Eigen::Index at = 0;
+  for (const Track* const track : tracks_of_part(first, columns.rows())) {
+    double* const rows = weighed.data() + at * kColumnBlock;
+    whiten_block(*track, columns.cols(),
+                 {columns.data(), columns.outerStride(), whitened.data() + at, whitened.outerStride(), rows,
+                  first, true});
+    filter_adjoint(*track, kColumnBlock, rows);
+    at += static_cast<Eigen::Index>(track->steps.size());
+  }
 }
 
 Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
@@ -310,30 +346,18 @@ Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
   return whitened;
 }
 
-void Whitener::filter_adjoint(const Track& track, Eigen::VectorXd& column) {
-  if (track.independent) {
-    for (std::size_t i = 0; i < track.steps.size(); ++i)
-      column[static_cast<Eigen::Index>(track.steps[i].observation)] *= track.scale[i];
-    return;
-  }
-  std::vector<double> adjoint(static_cast<std::size_t>(track.states), 0.0);
-  for (std::size_t i = track.steps.size(); i-- > 0;) {
-    const Step& step = track.steps[i];
-    const double* const gain = track.gain.data() + i * static_cast<std::size_t>(track.states);
-    double& value = column[static_cast<Eigen::Index>(step.observation)];
-    value *= track.scale[i];
-    for (std::size_t state = 0; state < adjoint.size(); ++state) value += gain[state] * adjoint[state];
-    if (step.slot > 0) {
-      double& own = adjoint[static_cast<std::size_t>(step.slot)];
-      own = step.opens ? 0.0 : own - value;
-    }
-    adjoint[0] = track.decay[i] * (adjoint[0] - value);
-  }
-}
-
 Eigen::VectorXd Whitener::weigh(const Eigen::VectorXd& column) const {
   Eigen::VectorXd weighted = whiten(column);
-  for (const Track& track : tracks_) filter_adjoint(track, weighted);
+  Eigen::VectorXd values;
+  for (const Track& track : tracks_) {
+    values.resize(static_cast<Eigen::Index>(track.steps.size()));
+    const auto place = [&](Eigen::Index i) {
+      return static_cast<Eigen::Index>(track.steps[static_cast<std::size_t>(i)].observation);
+    };
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = weighted[place(i)];
+    filter_adjoint(track, 1, values.data());
+    for (Eigen::Index i = 0; i < values.size(); ++i) weighted[place(i)] = values[i];
+  }
   return weighted;
 }
 

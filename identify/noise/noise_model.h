@@ -26,6 +26,8 @@
 #include <span>
 #include <vector>
 
+#include "volcal/identify/noise/filter_rows.h"
+
 namespace volcal {
 
 /// Of one instrument. SI: lengths in m (angles in rad), tau in s.
@@ -52,6 +54,9 @@ struct NoiseData {
   std::vector<double> length;  ///< m, for the part proportional to length; empty = none
 };
 
+/// Columns that are whitened side by side.
+inline constexpr Eigen::Index kColumnBlock = 64;
+
 /// L^-1 of a noise model. Errors: std::invalid_argument for sizes that do not agree, an observation in no or
 /// in two sequences, a sigma that is not positive, negative parameters, tau <= 0 with wander.
 class Whitener {
@@ -70,6 +75,13 @@ class Whitener {
   /// Rows [first, first + columns.rows()) alone, which hold whole sequences: their observations that are not
   /// missing, sequence by sequence, in the order of the filters. On the caller's thread.
   Eigen::MatrixXd whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// whiten_part() into `whitened`, which has the size, and Sigma^-1 of the columns, observation by
+  /// observation: `weighed` becomes kColumnBlock x (observations in use), 0 beyond the columns. At most
+  /// kColumnBlock columns.
+  void weigh_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                  Eigen::Ref<Eigen::MatrixXd> whitened, Eigen::MatrixXd& weighed) const;
+  /// Observations in the order of what whiten_part() and weigh_part() give.
+  std::vector<std::size_t> order_of_part(std::size_t first, Eigen::Index rows) const;
 
   /// rows Sigma^-1 rows^T, full symmetric, for `rows` (columns x observations, the transpose of what whiten()
   /// takes), without storing the whitened matrix.
@@ -122,23 +134,26 @@ class Whitener {
   /// In place on a tile of steps [begin, end): `width` values per step.
   static void filter(const Track& track, std::size_t begin, std::size_t end, Eigen::Index width, double* tile,
                      double* state);
-  /// Part of filter(): offsets that are held while that of the step's own slot is seen.
-  static void correct_offsets(const Track& track, const Step& step, const double* gain, double scale,
-                              Eigen::Index width, const double* innovation, double* state);
-  /// Adjoint of filter() on one whitened column: L^-T, in place.
-  static void filter_adjoint(const Track& track, Eigen::VectorXd& column);
+  /// Adjoint of filter() on whitened rows of the whole track, in place: L^-T.
+  static void filter_adjoint(const Track& track, Eigen::Index width, double* rows);
+  static FilterStep filter_step(const Track& track, std::size_t i);
+  /// Offsets that are held while that of the step's own line is seen: their state and gain / scale.
+  template <class Visit>
+  static void visit_held_offsets(const Track& track, std::size_t i, const Visit& visit);
   /// Columns where a track finds its observations and leaves them.
   struct Place {
     const double* in;
     Eigen::Index in_stride;
     double* out;
     Eigen::Index out_stride;
+    double* rows;        ///< keeps whitened rows, kColumnBlock values each; null = nowhere
     std::size_t origin;  ///< observation of the first row of `in`
     bool packed;         ///< steps leave one after another; else at their observations
   };
   /// whiten_block() of independent observations.
   static void scale_block(const Track& track, Eigen::Index width, const Place& place);
   static void whiten_block(const Track& track, Eigen::Index width, const Place& place);
+  std::vector<const Track*> tracks_of_part(std::size_t first, Eigen::Index rows) const;
   template <class Fill>
   static void add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum);
   /// `fill(track, begin, end, tile)` makes the columns of steps.

@@ -12,15 +12,19 @@
 /// neither the readings nor the prior determine is left out of x, and p counts what remains.
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "volcal/identify/noise/local_rows.h"
 #include "volcal/identify/noise/noise_model.h"
 
 namespace volcal {
 
 /// The linear model about the current adjustment.
 struct NoiseProblem {
-  Eigen::MatrixXd jacobian;         ///< N x p
+  Eigen::MatrixXd jacobian;  ///< N x p
+  /// The first columns of `jacobian` once more; null = not known to be local. Only makes projections faster.
+  std::shared_ptr<const LocalRows> local;
   Eigen::VectorXd residual;         ///< N, reading minus prediction, m or rad
   Eigen::MatrixXd prior_precision;  ///< p x p, positive semidefinite; empty = none
   Eigen::VectorXd prior_mean;       ///< p, of the correction x; empty = 0

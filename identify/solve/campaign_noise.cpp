@@ -101,11 +101,46 @@ CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
   return sample;
 }
 
+namespace {
+
+LocalRows empty_local_rows(const ParameterLayout& layout, const DatumSpace& datum, std::size_t count) {
+  LocalRows local;
+  for (const FunctionGroup& group : layout.groups) {
+    local.groups.push_back(
+        {std::vector<Eigen::Index>(count),
+         Eigen::MatrixXd(group.basis->support() * group.count(), static_cast<Eigen::Index>(count))});
+  }
+  for (const DatumSpace::FunctionCoordinates& function : datum.functions())
+    local.combinations.push_back({function.raw, function.basis, function.offset});
+  local.coefficients = layout.function_size;
+  return local;
+}
+
+void set_local_rows(const ParameterLayout& layout, const RowJacobian& row, int channel, Eigen::Index at,
+                    LocalRows& local) {
+  const double* basis = row.basis_value.data();
+  const double* weight = row.weight[channel].data();
+  for (std::size_t g = 0; g < layout.groups.size(); ++g) {
+    const FunctionGroup& group = layout.groups[g];
+    local.groups[g].first[static_cast<std::size_t>(at)] = group.index(row.start[g], 0);
+    auto derivatives = local.groups[g].derivatives.col(at);
+    for (int j = 0; j < group.basis->support(); ++j) {
+      for (int slot = 0; slot < group.count(); ++slot)
+        derivatives[j * group.count() + slot] = basis[j] * weight[slot];
+    }
+    basis += group.basis->support();
+    weight += group.count();
+  }
+}
+
+}  // namespace
+
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
                const std::vector<ObservationPlace>& places, NoiseProblem& problem) {
   const auto count = static_cast<Eigen::Index>(places.size());
   problem.jacobian.resize(count, datum.size());
   problem.residual.resize(count);
+  auto local = std::make_shared<LocalRows>(empty_local_rows(model.layout(), datum, places.size()));
   RowJacobian row;
   for (Eigen::Index i = 0; i < count; ++i) {
     const ObservationPlace& place = places[static_cast<std::size_t>(i)];
@@ -113,10 +148,12 @@ void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eig
                               place.row == places[static_cast<std::size_t>(i - 1)].row;
     if (!same_reading) model.linearize(place.setup, place.row, parameters, row);
     const Readings& readings = model.campaign().setups[place.setup].readings;
+    set_local_rows(model.layout(), row, place.channel, i, *local);
     problem.jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, place.channel).transpose());
     problem.residual[i] =
         readings.value[static_cast<std::size_t>(place.channel)][place.row] - row.predicted[place.channel];
   }
+  problem.local = std::move(local);
 }
 
 }  // namespace volcal

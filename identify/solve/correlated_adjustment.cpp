@@ -58,6 +58,7 @@ void keep_what_is_determined(NoiseProblem& problem) {
   const Eigen::VectorXd mean = (of_prior > 0.0).select(pull / of_prior.max(kNoPrior), 0.0);
   problem.residual -= problem.jacobian * (directions.leftCols(held) * mean.head(held));
   problem.jacobian = (problem.jacobian * directions.rightCols(p - held)).eval();
+  problem.local.reset();
   problem.prior_precision = of_prior.tail(p - held).matrix().asDiagonal();
   problem.prior_mean = mean.tail(p - held);
 }

@@ -109,8 +109,8 @@ void NormalTile::flush_run() {
   const int own_size = static_cast<int>(own_index_.size());
   if (columns_ == run_begin_ || own_size == 0) return;
   const double* rows = rows_.data() + run_begin_ * stride_;
-  kernel_.multiply(rows, rows + size_ + 1, stride_, size_ + 1 + own_size, own_size, columns_ - run_begin_,
-                   product_.data());
+  kernel_.multiply({rows, stride_, size_ + 1 + own_size}, {rows + size_ + 1, stride_, own_size},
+                   columns_ - run_begin_, false, product_.data(), stride_);
   for (int k = 0; k < own_size; ++k) {
     const int column = own_index_[static_cast<std::size_t>(k)];
     const double* value = product_.data() + k * stride_;

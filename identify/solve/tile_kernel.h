@@ -11,6 +11,13 @@ namespace volcal {
 /// Strides of all arrays are multiples of this, so that kernels read and write whole vectors.
 inline constexpr int kTileAlignment = 8;
 
+/// Element i of observation k stands at data[k * stride + i].
+struct TileRows {
+  const double* data;
+  std::ptrdiff_t stride;
+  int size;
+};
+
 /// Element i of observation k stands at a[k * stride + i]; products are column-major. Elements beyond
 /// `size`, up to the next multiple of kTileAlignment, are read and written too.
 struct TileKernel {
@@ -18,10 +25,10 @@ struct TileKernel {
   /// `product` has the stride of `a`. Some elements below the diagonal are changed as well.
   void (*outer_upper)(const double* a, std::ptrdiff_t stride, int size, int observations, bool add,
                       double* product);
-  /// product(i, j) = sum over k of a(i, k) b(j, k) for i < size, j < b_size; `b` and `product` have the
-  /// stride of `a`.
-  void (*multiply)(const double* a, const double* b, std::ptrdiff_t stride, int size, int b_size,
-                   int observations, double* product);
+  /// product(i, j) = sum over k of a(i, k) b(j, k), added to what is there when `add`; column j of the
+  /// product stands at product + j * stride.
+  void (*multiply)(const TileRows& a, const TileRows& b, int observations, bool add, double* product,
+                   std::ptrdiff_t stride);
   /// to(i, j) += from(i, j), i < rows, j < columns; i <= j only when `upper`.
   void (*add)(const double* from, std::ptrdiff_t from_stride, int rows, int columns, bool upper, double* to,
               std::ptrdiff_t to_stride);

@@ -7,16 +7,21 @@
 namespace volcal {
 namespace {
 
+/// Distances between neighbouring observations of two factors, and columns of their product.
+struct Strides {
+  std::ptrdiff_t a, b, out;
+};
+
 /// out(i, j) (+)= sum over k of a(i, k) b(j, k), kVectors vectors of rows by kColumns columns.
 template <int kVectors, int kColumns, bool kAdd>
-void multiply_block(const double* a, const double* b, std::ptrdiff_t stride, int observations, double* out) {
+void multiply_block(const double* a, const double* b, const Strides& stride, int observations, double* out) {
   Simd::Vector sum[kColumns][kVectors];
   for (int c = 0; c < kColumns; ++c) {
     for (std::ptrdiff_t v = 0; v < kVectors; ++v) {
-      sum[c][v] = kAdd ? Simd::load(out + c * stride + v * Simd::kLanes) : Simd::zero();
+      sum[c][v] = kAdd ? Simd::load(out + c * stride.out + v * Simd::kLanes) : Simd::zero();
     }
   }
-  for (int k = 0; k < observations; ++k, a += stride, b += stride) {
+  for (int k = 0; k < observations; ++k, a += stride.a, b += stride.b) {
     Simd::Vector rows[kVectors];
     for (std::ptrdiff_t v = 0; v < kVectors; ++v) rows[v] = Simd::load(a + v * Simd::kLanes);
     for (int c = 0; c < kColumns; ++c) {
@@ -26,13 +31,14 @@ void multiply_block(const double* a, const double* b, std::ptrdiff_t stride, int
     }
   }
   for (int c = 0; c < kColumns; ++c) {
-    for (std::ptrdiff_t v = 0; v < kVectors; ++v) Simd::store(sum[c][v], out + c * stride + v * Simd::kLanes);
+    for (std::ptrdiff_t v = 0; v < kVectors; ++v)
+      Simd::store(sum[c][v], out + c * stride.out + v * Simd::kLanes);
   }
 }
 
 /// All `vectors` vectors of rows by kColumns columns.
 template <int kColumns, bool kAdd>
-void multiply_columns(const double* a, const double* b, std::ptrdiff_t stride, int vectors, int observations,
+void multiply_columns(const double* a, const double* b, const Strides& stride, int vectors, int observations,
                       double* out) {
   constexpr int kStep = 3;
   int v = 0;
@@ -51,8 +57,8 @@ template <bool kAdd>
 void outer_upper(const double* a, std::ptrdiff_t stride, int size, int observations, double* product) {
   for (int column = 0; column < size; column += Simd::kColumns) {
     const int rows = column + Simd::kColumns < size ? column + Simd::kColumns : size;
-    multiply_columns<Simd::kColumns, kAdd>(a, a + column, stride, vectors_for(rows), observations,
-                                           product + column * stride);
+    multiply_columns<Simd::kColumns, kAdd>(a, a + column, {stride, stride, stride}, vectors_for(rows),
+                                           observations, product + column * stride);
   }
 }
 
@@ -65,12 +71,22 @@ inline void outer_upper(const double* a, std::ptrdiff_t stride, int size, int ob
   }
 }
 
-inline void multiply(const double* a, const double* b, std::ptrdiff_t stride, int size, int b_size,
-                     int observations, double* product) {
+template <bool kAdd>
+void multiply(const TileRows& a, const TileRows& b, int observations, double* product,
+              std::ptrdiff_t stride) {
   constexpr int kColumns = 4;
-  for (int column = 0; column < b_size; column += kColumns) {
-    multiply_columns<kColumns, false>(a, b + column, stride, vectors_for(size), observations,
-                                      product + column * stride);
+  for (int column = 0; column < b.size; column += kColumns) {
+    multiply_columns<kColumns, kAdd>(a.data, b.data + column, {a.stride, b.stride, stride},
+                                     vectors_for(a.size), observations, product + column * stride);
+  }
+}
+
+inline void multiply(const TileRows& a, const TileRows& b, int observations, bool add, double* product,
+                     std::ptrdiff_t stride) {
+  if (add) {
+    multiply<true>(a, b, observations, product, stride);
+  } else {
+    multiply<false>(a, b, observations, product, stride);
   }
 }
 

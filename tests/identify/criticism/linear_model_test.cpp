@@ -40,6 +40,28 @@ TEST(LinearModel, TakesUpReadingsAndLeavesThemOutAgain) {
   EXPECT_TRUE(std::isinf(sigma[4]) && std::isinf(sigma[9]) && std::isinf(sigma[20]));
 }
 
+/// The functions' columns from what each reading depends on.
+TEST(LinearModel, LocalRowsAreTheSameColumns) {
+  const testing_support::FittedStudy study(testing_support::hiding({}, {5, 4, 3}));
+  const LinearModel model(study.simulated.campaign, study.result);
+  const NoiseProblem& problem = model.problem();
+  const LocalRows& local = *problem.local;
+  Eigen::MatrixXd coefficients = Eigen::MatrixXd::Zero(problem.jacobian.rows(), local.coefficients);
+  for (const LocalRows::Group& group : local.groups) {
+    for (Eigen::Index i = 0; i < coefficients.rows(); ++i) {
+      coefficients.row(i).segment(group.first[static_cast<std::size_t>(i)], group.derivatives.rows()) =
+          group.derivatives.col(i);
+    }
+  }
+  ASSERT_GT(local.columns(), 21);
+  EXPECT_LT(local.columns(), problem.jacobian.cols());
+  for (const LocalRows::Combination& function : local.combinations) {
+    const auto columns = problem.jacobian.middleCols(function.column, function.basis.cols());
+    EXPECT_LT((coefficients(Eigen::all, function.coefficients) * function.basis - columns).norm(),
+              1e-13 * columns.norm());
+  }
+}
+
 /// Residuals that follow a wave along X of 3 um: the functions of X may be rougher than without it, and what
 /// a column without prior explains asks for no roughness.
 TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {

@@ -8,7 +8,9 @@
 #include <Eigen/QR>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <utility>
 
 #include "volcal/identify/criticism/score_test.h"
 
@@ -102,6 +104,81 @@ TEST(Projector, EqualsAnOrthogonalBasis) {
     EXPECT_LT((test.amplitude - amplitude).norm(), 1e-9);
     EXPECT_NEAR(test.lm, (remaining * amplitude).squaredNorm(), 1e-9);
     EXPECT_EQ(test.dof, 3);
+  }
+}
+
+/// Columns of two groups of three functions each, which depend on 2 of 6 and 3 of 5 positions, datum
+/// included.
+LocalRows random_local_rows(std::mt19937_64& random, Eigen::MatrixXd& jacobian) {
+  constexpr int kFunctions = 3;
+  LocalRows local;
+  Eigen::Index column = 0;
+  std::vector<Eigen::MatrixXd> dense;
+  for (const auto& [positions, support] : {std::pair{6, 2}, std::pair{5, 3}}) {
+    LocalRows::Group group;
+    group.derivatives = random_matrix(random, support * kFunctions, kObservations);
+    Eigen::MatrixXd& all = dense.emplace_back(Eigen::MatrixXd::Zero(kObservations, positions * kFunctions));
+    std::uniform_int_distribution<Eigen::Index> first(0, positions - support);
+    for (Eigen::Index i = 0; i < kObservations; ++i) {
+      const Eigen::Index at = first(random) * kFunctions;
+      group.first.push_back(local.coefficients + at);
+      all.row(i).segment(at, support * kFunctions) = group.derivatives.col(i);
+    }
+    for (int function = 0; function < kFunctions; ++function) {
+      LocalRows::Combination combination;
+      for (int j = 0; j < positions; ++j)
+        combination.coefficients.push_back(static_cast<int>(local.coefficients) + j * kFunctions + function);
+      combination.basis = random_matrix(random, positions, positions - 1);
+      combination.column = column;
+      column += combination.basis.cols();
+      local.combinations.push_back(std::move(combination));
+    }
+    local.groups.push_back(std::move(group));
+    local.coefficients += positions * kFunctions;
+  }
+  Eigen::MatrixXd coefficients(kObservations, local.coefficients);
+  coefficients << dense[0], dense[1];
+  jacobian.resize(kObservations, column);
+  for (const LocalRows::Combination& function : local.combinations) {
+    jacobian.middleCols(function.column, function.basis.cols()) =
+        coefficients(Eigen::all, function.coefficients) * function.basis;
+  }
+  return local;
+}
+
+/// Columns that are known to be local give what dense ones do, whatever the noise, the parts, the number of
+/// candidates and the columns that are not local.
+TEST(Projector, LocalColumnsChangeNothing) {
+  std::mt19937_64 random(6);
+  NoiseProblem problem = random_problem(random);
+  const Eigen::MatrixXd others = problem.jacobian;
+  Eigen::MatrixXd local_columns;
+  const auto local = std::make_shared<LocalRows>(random_local_rows(random, local_columns));
+  problem.jacobian.resize(kObservations, local_columns.cols() + others.cols());
+  problem.jacobian << local_columns, others;
+  const Eigen::Index p = problem.jacobian.cols();
+  problem.prior_precision = 0.1 * Eigen::MatrixXd::Identity(p, p);
+  problem.prior_mean = random_matrix(random, p, 1);
+  problem.data.sigma[11] = std::numeric_limits<double>::infinity();
+  NoiseProblem with_local = problem;
+  with_local.local = local;
+  const NoiseParameters white{.white = 1.1, .wander = 0.0, .tau = 60.0, .line = 0.0, .per_metre = 0.0};
+  for (const NoiseParameters& noise : {kNoise, white}) {
+    Projector dense(problem, problem.data, {&noise, 1}, 1);
+    Projector fast(with_local, problem.data, {&noise, 1}, 1);
+    for (int accepted = 0; accepted < 2; ++accepted) {
+      const Eigen::Index count = kColumnBlock + 5;
+      const Eigen::MatrixXd columns = random_matrix(random, kObservations, count);
+      const ProjectedColumns expected = dense.project(columns), got = fast.project(columns);
+      EXPECT_LT((got.score - expected.score).norm(), 1e-10 * expected.score.norm());
+      EXPECT_LT((got.norm - expected.norm).norm(), 1e-12 * expected.norm.norm());
+      EXPECT_LT((got.grams[0] - expected.grams[0]).norm(), 1e-10 * expected.grams[0].norm());
+      const Eigen::MatrixXd imitation = dense.imitation(columns);
+      EXPECT_LT((fast.imitation(columns) - imitation).norm(), 1e-9 * imitation.norm());
+      const Eigen::MatrixXd further = random_matrix(random, kObservations, 2);
+      dense.accept(further);
+      fast.accept(further);
+    }
   }
 }
 

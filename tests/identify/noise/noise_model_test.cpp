@@ -96,6 +96,40 @@ TEST(Whitener, EqualsDenseCholesky) {
   }
 }
 
+/// The filter and its adjoint give Sigma^-1 v, of a column and of a part's columns observation by
+/// observation.
+TEST(Whitener, WeighsAsTheInverseOfSigma) {
+  std::mt19937_64 generator(5);
+  for (int k = 0; k < 40; ++k) {
+    const Lines lines = k % 3 == 0 ? Lines::None : k % 3 == 1 ? Lines::Following : Lines::Resumed;
+    const Sample sample = random_sample(generator, lines, k % 4 != 0, k % 2 == 0);
+    const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+    const Eigen::MatrixXd columns = test::random_matrix(generator, n, 3);
+    const Whitener whitener(sample.data, sample.noise);
+    const auto [kept, covariance] = dense(sample);
+    const Eigen::MatrixXd expected = covariance.llt().solve(Eigen::MatrixXd(columns(kept, Eigen::all)));
+    const double largest = expected.cwiseAbs().maxCoeff();
+    EXPECT_LT((whitener.weigh(columns.col(1))(kept) - expected.col(1)).cwiseAbs().maxCoeff(), 1e-10 * largest)
+        << k;
+
+    Eigen::MatrixXd whitened(static_cast<Eigen::Index>(kept.size()), 3), weighed;
+    whitener.weigh_part(0, columns, whitened, weighed);
+    EXPECT_LT((whitened - whitener.whiten_part(0, columns)).cwiseAbs().maxCoeff(), 1e-13);
+    ASSERT_EQ(weighed.rows(), kColumnBlock);
+    EXPECT_TRUE(weighed.bottomRows(kColumnBlock - 3).isZero(0.0));
+    const std::vector<std::size_t> order = whitener.order_of_part(0, n);
+    ASSERT_EQ(order.size(), kept.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const auto place = std::ranges::find(kept, static_cast<Eigen::Index>(order[i])) - kept.begin();
+      EXPECT_LT((weighed.col(static_cast<Eigen::Index>(i)).head(3) - expected.row(place).transpose())
+                    .cwiseAbs()
+                    .maxCoeff(),
+                1e-10 * largest)
+          << k;
+    }
+  }
+}
+
 /// Any order of the readings, and lines without times, where the filter goes line by line.
 TEST(Whitener, AnyOrderAndUntimedLines) {
   std::mt19937_64 generator(2);

@@ -65,13 +65,20 @@ TEST_P(TileKernelOn, Multiplies) {
       // Elements past the last row of b are read, not used.
       const MatrixXd a = random(stride, observations + 1);
       const double* b = a.data() + size;
-      MatrixXd product = MatrixXd::Constant(stride, padded(columns), 1e300);
-      kernel_->multiply(a.data(), b, stride, size + columns, columns, observations, product.data());
+      const int product_stride = stride + 16;
+      const MatrixXd before = random(product_stride, padded(columns));
       const MatrixXd used = a.leftCols(observations).topRows(size + columns);
-      const MatrixXd expected = used * used.bottomRows(columns).transpose();
-      EXPECT_LT((product.topLeftCorner(size + columns, columns) - expected).cwiseAbs().maxCoeff(),
-                kRounding * observations)
-          << size << " x " << columns;
+      for (const bool add : {false, true}) {
+        MatrixXd product = before;
+        kernel_->multiply({a.data(), stride, size + columns}, {b, stride, columns}, observations, add,
+                          product.data(), product_stride);
+        const MatrixXd expected = (add ? 1.0 : 0.0) * before.topLeftCorner(size + columns, columns) +
+                                  used * used.bottomRows(columns).transpose();
+        EXPECT_LT((product.topLeftCorner(size + columns, columns) - expected).cwiseAbs().maxCoeff(),
+                  kRounding * observations)
+            << size << " x " << columns;
+        EXPECT_TRUE(product.bottomRows(16) == before.bottomRows(16)) << "written beyond the rows";
+      }
     }
   }
 }

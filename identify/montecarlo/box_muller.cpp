@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "volcal/model/kinematics/lanes.h"
 #include "volcal/model/kinematics/unit_vector.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {

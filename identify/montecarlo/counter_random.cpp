@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "volcal/identify/montecarlo/box_muller.h"
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {

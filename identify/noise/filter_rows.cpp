@@ -1,6 +1,6 @@
 #include "volcal/identify/noise/filter_rows.h"
 
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 

@@ -91,6 +91,25 @@ void RestrictedLikelihood::split(const NoiseProblem& problem) {
   }
 }
 
+Eigen::MatrixXd RestrictedLikelihood::prior_in_variables(const Eigen::MatrixXd& precision) const {
+  Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(precision.rows(), variables());
+  add_transposed_product(precision, transform_, carried);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(variables(), variables());
+  add_transposed_product(transform_, carried, prior);
+  return prior;
+}
+
+/// From variables in which the information of white noise is the identity to those of them that the readings
+/// speak about: the share of the prior in each is an eigenvalue of its precision there.
+void RestrictedLikelihood::hold_what_the_prior_decides(const Eigen::MatrixXd& precision) {
+  if (precision.isZero(0.0) || transform_.cols() == 0) return;
+  const SymmetricEigen share = eigen_decomposition(prior_in_variables(precision));
+  const auto kept = static_cast<Eigen::Index>((share.values.array() <= 1.0 - kSpeaks).count());
+  const Eigen::MatrixXd all = transform_.transpose();
+  transform_.setZero(precision.rows(), kept);
+  add_transposed_product(all, share.vectors.leftCols(kept), transform_);
+}
+
 /// Variables in which the information of white noise is the identity, measured from their white estimate.
 void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   const Eigen::Index p = problem.jacobian.cols();
@@ -108,31 +127,40 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   for (const double s : scale) log_transform += s > 0.0 ? std::log(s) : 0.0;
 
   const Eigen::VectorXd mean = problem.prior_mean.size() > 0 ? problem.prior_mean : Eigen::VectorXd::Zero(p);
-  Eigen::VectorXd right = transform_.transpose() * (precision * mean);
+  Eigen::VectorXd right = precision * mean;
+  for (const Group& group : groups_) {
+    const Eigen::Map<const Eigen::ArrayXd> sigma(group.data.sigma.data(), group.rows.cols());
+    right += group.rows.topRows(p) * (group.rows.row(p).transpose().array() / sigma.square()).matrix();
+  }
+  first_ = transform_ * (transform_.transpose() * right);  // the inverse of the information is T T^T
+  const auto determined = static_cast<double>(kept);
+  hold_what_the_prior_decides(precision);
+  carry_rows();
+
+  const Eigen::VectorXd pull = mean - first_;
+  prior_.gram.resize(variables() + 1, variables() + 1);
+  prior_.gram.topLeftCorner(variables(), variables()) = prior_in_variables(precision);
+  prior_.gram.col(variables()).head(variables()) = transform_.transpose() * (precision * pull);
+  prior_.gram.row(variables()).head(variables()) = prior_.gram.col(variables()).head(variables()).transpose();
+  prior_.gram(variables(), variables()) = pull.dot(precision * pull);
+
+  const LogPseudoDeterminant of_prior = log_pseudo_determinant(precision);
+  auto freedom = static_cast<double>(of_prior.rank) - determined;
+  for (const Group& group : groups_) freedom += static_cast<double>(group.observation.size());
+  constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
+}
+
+/// Observations in the variables, residuals from the white estimate.
+void RestrictedLikelihood::carry_rows() {
+  const Eigen::Index p = transform_.rows(), kept = transform_.cols();
+  Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(p + 1, kept + 1);
+  carry.topLeftCorner(p, kept) = transform_;
+  carry.col(kept) << -first_, 1.0;
   for (Group& group : groups_) {
-    Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(p + 1, kept + 1);
-    carry.topLeftCorner(p, kept) = transform_;
-    carry(p, kept) = 1.0;
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kept + 1, group.rows.cols());
     add_transposed_product(carry, group.rows, rows);
     group.rows = std::move(rows);
-    const Eigen::Map<const Eigen::ArrayXd> sigma(group.data.sigma.data(), group.rows.cols());
-    right += group.rows.topRows(kept) * (group.rows.row(kept).transpose().array() / sigma.square()).matrix();
   }
-  first_ = right;  // information = identity
-  for (Group& group : groups_) group.rows.row(kept) -= first_.transpose() * group.rows.topRows(kept);
-
-  const Eigen::VectorXd pull = mean - transform_ * first_;
-  prior_.gram.resize(kept + 1, kept + 1);
-  prior_.gram.topLeftCorner(kept, kept) = transform_.transpose() * precision * transform_;
-  prior_.gram.col(kept).head(kept) = transform_.transpose() * (precision * pull);
-  prior_.gram.row(kept).head(kept) = prior_.gram.col(kept).head(kept).transpose();
-  prior_.gram(kept, kept) = pull.dot(precision * pull);
-
-  const LogPseudoDeterminant of_prior = log_pseudo_determinant(precision);
-  auto freedom = static_cast<double>(of_prior.rank - kept);
-  for (const Group& group : groups_) freedom += static_cast<double>(group.observation.size());
-  constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
 }
 
 RestrictedLikelihood::Share RestrictedLikelihood::share(std::size_t group, const NoiseParameters& noise) {

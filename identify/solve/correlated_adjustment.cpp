@@ -11,9 +11,6 @@ namespace volcal {
 namespace {
 
 constexpr std::size_t kNoiseSample = 30000;
-constexpr double kSpeaks = 1e-2;
-constexpr double kNoPrior = 1e-10;
-constexpr Eigen::Index kBlockRows = 4096;
 constexpr double kNegligibleStep = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
 constexpr int kRenewals = 4;              // of what the model holds fixed; then it stays, and steps contract
 constexpr int kMostIterations = 12;
@@ -29,40 +26,6 @@ NoiseGroupEquations sum_of(const std::vector<NoiseGroupEquations>& equations) {
   return total;
 }
 
-/// Directions of the parameters that the observations speak about. Where white readings contribute less than
-/// kSpeaks of the information the prior decides, whatever the noise: the direction is held at the prior's
-/// mean.
-void keep_what_is_determined(NoiseProblem& problem) {
-  const Eigen::Index p = problem.jacobian.cols();
-  Eigen::MatrixXd readings = Eigen::MatrixXd::Zero(p, p);
-  for (Eigen::Index first = 0; first < problem.jacobian.rows(); first += kBlockRows) {
-    const Eigen::Index rows = std::min(kBlockRows, problem.jacobian.rows() - first);
-    const Eigen::Map<const Eigen::ArrayXd> sigma(problem.data.sigma.data() + first, rows);
-    add_gram_upper(sigma.inverse().matrix().asDiagonal() * problem.jacobian.middleRows(first, rows), 1.0,
-                   readings);
-  }
-  symmetrise_from_upper(readings);
-  const auto lower = cholesky_lower(readings + problem.prior_precision);
-  if (!lower) return;
-  solve_lower(*lower, readings);
-  readings.transposeInPlace();
-  solve_lower(*lower, readings);
-  const SymmetricEigen share = eigen_decomposition(readings);  // of the readings in the information
-  const auto held = static_cast<Eigen::Index>((share.values.array() < kSpeaks).count());
-  const Eigen::MatrixXd directions =
-      lower->triangularView<Eigen::Lower>().transpose().solve(share.vectors);  // information = identity
-  const Eigen::ArrayXd weight = 1.0 - share.values.array();                    // of the prior
-  const Eigen::ArrayXd of_prior = (weight > kNoPrior).select(weight, 0.0);
-  const Eigen::ArrayXd pull =
-      (directions.transpose() * (problem.prior_precision * problem.prior_mean)).array();
-  const Eigen::VectorXd mean = (of_prior > 0.0).select(pull / of_prior.max(kNoPrior), 0.0);
-  problem.residual -= problem.jacobian * (directions.leftCols(held) * mean.head(held));
-  problem.jacobian = (problem.jacobian * directions.rightCols(p - held)).eval();
-  problem.local.reset();
-  problem.prior_precision = of_prior.tail(p - held).matrix().asDiagonal();
-  problem.prior_mean = mean.tail(p - held);
-}
-
 }  // namespace
 
 NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& datum,
@@ -74,7 +37,6 @@ NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& da
   problem.data = std::move(sample.data);
   problem.prior_precision = prior.precision;
   problem.prior_mean = prior.mean - z;
-  keep_what_is_determined(problem);
   return estimate_noise(problem, options, previous);
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/tables/error_tables.h"
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif

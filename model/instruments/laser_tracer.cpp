@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "volcal/model/instruments/nuisance.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {

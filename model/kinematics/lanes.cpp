@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "volcal/model/kinematics/unit_vector.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 

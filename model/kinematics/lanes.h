@@ -19,13 +19,6 @@ struct alignas(64) Lanes {
   }
 };
 
-// A function so marked is compiled for several instruction sets; the program chooses when it starts.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define VOLCAL_VECTOR_LOOPS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VOLCAL_VECTOR_LOOPS
-#endif
-
 /// to += number
 void add_number(double number, Lanes& to);
 /// to += table[place]

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "volcal/model/kinematics/vector_loops.h"
+
 namespace volcal {
 namespace {
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "volcal/model/kinematics/lanes.h"
+#include "volcal/model/kinematics/vector_loops.h"
 
 // The same source once more, for no instruction set but the baseline.
 #define box_muller baseline_box_muller

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <stdexcept>
@@ -64,6 +65,38 @@ TEST(RestrictedLikelihood, SolutionIsGeneralisedLeastSquares) {
           .llt()
           .solve(weighted.transpose() * problem.residual + problem.prior_precision * problem.prior_mean);
   EXPECT_LT((x - expected).norm() / expected.norm(), 1e-8);
+}
+
+/// A prior that leaves little to the readings in half of the directions: these are held where white noise
+/// puts them, and the likelihood follows the dense one within what they can say.
+TEST(RestrictedLikelihood, HoldsWhatThePriorDecides) {
+  std::mt19937_64 generator(6);
+  NoiseProblem problem = two_instruments(generator);
+  const Eigen::Index p = problem.jacobian.cols(), held = p / 2;
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd weighted = Eigen::VectorXd::Zero(p);
+  for (Eigen::Index i = 0; i < problem.jacobian.rows(); ++i) {
+    const double sigma = problem.data.sigma[static_cast<std::size_t>(i)];
+    information += problem.jacobian.row(i).transpose() * problem.jacobian.row(i) / (sigma * sigma);
+    weighted += problem.jacobian.row(i).transpose() * problem.residual[i] / (sigma * sigma);
+  }
+  const Eigen::MatrixXd lower = information.llt().matrixL();
+  Eigen::VectorXd strength = Eigen::VectorXd::Zero(p);  // of the prior against the readings
+  for (Eigen::Index k = 0; k < held; ++k) strength[k] = std::pow(10.0, 3.1 + 0.2 * static_cast<double>(k));
+  problem.prior_precision = lower * strength.asDiagonal() * lower.transpose();
+  problem.prior_mean = Eigen::VectorXd::Constant(p, 3e-6);
+
+  RestrictedLikelihood likelihood(problem, 1);
+  EXPECT_EQ(likelihood.variables(), p - held);
+  const std::vector<NoiseParameters> white(2);
+  const double constant = likelihood.log_likelihood(white) - test::dense_log_likelihood(problem, white);
+  EXPECT_NEAR(likelihood.log_likelihood(kNoise) - constant, test::dense_log_likelihood(problem, kNoise),
+              4.0 * kSpeaks * static_cast<double>(held));
+  const Eigen::VectorXd at = Eigen::VectorXd::Zero(p - held);
+  const Eigen::VectorXd estimate = (information + problem.prior_precision)
+                                       .llt()
+                                       .solve(weighted + problem.prior_precision * problem.prior_mean);
+  EXPECT_LT((likelihood.coefficients(at) - estimate).norm(), 1e-9 * estimate.norm());
 }
 
 /// A reading without weight is as good as one that was never taken.

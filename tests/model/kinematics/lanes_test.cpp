@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "volcal/model/kinematics/vector_loops.h"
+
 #define add_number baseline_add_number
 #define add_entries baseline_add_entries
 #define add_scaled baseline_add_scaled

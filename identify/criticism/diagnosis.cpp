@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "volcal/identify/criticism/effect_search.h"
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/units.h"
@@ -287,23 +288,10 @@ class Diagnostician {
     const double nearly = (1.0 - kNearlyAsImprobable) * order.front()->log10_p;
     const auto end =
         std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
-    const auto simplest = std::ranges::min_element(order.begin(), end, {},
-                                                   [](const GenericTest* test) { return trouble(*test); });
+    const auto simplest = std::ranges::min_element(order.begin(), end, {}, [](const GenericTest* test) {
+      return how_far_fetched(test->variables, test->direction);
+    });
     std::rotate(order.begin(), simplest, simplest + 1);
-  }
-
-  /// How much has to be believed: one variable before two; time before temperatures for a station, which is
-  /// no part of the machine, and temperatures before time for a beam, whose wavelength follows the air's; and
-  /// whatever depends on time and a temperature is a function of time.
-  static int trouble(const GenericTest& test) {
-    const auto holds = [&](std::string_view beginning) {
-      return std::ranges::any_of(test.variables,
-                                 [&](const std::string& name) { return name.starts_with(beginning); });
-    };
-    if (test.variables.size() == 1) return 0;
-    if (holds("time") && holds("T_")) return 3;
-    const bool far_fetched = test.direction == "beam" ? holds("time") : holds("station ") && holds("T_");
-    return far_fetched ? 2 : 1;
   }
 
   /// What stood out under names that are none, and no generic test sees for itself.

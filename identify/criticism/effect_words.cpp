@@ -159,4 +159,15 @@ const EffectWord* find_word(NamePart part, const EffectName& name) {
 std::span<const EffectWord> scan_words() { return kScanWords; }
 const EffectWord* find_scan_word(const std::string& variable) { return find_in(kScanWords, {}, variable); }
 
+int how_far_fetched(const std::vector<std::string>& variables, const std::string& direction) {
+  const auto holds = [&](std::string_view beginning) {
+    return std::ranges::any_of(variables,
+                               [&](const std::string& name) { return name.starts_with(beginning); });
+  };
+  if (variables.size() < 2) return 0;
+  if (holds("time") && holds("T_")) return 3;
+  const bool far_fetched = direction == "beam" ? holds("time") : holds("station ") && holds("T_");
+  return far_fetched ? 2 : 1;
+}
+
 }  // namespace volcal

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "volcal/model/effects/effect.h"
 
@@ -40,5 +41,9 @@ const EffectWord* find_word(NamePart part, const EffectName& name);
 /// What the scans without a catalogue may see: `variables` and `direction` of an unknown effect.
 std::span<const EffectWord> scan_words();
 const EffectWord* find_scan_word(const std::string& variable);
+/// How much has to be believed of what a scan saw, 0 = least: one variable before two; time before
+/// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
+/// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
+int how_far_fetched(const std::vector<std::string>& variables, const std::string& direction);
 
 }  // namespace volcal

@@ -74,7 +74,7 @@ TEST(LineOffsets, AreCommonInALineAndIndependentBetweenLines) {
   double product = 0.0;
   for (std::size_t line = 0; line < kLines; ++line) {
     EXPECT_EQ(noise.slow(line, 0), noise.slow(line + kLines, 0));
-    EXPECT_EQ(noise.slow(line, 0), noise.slow(line + 2 * kLines, 0));
+    EXPECT_EQ(noise.slow(line, 0), noise.slow(line + std::size_t{2} * kLines, 0));
     square += noise.slow(line, 0) * noise.slow(line, 0) / kLines;
     product += noise.slow(line, 0) * noise.slow((line + 1) % kLines, 0) / kLines;
   }
@@ -93,7 +93,7 @@ TEST(Outliers, HaveTheirShare) {
     positive += noise.outlier(row, 0) > 0 ? 1 : 0;
   }
   EXPECT_NEAR(wrong, 300, 70);  // 4 standard deviations of a binomial
-  EXPECT_NEAR(positive, wrong / 2, 40);
+  EXPECT_NEAR(positive, 0.5 * wrong, 40);
 }
 
 Study small_study() {

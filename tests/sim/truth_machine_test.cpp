@@ -266,8 +266,9 @@ TEST(Transforms, InverseAndRotationVectorAndAlignment) {
 
   const std::vector<Eigen::Vector3d> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
   std::vector<Eigen::Vector3d> errors;
+  errors.reserve(points.size());
   const RigidMotion motion{{1, -2, 3}, {0.1, 0.2, -0.3}};
-  for (const Eigen::Vector3d& p : points) errors.push_back(motion.translation + motion.rotation.cross(p));
+  for (const Eigen::Vector3d& p : points) errors.emplace_back(motion.translation + motion.rotation.cross(p));
   const RigidMotion found = best_rigid_motion(points, errors);
   EXPECT_LT((found.translation - motion.translation).norm(), 1e-14);
   EXPECT_LT((found.rotation - motion.rotation).norm(), 1e-14);

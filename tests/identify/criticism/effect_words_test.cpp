@@ -66,5 +66,17 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   EXPECT_EQ(full_name({"reversal", "EXX", "dir_x", "step"}), "reversal:EXX:dir_x:step");
 }
 
+/// What scans see nearly alike is told in this order.
+TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
+  EXPECT_EQ(how_far_fetched({"station P1"}, "X"), 0);
+  EXPECT_EQ(how_far_fetched({"x", "dir_x"}, "Y"), 1);
+  EXPECT_EQ(how_far_fetched({"station P1", "time"}, "X"), 1) << "a station drifts in time";
+  EXPECT_EQ(how_far_fetched({"station P1", "T_air"}, "X"), 2);
+  EXPECT_EQ(how_far_fetched({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
+  EXPECT_EQ(how_far_fetched({"length", "time"}, "beam"), 2);
+  EXPECT_EQ(how_far_fetched({"x", "time"}, "X"), 1);
+  EXPECT_EQ(how_far_fetched({"time", "T_air"}, "X"), 3);
+}
+
 }  // namespace
 }  // namespace volcal

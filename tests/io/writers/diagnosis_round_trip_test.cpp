@@ -96,6 +96,15 @@ TEST(DiagnosisJson, RoundTrips) {
   EXPECT_THAT(diagnosis_text(again), HasSubstr("0.960  reversal EXX  reversal EYY"));
 }
 
+/// Diagnoses that were written before scans saw rotations.
+TEST(DiagnosisJson, ARotationMayBeMissing) {
+  json document = written();
+  document.at("unknown").at(0).erase("rotation");
+  const Diagnosis again = diagnosis_from_json(document.dump(), "old.json");
+  EXPECT_EQ(again.unknown.at(0).rotation, "");
+  EXPECT_EQ(again.unknown.at(0).direction, "Z");
+}
+
 TEST(DiagnosisJson, UnitsWithDenominatorsComeBack) {
   Diagnosis diagnosis = testing::hand_made_diagnosis();
   diagnosis.effects[0].amplitudes[0] = {"expansion X", 2.5e-6, 1e-7, 2e-7, "um/m/K", 1e-6};

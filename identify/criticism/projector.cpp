@@ -38,7 +38,7 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
         problem.residual.segment(parts_[part], part_rows(part));
     whitened_[part] = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
   });
-  if (problem.local) {
+  if (problem.local && problem.local->columns() > 0) {
     local_rows_ = problem.local;
     std::vector<std::vector<std::size_t>> order;
     for (std::size_t part = 0; part < part_count(); ++part)

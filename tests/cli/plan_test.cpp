@@ -23,7 +23,7 @@ const std::string kMachine = std::string(VOLCAL_SOURCE_DIR) + "/datasets/demo/ma
 nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(content(file)); }
 
 std::string model_of_two_pieces(const std::filesystem::path& folder) {
-  const std::string path = (folder / "model.toml").string();
+  std::string path = (folder / "model.toml").string();
   std::ofstream(path) << "format = \"volcal-model-1\"\nmachine = \"" << kMachine
                       << "\"\n[functions]\ndefault = { basis = \"bspline\", degree = 3, knots = 2 }\n";
   return path;

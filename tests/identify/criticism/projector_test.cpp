@@ -110,11 +110,12 @@ TEST(Projector, EqualsAnOrthogonalBasis) {
 /// Columns of two groups of three functions each, which depend on 2 of 6 and 3 of 5 positions, datum
 /// included.
 LocalRows random_local_rows(std::mt19937_64& random, Eigen::MatrixXd& jacobian) {
-  constexpr int kFunctions = 3;
+  using Eigen::Index;
+  constexpr Index kFunctions = 3;
   LocalRows local;
-  Eigen::Index column = 0;
+  Index column = 0;
   std::vector<Eigen::MatrixXd> dense;
-  for (const auto& [positions, support] : {std::pair{6, 2}, std::pair{5, 3}}) {
+  for (const auto& [positions, support] : {std::pair<Index, Index>{6, 2}, std::pair<Index, Index>{5, 3}}) {
     LocalRows::Group group;
     group.derivatives = random_matrix(random, support * kFunctions, kObservations);
     Eigen::MatrixXd& all = dense.emplace_back(Eigen::MatrixXd::Zero(kObservations, positions * kFunctions));
@@ -124,10 +125,10 @@ LocalRows random_local_rows(std::mt19937_64& random, Eigen::MatrixXd& jacobian) 
       group.first.push_back(local.coefficients + at);
       all.row(i).segment(at, support * kFunctions) = group.derivatives.col(i);
     }
-    for (int function = 0; function < kFunctions; ++function) {
+    for (Index function = 0; function < kFunctions; ++function) {
       LocalRows::Combination combination;
-      for (int j = 0; j < positions; ++j)
-        combination.coefficients.push_back(static_cast<int>(local.coefficients) + j * kFunctions + function);
+      for (Index j = 0; j < positions; ++j)
+        combination.coefficients.push_back(static_cast<int>(local.coefficients + j * kFunctions + function));
       combination.basis = random_matrix(random, positions, positions - 1);
       combination.column = column;
       column += combination.basis.cols();

@@ -71,7 +71,7 @@ constexpr std::array kPrograms = std::to_array<NamedProgram>({
 NcSetup offsets() {
   NcSetup setup = testing::simple_setup();
   for (std::size_t i = 1; i < kWorkOffsets; ++i) {
-    const double shift = static_cast<double>(i);
+    const auto shift = static_cast<double>(i);
     setup.work_offsets[i] = Eigen::Vector3d(1e-2 * shift, -5e-3 * shift, 2e-3 * shift);
   }
   setup.tool_lengths = {{1, 0.05}, {2, 0.08}};

@@ -361,7 +361,7 @@ class MistakenFiles : public ::testing::TestWithParam<const TableFormat*> {
         state.position = point.position;
         state.direction = point.direction;
         points.emplace_back(point.position[0], point.position[1], point.position[2]);
-        differences.push_back(wrong(state) - right(state));
+        differences.emplace_back(wrong(state) - right(state));
       }
       return sim::rms_after_alignment(points, differences);
     } catch (const InputError&) {

@@ -34,12 +34,12 @@ double added_by_both(const std::vector<TableFile>& files, double x, int directio
   return own.x() / 1e-6;
 }
 
-std::vector<TableFile> write(const FitResult& result, double step, Settings settings) {
+std::vector<TableFile> write(const FitResult& result, double step, const Settings& settings) {
   TableFormatOptions options;
   options.type = CompensationPart::Positioning;
   options.step = step;
   options.settings = {{"sign", "compensation"}, {"output", "even"}};
-  for (auto& [name, value] : settings) options.settings[name] = value;
+  for (const auto& [name, value] : settings) options.settings[name] = value;
   return write_tables(fanuc(), result, options);
 }
 

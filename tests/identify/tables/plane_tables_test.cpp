@@ -33,7 +33,7 @@ TEST(PlaneTables, ThreePlanesHoldAFieldWithoutTermsOfThreeAxes) {
   for (std::size_t i = 0; i < nodes[0]; ++i) {
     for (std::size_t j = 0; j < nodes[1]; ++j) {
       for (std::size_t k = 0; k < nodes[2]; ++k) {
-        const Vector3d sum = sums[(i * nodes[1] + j) * nodes[2] + k];
+        const Vector3d& sum = sums[(i * nodes[1] + j) * nodes[2] + k];
         EXPECT_LT((sum - field(i, j, k)).cwiseAbs().maxCoeff(), 1e-13) << i << " " << j << " " << k;
       }
     }

@@ -90,6 +90,48 @@ TEST(Guide, PlansTheCampaignThatItQuotes) {
   expect_quoted(block_of_guide("```", "makes visible", guide), one_tool.output);
 }
 
+/// A command of a guide and the lines that it quotes of what is printed.
+struct Quotation {
+  std::string command;
+  std::vector<std::string> lines;
+};
+
+/// Commands of volcal in the fenced blocks, in their order; those of other programs are left out.
+std::vector<Quotation> quotations_of(const std::string& guide) {
+  const std::string prompt = "$ ";
+  std::vector<Quotation> all;
+  bool open = false, ours = false;
+  for (const std::string& line : lines_of(content(kSource / "docs/guides" / guide))) {
+    if (line.starts_with("```")) {
+      open = !open;
+      ours = false;
+    } else if (open && line.starts_with(prompt)) {
+      const std::string command = line.substr(prompt.size(), line.find(" #") - prompt.size());
+      ours = command.starts_with("volcal ");
+      if (ours) all.push_back({command.substr(std::string("volcal ").size()), {}});
+    } else if (ours && !line.empty()) {
+      all.back().lines.push_back(line);
+    }
+  }
+  return all;
+}
+
+/// Every command of the story, one after another in one folder, prints what the guide quotes.
+TEST(Guide, FindsTheMissingEffectAsItTells) {
+  const testing::ScratchFolder scratch;
+  fs::create_directory_symlink(kSource / "datasets", scratch.path() / "datasets");
+  const fs::path before = fs::current_path();
+  fs::current_path(scratch.path());
+  const std::vector<Quotation> story = quotations_of("find-the-missing-effect.md");
+  EXPECT_GE(story.size(), 9U);
+  for (const auto& [command, lines] : story) {
+    const auto outcome = testing::run_program(command);
+    EXPECT_LE(outcome.exit_code, 1) << command << "\n" << outcome.errors;
+    if (!lines.empty()) expect_quoted(lines, outcome.output);
+  }
+  fs::current_path(before);
+}
+
 TEST(Guide, ShowsTheProgramThatTheConsumerTestRuns) {
   const auto consumer = lines_of(content(kSource / "tests/consumer/main.cpp"));
   const auto shown = block_of_guide("```cpp", "read_campaign");

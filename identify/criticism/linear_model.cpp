@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/linear_model.h"
 
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "volcal/identify/solve/adjustment.h"
@@ -30,6 +31,7 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
   problem_.data = std::move(noise.data);
   const DatumSpace datum(model_.layout(), campaign_.machine, result.parameters);
   linearise(model_, datum, result.parameters, observations_, problem_);
+  problem_.local = std::make_shared<LocalRows>(local_rows(model_, datum, result.parameters, observations_));
   add_sensitivity(result.parameters);
   set_smoothing(smoothing_as_fitted_);
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/tile_array.h"
 #include "volcal/identify/solve/tile_kernel.h"
 
 namespace volcal {
@@ -13,17 +15,14 @@ namespace {
 constexpr Eigen::Index kGathered = 128;  // rows of a cell that are multiplied at once
 static_assert(kColumnBlock % kTileAlignment == 0);
 
-Eigen::Index padded(Eigen::Index size) {
-  return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment;
-}
-
 }  // namespace
 
-LocalProduct::LocalProduct(const LocalRows& rows, const std::vector<std::vector<std::size_t>>& order)
-    : rows_(rows) {
+LocalProduct::LocalProduct(std::shared_ptr<const LocalRows> rows,
+                           const std::vector<std::vector<std::size_t>>& order)
+    : rows_(std::move(rows)) {
   for (const std::vector<std::size_t>& part : order) {
     std::vector<SortedGroup>& groups = parts_.emplace_back();
-    for (const LocalRows::Group& group : rows.groups) groups.push_back(sorted(group, part));
+    for (const LocalRows::Group& group : rows_->groups) groups.push_back(sorted(group, part));
   }
 }
 
@@ -38,7 +37,7 @@ LocalProduct::SortedGroup LocalProduct::sorted(const LocalRows::Group& group,
   std::iota(result.row.begin(), result.row.end(), Eigen::Index{0});
   std::ranges::stable_sort(result.row, {}, coefficient);
   const auto count = static_cast<Eigen::Index>(order.size());
-  result.derivatives.setZero(padded(result.width), count);
+  result.derivatives.setZero(whole_lines(result.width), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index row = result.row[static_cast<std::size_t>(k)];
     const auto observation = static_cast<Eigen::Index>(order[static_cast<std::size_t>(row)]);
@@ -51,7 +50,7 @@ LocalProduct::SortedGroup LocalProduct::sorted(const LocalRows::Group& group,
 }
 
 Eigen::MatrixXd LocalProduct::zero_sums() const {
-  return Eigen::MatrixXd::Zero(kColumnBlock, rows_.coefficients + kTileAlignment);
+  return Eigen::MatrixXd::Zero(kColumnBlock, rows_->coefficients + kTileAlignment);
 }
 
 void LocalProduct::add(std::size_t part, const Eigen::MatrixXd& weighed, Eigen::MatrixXd& sums) const {
@@ -73,7 +72,7 @@ void LocalProduct::add(std::size_t part, const Eigen::MatrixXd& weighed, Eigen::
 }
 
 void LocalProduct::combine(const Eigen::MatrixXd& sums, Eigen::Ref<Eigen::MatrixXd> products) const {
-  for (const LocalRows::Combination& function : rows_.combinations) {
+  for (const LocalRows::Combination& function : rows_->combinations) {
     const Eigen::MatrixXd own = sums(Eigen::seqN(0, products.cols()), function.coefficients).transpose();
     Eigen::MatrixXd combined = Eigen::MatrixXd::Zero(function.basis.cols(), products.cols());
     add_transposed_product(function.basis, own, combined);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "volcal/identify/noise/local_rows.h"
@@ -12,11 +13,10 @@ namespace volcal {
 
 class LocalProduct {
  public:
-  /// `order`: for each part, its observations in the order of the rows that are multiplied. `rows` must
-  /// outlive the object.
-  LocalProduct(const LocalRows& rows, const std::vector<std::vector<std::size_t>>& order);
+  /// `order`: for each part, its observations in the order of the rows that are multiplied.
+  LocalProduct(std::shared_ptr<const LocalRows> rows, const std::vector<std::vector<std::size_t>>& order);
 
-  Eigen::Index columns() const { return rows_.columns(); }
+  Eigen::Index columns() const { return rows_->columns(); }
   /// What add() adds to, for kColumnBlock columns.
   Eigen::MatrixXd zero_sums() const;
   /// Adds the products of a part's observations; `weighed`: kColumnBlock x observations of the part.
@@ -38,7 +38,7 @@ class LocalProduct {
   };
   static SortedGroup sorted(const LocalRows::Group& group, const std::vector<std::size_t>& order);
 
-  const LocalRows& rows_;
+  std::shared_ptr<const LocalRows> rows_;
   std::vector<std::vector<SortedGroup>> parts_;
 };
 

@@ -39,11 +39,10 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
     whitened_[part] = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
   });
   if (problem.local && problem.local->columns() > 0) {
-    local_rows_ = problem.local;
     std::vector<std::vector<std::size_t>> order;
     for (std::size_t part = 0; part < part_count(); ++part)
       order.push_back(whitener_.order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
-    local_product_ = std::make_shared<LocalProduct>(*local_rows_, order);
+    local_product_.emplace(problem.local, order);
   }
   factorise();
 }

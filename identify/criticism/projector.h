@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -97,8 +97,7 @@ class Projector {
 
   Whitener whitener_;
   int threads_;
-  std::shared_ptr<const LocalRows> local_rows_;
-  std::shared_ptr<const LocalProduct> local_product_;
+  std::optional<LocalProduct> local_product_;
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
   std::vector<Eigen::MatrixXd> whitened_;  ///< per part, (observations in use) x (p + 1), residual last

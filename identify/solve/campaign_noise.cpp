@@ -103,6 +103,19 @@ CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
 
 namespace {
 
+/// Calls `visit(i, row)` with the derivatives of the reading of every place i.
+template <class Visit>
+void for_each_row(const MeasurementModel& model, const Eigen::VectorXd& parameters,
+                  const std::vector<ObservationPlace>& places, const Visit& visit) {
+  RowJacobian row;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool same_reading =
+        i > 0 && places[i].setup == places[i - 1].setup && places[i].row == places[i - 1].row;
+    if (!same_reading) model.linearize(places[i].setup, places[i].row, parameters, row);
+    visit(static_cast<Eigen::Index>(i), row);
+  }
+}
+
 LocalRows empty_local_rows(const ParameterLayout& layout, const DatumSpace& datum, std::size_t count) {
   LocalRows local;
   for (const FunctionGroup& group : layout.groups) {
@@ -116,23 +129,6 @@ LocalRows empty_local_rows(const ParameterLayout& layout, const DatumSpace& datu
   return local;
 }
 
-void set_local_rows(const ParameterLayout& layout, const RowJacobian& row, int channel, Eigen::Index at,
-                    LocalRows& local) {
-  const double* basis = row.basis_value.data();
-  const double* weight = row.weight[channel].data();
-  for (std::size_t g = 0; g < layout.groups.size(); ++g) {
-    const FunctionGroup& group = layout.groups[g];
-    local.groups[g].first[static_cast<std::size_t>(at)] = group.index(row.start[g], 0);
-    auto derivatives = local.groups[g].derivatives.col(at);
-    for (int j = 0; j < group.basis->support(); ++j) {
-      for (int slot = 0; slot < group.count(); ++slot)
-        derivatives[j * group.count() + slot] = basis[j] * weight[slot];
-    }
-    basis += group.basis->support();
-    weight += group.count();
-  }
-}
-
 }  // namespace
 
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
@@ -140,20 +136,28 @@ void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eig
   const auto count = static_cast<Eigen::Index>(places.size());
   problem.jacobian.resize(count, datum.size());
   problem.residual.resize(count);
-  auto local = std::make_shared<LocalRows>(empty_local_rows(model.layout(), datum, places.size()));
-  RowJacobian row;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const ObservationPlace& place = places[static_cast<std::size_t>(i)];
-    const bool same_reading = i > 0 && place.setup == places[static_cast<std::size_t>(i - 1)].setup &&
-                              place.row == places[static_cast<std::size_t>(i - 1)].row;
-    if (!same_reading) model.linearize(place.setup, place.row, parameters, row);
-    const Readings& readings = model.campaign().setups[place.setup].readings;
-    set_local_rows(model.layout(), row, place.channel, i, *local);
-    problem.jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, place.channel).transpose());
-    problem.residual[i] =
-        readings.value[static_cast<std::size_t>(place.channel)][place.row] - row.predicted[place.channel];
-  }
-  problem.local = std::move(local);
+  for_each_row(model, parameters, places, [&](Eigen::Index i, const RowJacobian& row) {
+    const auto [setup, reading, channel] = places[static_cast<std::size_t>(i)];
+    problem.jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, channel).transpose());
+    const Readings& readings = model.campaign().setups[setup].readings;
+    problem.residual[i] = readings.value[static_cast<std::size_t>(channel)][reading] - row.predicted[channel];
+  });
+}
+
+LocalRows local_rows(const MeasurementModel& model, const DatumSpace& datum,
+                     const Eigen::VectorXd& parameters, const std::vector<ObservationPlace>& places) {
+  const ParameterLayout& layout = model.layout();
+  LocalRows local = empty_local_rows(layout, datum, places.size());
+  for_each_row(model, parameters, places, [&](Eigen::Index i, const RowJacobian& row) {
+    const Eigen::VectorXd derivatives = dense_row(layout, row, places[static_cast<std::size_t>(i)].channel);
+    for (std::size_t g = 0; g < layout.groups.size(); ++g) {
+      LocalRows::Group& group = local.groups[g];
+      const Eigen::Index first = layout.groups[g].index(row.start[g], 0);
+      group.first[static_cast<std::size_t>(i)] = first;
+      group.derivatives.col(i) = derivatives.segment(first, group.derivatives.rows());
+    }
+  });
+  return local;
 }
 
 }  // namespace volcal

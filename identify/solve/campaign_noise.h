@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/noise/local_rows.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/solve/datum.h"
 #include "volcal/model/observation/measurement_model.h"
@@ -39,5 +40,8 @@ CampaignNoise sampled(const CampaignNoise& all, std::size_t limit);
 /// observations at `places`.
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
                const std::vector<ObservationPlace>& places, NoiseProblem& problem);
+/// The columns of the error functions among those of linearise(), by what each observation depends on.
+LocalRows local_rows(const MeasurementModel& model, const DatumSpace& datum,
+                     const Eigen::VectorXd& parameters, const std::vector<ObservationPlace>& places);
 
 }  // namespace volcal

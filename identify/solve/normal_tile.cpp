@@ -27,10 +27,6 @@ double* outer_product(const double* basis, int support, const double* weight, in
   return out;
 }
 
-std::ptrdiff_t round_up(std::ptrdiff_t size) {
-  return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment;
-}
-
 }  // namespace
 
 NormalTile::NormalTile(const ParameterLayout& layout, int shared_tail, Eigen::MatrixXd& matrix,
@@ -51,10 +47,10 @@ NormalTile::NormalTile(const ParameterLayout& layout, int shared_tail, Eigen::Ma
 /// Makes room for rows with `own_size` own parameters, and as many more as the stride holds; nothing may be
 /// gathered.
 void NormalTile::reserve(int own_size) {
-  stride_ = round_up(size_ + 1 + own_size);
+  stride_ = whole_lines(size_ + 1 + own_size);
   rows_.resize((stride_ + kTileAlignment) * kMaxColumns);
-  tile_.resize(stride_ * round_up(size_ + 1));
-  product_.resize(stride_ * round_up(stride_ - size_ - 1));
+  tile_.resize(stride_ * whole_lines(size_ + 1));
+  product_.resize(stride_ * whole_lines(stride_ - size_ - 1));
 }
 
 void NormalTile::add(const RowJacobian& row, int channel, double scale, double error) {

@@ -8,12 +8,17 @@
 
 namespace volcal {
 
+/// The least multiple of kTileAlignment that holds `size` numbers.
+inline std::ptrdiff_t whole_lines(std::ptrdiff_t size) {
+  return (size + kTileAlignment - 1) / kTileAlignment * kTileAlignment;
+}
+
 /// Array of doubles that starts at a cache line.
 class TileArray {
  public:
   /// Sets all to zero.
   void resize(std::ptrdiff_t size) {
-    lines_.assign(static_cast<std::size_t>(size + kTileAlignment - 1) / kTileAlignment, {});
+    lines_.assign(static_cast<std::size_t>(whole_lines(size)) / kTileAlignment, {});
   }
   double* data() { return lines_.data()->values; }
   const double* data() const { return lines_.data()->values; }

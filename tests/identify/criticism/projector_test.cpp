@@ -147,6 +147,17 @@ LocalRows random_local_rows(std::mt19937_64& random, Eigen::MatrixXd& jacobian) 
   return local;
 }
 
+/// Two sequences in place of one: before observation `half`, and from there.
+void cut_in_two(NoiseData& data, Eigen::Index half) {
+  NoiseSequence& front = data.sequences.front();
+  NoiseSequence back = front;
+  front.observation.resize(half), front.time.resize(half), front.line.resize(half);
+  back.observation.erase(back.observation.begin(), back.observation.begin() + half);
+  back.time.erase(back.time.begin(), back.time.begin() + half);
+  back.line.erase(back.line.begin(), back.line.begin() + half);
+  data.sequences.push_back(back);
+}
+
 /// Columns that are known to be local give what dense ones do, whatever the noise, the parts, the number of
 /// candidates and the columns that are not local.
 TEST(Projector, LocalColumnsChangeNothing) {
@@ -160,13 +171,15 @@ TEST(Projector, LocalColumnsChangeNothing) {
   const Eigen::Index p = problem.jacobian.cols();
   problem.prior_precision = 0.1 * Eigen::MatrixXd::Identity(p, p);
   problem.prior_mean = random_matrix(random, p, 1);
+  const Eigen::Index half = kObservations / 2;
+  cut_in_two(problem.data, half);
   problem.data.sigma[11] = std::numeric_limits<double>::infinity();
   NoiseProblem with_local = problem;
   with_local.local = local;
   const NoiseParameters white{.white = 1.1, .wander = 0.0, .tau = 60.0, .line = 0.0, .per_metre = 0.0};
   for (const NoiseParameters& noise : {kNoise, white}) {
     Projector dense(problem, problem.data, {&noise, 1}, 1);
-    Projector fast(with_local, problem.data, {&noise, 1}, 1);
+    Projector fast(with_local, problem.data, {&noise, 1}, 1, {0, half, kObservations});
     for (int accepted = 0; accepted < 2; ++accepted) {
       const Eigen::Index count = kColumnBlock + 5;
       const Eigen::MatrixXd columns = random_matrix(random, kObservations, count);
@@ -188,13 +201,7 @@ TEST(Projector, PartsAndGroupsChangeNothing) {
   std::mt19937_64 random(4);
   NoiseProblem problem = random_problem(random);
   const Eigen::Index half = kObservations / 2;
-  NoiseSequence& front = problem.data.sequences.front();
-  NoiseSequence back = front;
-  front.observation.resize(half), front.time.resize(half), front.line.resize(half);
-  back.observation.erase(back.observation.begin(), back.observation.begin() + half);
-  back.time.erase(back.time.begin(), back.time.begin() + half);
-  back.line.erase(back.line.begin(), back.line.begin() + half);
-  problem.data.sequences.push_back(back);
+  cut_in_two(problem.data, half);
   problem.data.sigma[7] = std::numeric_limits<double>::infinity();
 
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 5);

@@ -96,6 +96,16 @@ TEST(Whitener, EqualsDenseCholesky) {
   }
 }
 
+TEST(Whitener, WeighsNoMoreColumnsThanABlockHolds) {
+  std::mt19937_64 generator(5);
+  const Sample sample = random_sample(generator, Lines::Following, true, true);
+  const auto n = static_cast<Eigen::Index>(sample.data.sigma.size());
+  const Whitener whitener(sample.data, sample.noise);
+  const Eigen::MatrixXd columns = test::random_matrix(generator, n, kColumnBlock + 1);
+  Eigen::MatrixXd whitened = whitener.whiten_part(0, columns), weighed;
+  EXPECT_THROW(whitener.weigh_part(0, columns, whitened, weighed), std::exception);
+}
+
 /// The filter and its adjoint give Sigma^-1 v, of a column and of a part's columns observation by
 /// observation.
 TEST(Whitener, WeighsAsTheInverseOfSigma) {

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -106,7 +108,7 @@ std::vector<Quotation> quotations_of(const std::string& guide) {
       open = !open;
       ours = false;
     } else if (open && line.starts_with(prompt)) {
-      const std::string command = line.substr(prompt.size(), line.find(" #") - prompt.size());
+      const std::string command = line.substr(0, line.find(" #")).substr(prompt.size());
       ours = command.starts_with("volcal ");
       if (ours) all.push_back({command.substr(std::string("volcal ").size()), {}});
     } else if (ours && !line.empty()) {
@@ -126,10 +128,35 @@ TEST(Guide, FindsTheMissingEffectAsItTells) {
   EXPECT_GE(story.size(), 9U);
   for (const auto& [command, lines] : story) {
     const auto outcome = testing::run_program(command);
-    EXPECT_LE(outcome.exit_code, 1) << command << "\n" << outcome.errors;
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.errors;
     if (!lines.empty()) expect_quoted(lines, outcome.output);
   }
   fs::current_path(before);
+}
+
+/// Suites and tests that the sources define: "Suite.Test".
+std::set<std::string> tests_of_the_sources() {
+  static const std::regex kTest(R"(\nTEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(kSource / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string source = content(entry.path());
+    for (std::sregex_iterator match(source.begin(), source.end(), kTest), end; match != end; ++match)
+      names.insert((*match)[1].str() + "." + (*match)[2].str());
+  }
+  return names;
+}
+
+TEST(EvidencePage, NamesTestsAndScriptsThatExist) {
+  static const std::regex kTest("`([A-Z]\\w+\\.[A-Z]\\w+)`"), kScript("`(scripts/[a-z0-9-]+)");
+  const std::set<std::string> tests = tests_of_the_sources();
+  const std::string page = content(kSource / "docs/evidence.md");
+  std::size_t named = 0;
+  for (std::sregex_iterator match(page.begin(), page.end(), kTest), end; match != end; ++match, ++named)
+    EXPECT_TRUE(tests.contains((*match)[1].str())) << (*match)[1].str();
+  EXPECT_GT(named, 60U);
+  for (std::sregex_iterator match(page.begin(), page.end(), kScript), end; match != end; ++match)
+    EXPECT_TRUE(fs::exists(kSource / (*match)[1].str())) << (*match)[1].str();
 }
 
 TEST(Guide, ShowsTheProgramThatTheConsumerTestRuns) {

@@ -34,7 +34,6 @@ struct HiddenContext {
   const Machine& machine;
   const Environment& environment;
   const std::vector<SetupPlan>& plans;
-  std::uint64_t seed = 0;
 };
 
 /// What effects act on.

@@ -2,7 +2,6 @@
 #include <numbers>
 
 #include "volcal/sim/hidden_settings.h"
-#include "volcal/sim/random.h"
 
 namespace volcal::sim {
 namespace {
@@ -65,6 +64,10 @@ void station_swing(const HiddenSettings& settings, HiddenScene& scene) {
       scene);
 }
 
+void station_expansion(const HiddenSettings& settings, HiddenScene& scene) {
+  move_station(settings, settings.excess_temperature("channel"), scene);
+}
+
 void tool_offset(const HiddenSettings& settings, HiddenScene& scene) {
   scene.interference.tool.emplace_back(
       [error = Eigen::Vector3d(settings.amplitude() * settings.direction(Eigen::Vector3d::Zero())),
@@ -75,9 +78,9 @@ void tool_offset(const HiddenSettings& settings, HiddenScene& scene) {
 
 void tool_clamping(const HiddenSettings& settings, HiddenScene& scene) {
   scene.interference.tool.emplace_back(
-      [a = settings.amplitude(), seed = settings.seed()](const Occasion& occasion) -> Eigen::Vector3d {
-        RandomStream random(seed, "clamping of " + occasion.plan.name);
-        return a * random.normal_vector();
+      [error = Eigen::Vector3d(settings.amplitude() * settings.direction(Eigen::Vector3d::Zero())),
+       here = settings.where()](const Occasion& occasion) -> Eigen::Vector3d {
+        return here(occasion) ? error : Eigen::Vector3d::Zero();
       });
 }
 
@@ -127,6 +130,8 @@ std::vector<HiddenKind> hidden_instrument_kinds() {
       {"station-event", "instrument", "station += a direction from `time` on",
        with_place({direction, number_key("time_s", "of the event")}), "um", "", station_event},
       {"tool-offset", "instrument", "tool offset += a direction", {tool, direction}, "um", "", tool_offset},
+      {"tool-clamping", "instrument", "tool offset += a direction in the setups that the keys leave",
+       with_place({direction}), "um", "", tool_clamping},
       {"bar-length", "instrument", "length of ball-bars += a", place_keys(), "um", "", bar_length},
       {"beam-cosine", "instrument", "beam of displacements turned by a from their path", place_keys(), "mrad",
        "", beam_cosine},
@@ -140,13 +145,9 @@ std::vector<HiddenKind> hidden_instrument_kinds() {
        with_place(
            {direction, number_key("period_s", "of the swing"), number_key("phase_deg", "at time 0", false)}),
        "um", "", station_swing},
-      {"tool-clamping",
-       "unlisted",
-       "tool offset += a n, n three standard normal numbers per setup",
-       {},
-       "um",
-       "",
-       tool_clamping},
+      {"station-expansion", "unlisted", "station += a dT direction",
+       with_place({direction, text_key("channel", "temperature of its stand")}), "um", "K",
+       station_expansion},
   };
 }
 

@@ -19,7 +19,6 @@ class HiddenSettings {
       : effect_(effect), amplitude_(amplitude), context_(context) {}
 
   double amplitude() const { return amplitude_; }
-  std::uint64_t seed() const { return context_.seed; }
   bool has(const std::string& stem) const { return effect_.options.has(stem); }
 
   double number(const std::string& stem, double otherwise) const;

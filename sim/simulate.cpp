@@ -159,7 +159,7 @@ SimulatedCampaign simulate(const Study& study) {
   SimulatedCampaign simulated{{}, {}, true_machine(study), true_tool_offsets(study), all_plans(study)};
   const TruthMachine without_hidden = simulated.truth;
   const StudyReadout readout{study, simulated.tool_offsets, simulated.plans};
-  const HiddenContext context{study.machine, study.environment, simulated.plans, study.seed};
+  const HiddenContext context{study.machine, study.environment, simulated.plans};
   simulated.hidden = resolve_hidden(study.hidden, context, without_hidden, readout);
   Interference interference;
   HiddenScene scene{simulated.truth, interference};

@@ -105,6 +105,7 @@ class EffectSearch {
   bool still_moves(const std::vector<std::string>& drivers) const;
   bool leaves_more(const AddedEffect& effect) const;
   std::string why_no_name(std::size_t added) const;
+  bool lies_beyond_its_scan(std::size_t added) const;
   Eigen::Index first_column(std::size_t added) const;
   ConstancyTest constancy_of(const Family& family, const Eigen::MatrixXd& columns, Eigen::Index first,
                              const Projector& projector) const;

@@ -8,12 +8,21 @@
 #include <tuple>
 
 #include "volcal/identify/criticism/effect_search.h"
+#include "volcal/identify/criticism/shape_refinement.h"
 
 namespace volcal {
 namespace {
 
 /// Twins vary nearly alike: where one is refused the other has to stand plainly.
 const double kLog10PlainlyConstant = std::log10(0.1);
+
+constexpr double kPlainlyBeyond = 2.0;  // standard uncertainties
+
+/// "time constant"
+std::string shape_word(const EffectShape& shape) {
+  const std::size_t colon = shape.label.rfind(": ");
+  return colon == std::string::npos ? shape.label : shape.label.substr(colon + 2);
+}
 
 }  // namespace
 
@@ -60,8 +69,27 @@ std::string EffectSearch::why_no_name(std::size_t added) const {
   if (still_moves(drivers)) return fmt::format("{} still moves what it leaves", fmt::join(drivers, " or "));
   if (!family.effect) return {};
   const ConstancyTest constancy = constancy_of(family, effect.columns, first_column(added), *projector_);
-  if (constancy.log10_p > kLog10ConstancyRisk) return {};
-  return fmt::format("its amplitude varies with {} (log10 p {:.1f})", constancy.variable, constancy.log10_p);
+  if (constancy.log10_p <= kLog10ConstancyRisk) {
+    return fmt::format("its amplitude varies with {} (log10 p {:.1f})", constancy.variable,
+                       constancy.log10_p);
+  }
+  if (!lies_beyond_its_scan(added)) return {};
+  return "its " + shape_word(family.effect->shapes().front()) + " lies beyond what was looked for";
+}
+
+/// The best shape stands at an end of the scan, and the readings ask for one beyond.
+bool EffectSearch::lies_beyond_its_scan(std::size_t added) const {
+  const auto& [test, columns, rivals] = added_[added];
+  const Family& family = families_[test.family];
+  if (columns.cols() == family.amplitudes()) return false;  // no shape, or none that moves the readings
+  const std::optional<ScanEnd> end = end_of_scan(family, test.shape[0]);
+  if (!end) return false;
+  const Eigen::Index column = first_column(added) + family.amplitudes();
+  Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, projector_->parameters());
+  row(0, column) = 1.0;
+  const double change = projector_->solution()[column];
+  const double outwards = *end == ScanEnd::Lowest ? -change : change;
+  return outwards > kPlainlyBeyond * std::sqrt(projector_->prediction_variance(row)[0]);
 }
 
 /// `first`: of its columns among the projector's parameters.

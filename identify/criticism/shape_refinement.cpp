@@ -12,6 +12,7 @@ constexpr double kGolden = 0.6180339887498949;
 constexpr double kRelatedNeighbours = 0.3;  // cosine of projected columns
 constexpr double kDerivativeStep = 0.02;    // of the distance to the neighbours
 constexpr double kSmooth = 0.2;             // second difference against first
+constexpr double kAtTheEnd = 0.02;          // of the distance to the neighbour
 
 struct Bracket {
   double low = 0.0;
@@ -87,6 +88,19 @@ void refine_shape(const LinearModel& model, const Family& family, const Projecto
   const bool left_wins = at_left.lm > at_right.lm;
   const ScoreTest& best = left_wins ? at_left : at_right;
   if (best.lm > test.score.lm) update_test(test, family, one(left_wins ? left : right), best, projector);
+}
+
+std::optional<ScanEnd> end_of_scan(const Family& family, double shape) {
+  if (family.scan.size() < 2) return std::nullopt;
+  const auto [lowest, highest] =
+      std::ranges::minmax(family.scan, {}, [](const Eigen::VectorXd& each) { return each[0]; });
+  const auto is_end = [&](double end) {
+    const auto [low, high] = neighbours(family, end);
+    return std::abs(shape - end) < kAtTheEnd * (high - low);
+  };
+  if (is_end(lowest[0])) return ScanEnd::Lowest;
+  if (is_end(highest[0])) return ScanEnd::Highest;
+  return std::nullopt;
 }
 
 std::optional<Eigen::VectorXd> shape_derivative(const LinearModel& model, const Family& family,

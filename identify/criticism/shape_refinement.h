@@ -13,6 +13,10 @@ namespace volcal {
 void refine_shape(const LinearModel& model, const Family& family, const Projector& projector,
                   FamilyTest& test);
 
+enum class ScanEnd { Lowest, Highest };
+/// The end of what was looked for at which a shape stands; none within the scan, or without one.
+std::optional<ScanEnd> end_of_scan(const Family& family, double shape);
+
 /// Change of the readings per change of the shape's parameter (SI), at the estimated amplitudes: with it as a
 /// further column, the shape's uncertainty counts. None where the readings do not depend on it smoothly.
 std::optional<Eigen::VectorXd> shape_derivative(const LinearModel& model, const Family& family,

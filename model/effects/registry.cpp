@@ -25,6 +25,7 @@ namespace volcal {
   EFFECT(station_drift_effect)        \
   EFFECT(station_event_effect)        \
   EFFECT(tool_offset_effect)          \
+  EFFECT(tool_clamping_effect)        \
   EFFECT(ball_bar_length_effect)      \
   EFFECT(servo_mismatch_effect)       \
   EFFECT(lagged_temperature_effect)   \

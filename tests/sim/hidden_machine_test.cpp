@@ -36,7 +36,7 @@ class HiddenMachine : public testing::Test {
     TruthMachine machine(machine_);
     Interference interference;
     HiddenScene scene{machine, interference};
-    add_hidden(effect, amplitude, {machine_, environment_, plans_, 1}, scene);
+    add_hidden(effect, amplitude, {machine_, environment_, plans_}, scene);
     return machine;
   }
 

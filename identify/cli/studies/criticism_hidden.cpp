@@ -103,13 +103,15 @@ class Drawer {
     }
     if (is({"tool-load", "tool-offset"})) set("tool", study_.machine.tools[one_of(plans_).tool].name);
     if (is({"tool-growth", "tool-growth-channel", "tool-growth-on-off", "tool-offset", "station-drift",
-            "station-event", "station-swing"})) {
+            "station-event", "station-swing", "station-expansion", "tool-clamping"})) {
       set("direction", direction());
     }
   }
 
   void draw_place() {
-    if (is({"station-drift", "station-event", "station-swing"})) set("station", station());
+    if (is({"station-drift", "station-event", "station-swing", "station-expansion"}))
+      set("station", station());
+    if (is({"tool-clamping"})) set("setup", one_of(plans_).name);
     if (is({"length-scale"}) && random_.uniform() < 0.5) set("station", station());
     if (is({"dead-path-air"})) {
       set("setup", one_of(plans_).name);
@@ -117,7 +119,8 @@ class Drawer {
       if (random_.uniform() < 0.7) set("channel", channel());
     }
     if (is({"scale-expansion", "tool-growth-channel", "thermal-tilt", "squareness-channel", "air-index",
-            "lagged-temperature", "direction-temperature", "gradient-bending", "temperature-squared"})) {
+            "lagged-temperature", "direction-temperature", "gradient-bending", "temperature-squared",
+            "station-expansion"})) {
       set("channel", channel());
     }
     if (is({"gradient-bending"})) {
@@ -223,7 +226,8 @@ const std::vector<std::pair<std::string, std::string>>& listed() {
       {"servo-mismatch", "servo-mismatch"},
       {"lagged-temperature", "lagged-temperature"},
       {"squareness-channel", "squareness-drift"},
-      {"foundation-tilt", "foundation-tilt"}};
+      {"foundation-tilt", "foundation-tilt"},
+      {"tool-clamping", "tool-clamping"}};
   return kListed;
 }
 
@@ -242,7 +246,7 @@ std::span<const std::string> unlisted_kinds() {
   static const std::vector<std::string> kKinds = {"tool-growth-on-off",
                                                   "air-index",
                                                   "station-swing",
-                                                  "tool-clamping",
+                                                  "station-expansion",
                                                   "backlash-kink",
                                                   "triangle-wave",
                                                   "cross-wave",

@@ -109,6 +109,7 @@ class Answerer {
     if (is({"tool-growth-channel"}) && !has("tool")) set("tool-expansion", "tool", temperature());
     if (is({"tool-load"}) && !has("by")) set("tool-load", text("symbol"), tool);
     if (is({"tool-offset"})) set("tool-offset", tool, "");
+    if (is({"tool-clamping"})) set("tool-clamping", "clamping in " + text("setup"), "");
   }
 
   void name_instrument() {
@@ -157,8 +158,7 @@ class Answerer {
     }
     if (is({"length-scale", "air-index"})) drivers.insert("length");
     if (is({"servo-mismatch"})) drivers.insert({"dir_x", "dir_y"});
-    if (is({"tool-clamping"})) add_setups();
-    if (is({"dead-path-air"})) add_setups();
+    if (is({"tool-clamping", "dead-path-air"})) add_setups();
   }
 
   /// A setup shows as its station and tool.
@@ -174,7 +174,6 @@ class Answerer {
 
   void directions() {
     if (is({"length-scale", "air-index", "dead-path-air", "bar-length"})) answer_.directions.insert("beam");
-    if (is({"tool-clamping"})) answer_.directions.insert({"X", "Y", "Z"});
     if (is({"tool-growth", "tool-growth-channel", "tool-growth-on-off"}) && !has("direction")) add(2);
     if (const auto direction = hidden_.options.vector("direction")) {
       for (int k = 0; k < 3; ++k) {

@@ -194,8 +194,10 @@ class Planner {
       measure_standard(noise);
       return;
     }
-    Layout layout(study.machine, study.seed,
-                  hides("tool-load") || hides("tool-load by") || hides("tool-offset") ? 2 : 1);
+    Layout layout(
+        study.machine, study.seed,
+        hides("tool-load") || hides("tool-load by") || hides("tool-offset") || hides("tool-clamping") ? 2
+                                                                                                      : 1);
     study.measurements.push_back(layout.measurement(readings_, noise));
     plan_.layout = layout.text();
     // A foundation that tilts is told from an axis that tilts by what does not stand on it.

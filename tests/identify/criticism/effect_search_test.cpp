@@ -130,6 +130,25 @@ TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
   EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
 }
 
+/// The shortest lag that is looked for explains nearly all of what follows a temperature at once.
+TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
+  sim::HiddenEffect tilt = hidden("thermal-tilt", "EAZ", 5e-6);
+  tilt.options.set("channel", "column");
+  sim::Study campaign = hiding({tilt}, kGrid);
+  campaign.environment.channels[0].amplitude = 1.0;
+  FittedStudy study(campaign);
+  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false),
+                      {.leave_out = {"thermal-drift"}});
+  search.run();
+  std::set<std::string> reasons;
+  for (const auto& [family, reason] : search.given_up()) {
+    if (search.families()[family].name().kind == "lagged-temperature") reasons.insert(reason);
+  }
+  EXPECT_THAT(reasons, ::testing::Contains("its time constant lies beyond what was looked for"));
+  for (const AddedEffect& added : search.added())
+    EXPECT_NE(search.families()[added.test.family].name().kind, "lagged-temperature");
+}
+
 /// On one circle a wander of a few seconds follows a servo mismatch as well as its own shape does.
 TEST(EffectSearch, FindsWhatTheNoiseHasTakenUp) {
   sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};

@@ -84,6 +84,19 @@ TEST(ShapeRefinement, DerivativeIsThatOfTheSine) {
   EXPECT_GT(columns.col(0).norm(), 0.0);
 }
 
+TEST(ShapeRefinement, KnowsTheEndsOfAScan) {
+  const Family heating = std::move(families_of(model(), "screw-heating", "EXX").at(0));
+  const auto& scan = heating.scan;
+  EXPECT_EQ(end_of_scan(heating, scan.front()[0]), ScanEnd::Lowest);
+  EXPECT_EQ(end_of_scan(heating, scan.back()[0]), ScanEnd::Highest);
+  EXPECT_EQ(end_of_scan(heating, scan.back()[0] - 0.01 * (scan.back() - scan[scan.size() - 2])[0]),
+            ScanEnd::Highest);
+  EXPECT_EQ(end_of_scan(heating, scan[1][0]), std::nullopt);
+  EXPECT_EQ(end_of_scan(heating, between(heating, 0.5)), std::nullopt);
+  const Family reversal = std::move(families_of(model(), "reversal", "EXX").at(0));
+  EXPECT_EQ(end_of_scan(reversal, 0.0), std::nullopt);
+}
+
 /// A step in time goes from reading to reading.
 TEST(ShapeRefinement, AStepHasNoDerivative) {
   const std::vector<Family> event = families_of(model(), "station-event", "station P1");

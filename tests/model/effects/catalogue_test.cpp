@@ -1,9 +1,11 @@
 // Effects of the catalogue against hand calculations.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "tests/support/effect_campaign.h"
 #include "volcal/model/description/errors.h"
@@ -181,6 +183,24 @@ TEST_F(Catalogue, AnEccentricEncoderWavesOncePerTurn) {
   EXPECT_NEAR(change(spec("elevation"), 3e-6, "K1", 7, 2), 3e-6 * std::cos(0.14), 1e-15);
   EXPECT_EQ(change(spec("elevation"), 3e-6, "K1", 7, 1), 0.0);
   EXPECT_EQ(drivers(spec("azimuth"), "S1").norm(), 0.0);
+}
+
+/// The tools of the two setups at P1 are one; that of S2 is carried in no other, and B1 has a centre of its
+/// own.
+TEST_F(Catalogue, AToolIsClampedAnewForASetup) {
+  const EffectSpec spec = effect_spec("tool-clamping", {{"setup", std::string("S3")}});
+  EXPECT_TRUE((drivers(spec, "S3").array() == 1.0).all());
+  EXPECT_EQ(drivers(spec, "S1").norm(), 0.0);
+  const auto candidates = [&] {
+    std::vector<std::string> setups;
+    for (const EffectSpec& each : find_effect("tool-clamping")->candidates(campaign_))
+      setups.push_back(*each.options.text("setup"));
+    return setups;
+  };
+  EXPECT_THAT(candidates(), ::testing::ElementsAre("S1", "S3"));
+  campaign_.setups = {campaign_.setups[index("S1")], campaign_.setups[index("S2")],
+                      campaign_.setups[index("S3")]};
+  EXPECT_THAT(candidates(), ::testing::ElementsAre("S3"));
 }
 
 TEST_F(Catalogue, ARunIsShiftedAgainstTheOthers) {

@@ -1,0 +1,66 @@
+// A tool, or the reflector in its place, that is clamped anew for a setup and does not sit as it did before.
+// A tool that always sits as it does in one setup needs no such effect: its offset takes it.
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+std::unique_ptr<FormulaEffect> make_tool_clamping(const EffectTable& table) {
+  const std::string setup = table.text("setup", "add setup = \"NAME\"");
+  const std::string label = "clamping in " + setup;
+  return std::make_unique<FormulaEffect>(
+      EffectName{"tool-clamping", label, "setup", "step"},
+      vector_amplitudes(table, label, TargetKind::ToolOffset, "um"),
+      [setup](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(view.rows()), 3,
+                                         view.setup.name == setup ? 1.0 : 0.0);
+      },
+      [setup](const Campaign& campaign, const SourcePlace& place) { check_setup(campaign, setup, place); });
+}
+
+/// Another setup reads from the same station. Elsewhere what the setup has for itself, a station, a centre, a
+/// zero, moves with the tool.
+bool shares_its_station(const Campaign& campaign, const Setup& setup) {
+  const std::string station = station_of(setup);
+  return !station.empty() && std::ranges::any_of(campaign.setups, [&](const Setup& other) {
+    return &other != &setup && station_of(other) == station;
+  });
+}
+
+/// For tools that are carried in several setups; in two, for the later, since either differs from the other.
+std::vector<EffectSpec> tool_clampings(const Campaign& campaign) {
+  std::map<std::size_t, std::vector<const Setup*>> setups_of_tool;
+  for (const Setup& setup : campaign.setups) setups_of_tool[setup.tool].push_back(&setup);
+  std::vector<EffectSpec> specs;
+  for (auto& [tool, setups] : setups_of_tool) {
+    if (setups.size() < 3) setups.erase(setups.begin());
+    for (const Setup* setup : setups) {
+      if (shares_its_station(campaign, *setup))
+        specs.push_back(effect_spec("tool-clamping", {{"setup", setup->name}}));
+    }
+  }
+  return specs;
+}
+
+}  // namespace
+
+const EffectKind& tool_clamping_effect() {
+  static const FormulaKind kind(
+      {.kind = "tool-clamping",
+       .summary = "the tool, or its reflector, was clamped anew for a setup and sits otherwise than in the "
+                  "other setups that carry it",
+       .source = "ISO/TR 16907:2015, 7.3 (functional point)",
+       .keys = joined({{text_key("setup", "name of the setup")},
+                       vector_amplitude_keys("um",
+                                             "offset in this setup less that in the others, tool "
+                                             "coordinates")})},
+      make_tool_clamping, tool_clampings);
+  return kind;
+}
+
+}  // namespace volcal

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTravelMargin = 0.05;  // share of the travel that commanded positions may lie outside
 constexpr double kUnitSlip = 20.0;      // a position this many times beyond the travel may be in another unit
+constexpr double kLatestTime_s = 1e10;  // of a clock that begins with the campaign or in 1970
 constexpr double kColdest_degC = -60.0;
 constexpr double kHottest_degC = 300.0;
 constexpr double kShopColdest_degC = -20.0;  // some value of a channel lies between these two
@@ -298,6 +299,9 @@ class ReadingsReader {
     } else if (column == "run") {
       readings_.run = integers(column, values);
     } else if (column == "time_s") {
+      check_range(column, values, -kLatestTime_s, kLatestTime_s,
+                  "seconds of the campaign's clock, or since 1970, are expected; if the file is in "
+                  "milliseconds add scale = { time_s = 0.001 } to the setup");
       readings_.time = std::move(values);
     } else if (column == "feed_mm_min") {
       check_range(column, values, 0.0, 1e6, "a feed is not negative; 0 to 1000000 mm/min is believed");

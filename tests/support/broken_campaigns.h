@@ -273,6 +273,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
       {"DirectionOfTwo", "S2.csv", Replace, "100.0,0,23.161,250.540,-215.870,1,1,-1,",
        "100.0,0,23.161,250.540,-215.870,1,2,-1,", "S2.csv", 2, "dir_y = 2 is no direction",
        "use -1, 1, or 0"},
+      {"TimeInMilliseconds", "S2.csv", Replace, "100.0,0,23.161", "1763920000000,0,23.161", "S2.csv", 2,
+       "time_s = 1.76392e+12", "scale = { time_s = 0.001 }"},
       {"LineNotAnInteger", "S2.csv", Replace, "100.0,0,23.161", "100.0,0.5,23.161", "S2.csv", 2,
        "line = 0.5 is no line number", "use integers"},
       {"SigmaNegative", "level.csv", Replace, "200,200,-150,-4.08,1.5", "200,200,-150,-4.08,-1.5",

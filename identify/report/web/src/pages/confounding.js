@@ -73,7 +73,22 @@ const limitText = (limit) => {
   return `${mdb}, ${mib}${limit.rival === '' ? '' : ` (nearest: ${limit.rival})`}`;
 };
 
-const limitItems = (effect) => effect.limits.slice(0, 3).map((limit) => el('li', {}, [el('strong', {}, effect.limits.length > 1 ? limit.label : effect.label), ': ', limitText(limit)]));
+/** Components that are all found and never told from one rival, in one line. */
+function commonLimit(limits) {
+  const [{ unit, rival }] = limits;
+  const common = limits.length > 1 && limits.every((limit) => limit.mdb !== null && limit.mib === null && limit.rival === rival && limit.unit === unit);
+  if (!common) return null;
+  const mdbs = `found from ${limits.map((limit) => significant(limit.mdb, 2)).join(', ')} ${unit}`;
+  return rival === '' ? mdbs : `${mdbs}, never told from ${rival}`;
+}
+
+function limitItems(effect) {
+  const limits = effect.limits.slice(0, 3);
+  const common = limits.length > 0 ? commonLimit(limits) : null;
+  return common === null ? separateItems(effect, limits) : [el('li', {}, [el('strong', {}, effect.label), ': ', common])];
+}
+
+const separateItems = (effect, limits) => limits.map((limit) => el('li', {}, [el('strong', {}, effect.limits.length > 1 ? limit.label : effect.label), ': ', limitText(limit)]));
 
 function apartText(cosine, same) {
   if (cosine === null) return 'Nothing of one of the two is visible in these readings.';

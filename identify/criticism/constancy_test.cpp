@@ -30,6 +30,14 @@ std::set<std::string> own_variables(const Family& family) {
   return own;
 }
 
+/// The machine does not know from which station it is read.
+bool may_vary_with(const Family& family, const ScanVariable& variable) {
+  if (!variable.name.starts_with("station ")) return true;
+  return std::ranges::any_of(family.effect->amplitudes(), [](const EffectAmplitude& amplitude) {
+    return amplitude.target.kind == TargetKind::Station || amplitude.target.kind == TargetKind::Reading;
+  });
+}
+
 /// Of one axis along the readings of a setup, m; 0 until it first turns. Where it went back and comes from
 /// the same side again it has turned as well.
 std::vector<double> since_turning(const Setup& setup, std::size_t axis) {
@@ -84,13 +92,14 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector) {
   const std::set<std::string> own = own_variables(family);
-  const auto count = static_cast<double>(
-      variables.size() - static_cast<std::size_t>(std::ranges::count_if(variables, is_since_turning)));
+  const auto count = static_cast<double>(std::ranges::count_if(variables, [&](const ScanVariable& variable) {
+    return !is_since_turning(variable) && may_vary_with(family, variable);
+  }));
   const double own_count = std::max(1.0, static_cast<double>(own.size()));
   ConstancyTest least;
   for (const ScanVariable& variable : variables) {
     const bool is_own = own.contains(variable.name);
-    if (is_since_turning(variable) && !is_own) continue;
+    if (!may_vary_with(family, variable) || (is_since_turning(variable) && !is_own)) continue;
     const double tried = kTests * (is_own ? own_count : count);
     const double log10_p = std::min(0.0, log10_p_of(variable, moved, projector) + std::log10(tried));
     if (log10_p < least.log10_p) least = {variable.name, log10_p};

@@ -25,8 +25,8 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model);
 
 /// The least probable one, of the effect's own variables (its drivers, the position of the axis that it
 /// moves, the travel since turning where a direction drives it) and of all others, each group for itself;
-/// log10_p counts both groups. `projector` holds the effect's columns. `moved`: readings' change by the
-/// effect at its estimate.
+/// what a machine does varies with no station. log10_p counts both groups. `projector` holds the effect's
+/// columns. `moved`: readings' change by the effect at its estimate.
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector);
 

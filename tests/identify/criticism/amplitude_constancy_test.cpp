@@ -70,6 +70,18 @@ TEST_F(Constancy, SeesWhatElseAnAmplitudeDependsOn) {
   EXPECT_LT(varies.log10_p, -4.0);
 }
 
+/// A machine does the same whoever reads it: what plainly differs from station to station is no variation of
+/// its amplitude.
+TEST_F(Constancy, OfTheMachineVariesWithNoStation) {
+  std::mt19937_64 random(6);
+  const Eigen::VectorXd here = moved().cwiseProduct(value_of_variable("station P1"));
+  const Eigen::VectorXd rest = white_residual(model_of_nothing_hidden(), random) + 1.5e-6 * here;
+  Projector projector = white_projector(model_of_nothing_hidden(), rest);
+  projector.accept(moved());
+  EXPECT_LT(score_test(projector.project(here), 0, 1).log10_p, -4.0);
+  EXPECT_FALSE(test(rest).variable.starts_with("station "));
+}
+
 /// A reversal that is taken up in the first readings after the axis has turned round.
 TEST_F(Constancy, SeesAReversalThatIsTakenUpOnTheWay) {
   std::mt19937_64 random(6);

@@ -137,8 +137,9 @@ TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
   sim::Study campaign = hiding({tilt}, kGrid);
   campaign.environment.channels[0].amplitude = 1.0;
   FittedStudy study(campaign);
-  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false),
-                      {.leave_out = {"thermal-drift"}});
+  SearchOptions options;
+  options.leave_out = {"thermal-drift"};
+  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false), options);
   search.run();
   std::set<std::string> reasons;
   for (const auto& [family, reason] : search.given_up()) {

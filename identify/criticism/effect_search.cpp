@@ -51,8 +51,11 @@ bool near(const FamilyTest& own, const FamilyTest& other) {
 
 }  // namespace
 
-EffectSearch::EffectSearch(LinearModel& model, const std::vector<bool>& heldout, SearchOptions options)
-    : model_(model), heldout_(heldout), options_(std::move(options)), families_(volcal::families(model)) {
+EffectSearch::EffectSearch(LinearModel& model, std::vector<bool> heldout, SearchOptions options)
+    : model_(model),
+      heldout_(std::move(heldout)),
+      options_(std::move(options)),
+      families_(volcal::families(model)) {
   std::erase_if(families_, [this](const Family& family) {
     return std::ranges::find(options_.leave_out, family.name().kind) != options_.leave_out.end();
   });

@@ -41,7 +41,7 @@ class EffectSearch {
  public:
   /// `heldout`: observations that judge and never choose. Readings that the fit removed are taken up into
   /// `model` when the model with the added effects explains them.
-  EffectSearch(LinearModel& model, const std::vector<bool>& heldout, SearchOptions options);
+  EffectSearch(LinearModel& model, std::vector<bool> heldout, SearchOptions options);
 
   void run();
 
@@ -126,7 +126,7 @@ class EffectSearch {
   double least_family_wise_of_scans() const;
 
   LinearModel& model_;
-  const std::vector<bool>& heldout_;
+  std::vector<bool> heldout_;
   SearchOptions options_;
   std::vector<Family> families_;
   std::vector<ScanVariable> variables_;

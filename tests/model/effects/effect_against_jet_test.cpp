@@ -128,7 +128,7 @@ TEST_P(EffectAgainstJet, DerivativesToAmplitudesEqualAutomaticOnes) {
                         1e-10 * (1.0 + std::abs(automatic)))
                 << bound.effect->amplitudes()[static_cast<std::size_t>(k)].label << " in "
                 << campaign_.setups[setup].name;
-            acting += automatic != 0.0;
+            acting += automatic != 0.0 ? 1 : 0;
           }
         }
       }

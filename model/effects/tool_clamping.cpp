@@ -1,5 +1,4 @@
 // A tool, or the reflector in its place, that is clamped anew for a setup and does not sit as it did before.
-// A tool that always sits as it does in one setup needs no such effect: its offset takes it.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -32,17 +31,14 @@ bool shares_its_station(const Campaign& campaign, const Setup& setup) {
   });
 }
 
-/// For tools that are carried in several setups; in two, for the later, since either differs from the other.
+/// Of tools that several setups carry: what is wrong with a tool in its only setup is its offset.
 std::vector<EffectSpec> tool_clampings(const Campaign& campaign) {
-  std::map<std::size_t, std::vector<const Setup*>> setups_of_tool;
-  for (const Setup& setup : campaign.setups) setups_of_tool[setup.tool].push_back(&setup);
+  std::map<std::size_t, int> setups_of_tool;
+  for (const Setup& setup : campaign.setups) ++setups_of_tool[setup.tool];
   std::vector<EffectSpec> specs;
-  for (auto& [tool, setups] : setups_of_tool) {
-    if (setups.size() < 3) setups.erase(setups.begin());
-    for (const Setup* setup : setups) {
-      if (shares_its_station(campaign, *setup))
-        specs.push_back(effect_spec("tool-clamping", {{"setup", setup->name}}));
-    }
+  for (const Setup& setup : campaign.setups) {
+    if (setups_of_tool[setup.tool] > 1 && shares_its_station(campaign, setup))
+      specs.push_back(effect_spec("tool-clamping", {{"setup", setup.name}}));
   }
   return specs;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -182,7 +183,10 @@ class Planner {
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift + distance) % count)]);
   }
 
-  bool hides(const char* kind) const { return std::ranges::find(kinds_, kind) != kinds_.end(); }
+  bool hides(std::initializer_list<const char*> any_of) const {
+    return std::ranges::any_of(
+        any_of, [&](const char* kind) { return std::ranges::find(kinds_, kind) != kinds_.end(); });
+  }
 
   void measure() {
     sim::Study& study = plan_.study;
@@ -194,17 +198,15 @@ class Planner {
       measure_standard(noise);
       return;
     }
-    Layout layout(
-        study.machine, study.seed,
-        hides("tool-load") || hides("tool-load by") || hides("tool-offset") || hides("tool-clamping") ? 2
-                                                                                                      : 1);
+    const bool tells_tools = hides({"tool-load", "tool-load by", "tool-offset", "tool-clamping"});
+    Layout layout(study.machine, study.seed, tells_tools ? 2 : 1);
     study.measurements.push_back(layout.measurement(readings_, noise));
     plan_.layout = layout.text();
     // A foundation that tilts is told from an axis that tilts by what does not stand on it.
-    if (!hides("bar-length") && !hides("servo-mismatch") && !hides("foundation-tilt")) return;
+    if (!hides({"bar-length", "servo-mismatch", "foundation-tilt"})) return;
     sim::BallBarCircles circles;
     circles.planes = {"XY"};
-    if (hides("bar-length")) circles.length_sigma = 0.0;
+    if (hides({"bar-length"})) circles.length_sigma = 0.0;
     circles.records_feed = true;
     sim::Measurement& bar = study.measurements.emplace_back();
     bar.settings = circles;

@@ -198,9 +198,10 @@ TEST_F(Catalogue, AToolIsClampedAnewForASetup) {
     return setups;
   };
   EXPECT_THAT(candidates(), ::testing::ElementsAre("S1", "S3"));
-  campaign_.setups = {campaign_.setups[index("S1")], campaign_.setups[index("S2")],
-                      campaign_.setups[index("S3")]};
-  EXPECT_THAT(candidates(), ::testing::ElementsAre("S3"));
+  campaign_.setups[index("S2")].tool = campaign_.setups[index("S1")].tool;
+  EXPECT_THAT(candidates(), ::testing::ElementsAre("S1", "S3"));  // nobody else reads from P2
+  campaign_.setups[index("S2")].options.set("station", std::string("P1"));
+  EXPECT_THAT(candidates(), ::testing::ElementsAre("S1", "S2", "S3"));
 }
 
 TEST_F(Catalogue, ARunIsShiftedAgainstTheOthers) {

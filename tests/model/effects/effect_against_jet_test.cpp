@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/jet_rotation.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -17,6 +18,7 @@ namespace volcal {
 namespace {
 
 using testing_support::effect_campaign;
+using testing_support::turn_of;
 using JetVector = Vector3<InstrumentJet>;
 
 /// What an effect with small amplitudes does to one reading: its k-th amplitude is derivative k, at 0.
@@ -60,15 +62,6 @@ struct Disturbed {
     return own;
   }
 };
-
-/// The skew part of R R_0^T, R_0 being R without derivatives.
-JetVector turn_of(const Eigen::Matrix<InstrumentJet, 3, 3>& rotation) {
-  Eigen::Matrix<InstrumentJet, 3, 3> nominal;
-  for (int i = 0; i < 9; ++i) nominal(i) = InstrumentJet(rotation(i).a);
-  const Eigen::Matrix<InstrumentJet, 3, 3> turned = rotation * nominal.transpose();
-  return 0.5 *
-         JetVector(turned(2, 1) - turned(1, 2), turned(0, 2) - turned(2, 0), turned(1, 0) - turned(0, 1));
-}
 
 class EffectAgainstJet : public ::testing::TestWithParam<const char*> {
  protected:

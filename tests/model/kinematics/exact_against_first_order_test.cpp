@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/support/jet_rotation.h"
 #include "tests/support/machines.h"
 #include "volcal/model/kinematics/chain.h"
 #include "volcal/sim/truth_machine.h"
@@ -143,20 +144,6 @@ Vector3d derivative(const Eigen::Matrix<ErrorJet, 3, 1>& vector, int k) {
   return {vector[0].v[k], vector[1].v[k], vector[2].v[k]};
 }
 
-/// Rotation vector per unit of error k: the skew part of dR R^T.
-Vector3d rotation_derivative(const Eigen::Matrix<ErrorJet, 3, 3>& rotation, int k) {
-  Matrix3d value;
-  Matrix3d slope;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      value(row, column) = rotation(row, column).a;
-      slope(row, column) = rotation(row, column).v[k];
-    }
-  }
-  const Matrix3d skew = slope * value.transpose();
-  return {skew(2, 1), skew(0, 2), skew(1, 0)};
-}
-
 TEST(ExactAgainstFirstOrder, LeversAreTheDerivativesOfTheExactPose) {
   std::mt19937_64 random(9);
   double largest = 0.0;
@@ -167,6 +154,7 @@ TEST(ExactAgainstFirstOrder, LeversAreTheDerivativesOfTheExactPose) {
     chain.levers(pose.position, pose.tool, levers.data());
     const auto exact =
         chain.exact_pose<ErrorJet>(pose.position, pose.tool.cast<ErrorJet>(), zero_errors_with_derivatives());
+    const Eigen::Matrix<ErrorJet, 3, 1> turn = testing_support::turn_of(exact.rotation_wt);
     for (const JointLever& lever : levers) {
       for (const Component component : kAllComponents) {
         const int motion = derivative_index(false, lever.axis, component);
@@ -175,12 +163,8 @@ TEST(ExactAgainstFirstOrder, LeversAreTheDerivativesOfTheExactPose) {
              {(derivative(exact.point_w, motion) - KinematicChain::motion_lever_w(lever, component)).norm(),
               (derivative(exact.point_w, location) - KinematicChain::location_lever_w(lever, component))
                   .norm(),
-              (rotation_derivative(exact.rotation_wt, motion) -
-               KinematicChain::motion_rotation_w(lever, component))
-                  .norm(),
-              (rotation_derivative(exact.rotation_wt, location) -
-               KinematicChain::location_rotation_w(lever, component))
-                  .norm()}) {
+              (derivative(turn, motion) - KinematicChain::motion_rotation_w(lever, component)).norm(),
+              (derivative(turn, location) - KinematicChain::location_rotation_w(lever, component)).norm()}) {
           largest = std::max(largest, error);
         }
       }

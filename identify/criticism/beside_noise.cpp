@@ -29,6 +29,21 @@ std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, 
   return alternatives;
 }
 
+namespace {
+
+/// Those that a group has, under either estimate.
+int noise_parameters(const NoiseEstimate& one, const NoiseEstimate& other) {
+  int count = 0;
+  for (std::size_t group = 0; group < one.instruments.size(); ++group) {
+    const InstrumentNoise &a = one.instruments[group], &b = other.instruments[group];
+    count += 1 + (a.wander.on || b.wander.on ? 2 : 0) + (a.line.on || b.line.on ? 1 : 0) +
+             (a.per_metre.on || b.per_metre.on ? 1 : 0);
+  }
+  return count;
+}
+
+}  // namespace
+
 void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
                        const NoiseEstimate& estimate, int threads, FamilyTest& test) {
   const Eigen::VectorXd moved = family_columns(model, family, test.shape) * test.score.amplitude;
@@ -41,7 +56,8 @@ void test_beside_noise(const LinearModel& model, const Family& family, NoiseProb
   const NoiseEstimate alone = estimate_noise(problem, options, &beside);
   const double without = std::max(estimate.log_likelihood, alone.log_likelihood);
   test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - without));
-  test.score.log10_p = log10_chi_squared_exceedance(test.score.lm, test.score.dof);
+  test.score.log10_p =
+      log10_chi_squared_exceedance(test.score.lm, test.score.dof + noise_parameters(alone, beside));
   test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));
 }
 

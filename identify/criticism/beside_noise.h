@@ -5,8 +5,10 @@
 /// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
 /// columns of the model are the same in both and G a is data, so that they can be compared
 /// (restricted_likelihood.h); l(y) is the largest found, from the noise beside the effect as from its own,
-/// since it has several maxima. By Wilks (1938, Ann. Math. Statist. 9, 60) chi-squared with the amplitudes as
-/// degrees of freedom.
+/// since it has several maxima. It is at most 2 [max l(y - G a) - l(y at the true noise)], which by Wilks
+/// (1938, Ann. Math. Statist. 9, 60) is chi-squared with the amplitudes and the noise parameters as degrees
+/// of freedom. These are what it is judged by: an effect that is picked because it lets the noise become
+/// another has those to play with too.
 
 #include <vector>
 

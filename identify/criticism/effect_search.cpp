@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/beside_noise.h"
+#include "volcal/identify/criticism/noise_freedom.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/stats/chi_squared.h"
@@ -164,6 +166,7 @@ NoiseProblem EffectSearch::problem_with_added() const {
 
 void EffectSearch::test() {
   tests_ = refined_tests(*projector_);
+  find_outstanding();
   generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
   log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
 }
@@ -195,10 +198,39 @@ void EffectSearch::climb() {
   }
 }
 
-bool EffectSearch::something_stands_out() const {
-  const FamilyTest* best = leading(tests_, std::nullopt);
-  return (best != nullptr && family_wise_log10_p(*best) <= kLog10FamilyRisk) || !scans_are_silent();
+/// Above the noise, also where the noise that the effect would stand on is hardly known.
+void EffectSearch::find_outstanding() {
+  outstanding_.clear();
+  std::vector<std::size_t> above;
+  for (std::size_t i = 0; i < tests_.size(); ++i) {
+    if (tests_[i].score.dof > 0 && family_wise_log10_p(tests_[i]) <= kLog10FamilyRisk) above.push_back(i);
+  }
+  if (above.empty()) return;
+  std::ranges::sort(above, std::greater{}, [this](std::size_t i) { return tests_[i].gain; });
+  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), static_cast<Eigen::Index>(above.size()));
+  for (std::size_t k = 0; k < above.size(); ++k) {
+    const FamilyTest& test = tests_[above[k]];
+    moved.col(static_cast<Eigen::Index>(k)) =
+        family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
+  }
+  const std::vector<double> freedom = noise_freedom(
+      moved, *projector_, noise_with_uncertainty(),
+      [this](const auto& noise) { return projector_of(without(model_.problem().data, heldout_), noise); });
+  for (std::size_t k = 0; k < above.size(); ++k) {
+    const FamilyTest& test = tests_[above[k]];
+    const double p = exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) * test.multiplicity;
+    if (std::log10(p) + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(above[k]);
+  }
 }
+
+/// The best of those that are not in the model; null: none.
+const FamilyTest* EffectSearch::outstanding() const {
+  const auto found =
+      std::ranges::find_if(outstanding_, [this](std::size_t i) { return may_be_added(tests_[i]); });
+  return found == outstanding_.end() ? nullptr : &tests_[*found];
+}
+
+bool EffectSearch::something_stands_out() const { return outstanding() != nullptr || !scans_are_silent(); }
 
 double EffectSearch::least_family_wise_of_scans() const {
   double least = 0.0;
@@ -210,10 +242,8 @@ bool EffectSearch::scans_are_silent() const { return least_family_wise_of_scans(
 
 /// False when nothing stands out, or something that is in no catalogue stands out more.
 bool EffectSearch::add_leading() {
-  const FamilyTest* best = leading(tests_, std::nullopt);
-  if (best == nullptr) return false;
-  if (family_wise_log10_p(*best) > kLog10FamilyRisk) return false;
-  if (generic_does_better(*best)) return false;
+  const FamilyTest* best = outstanding();
+  if (best == nullptr || generic_does_better(*best)) return false;
   add(FamilyTest(*best));
   return true;
 }
@@ -227,8 +257,8 @@ bool EffectSearch::add_several() {
   for (const FamilyTest& test : kept) start.insert(test.family);
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kMostTogether && static_cast<int>(added_.size()) < options_.most; ++names) {
-    const FamilyTest* best = leading(tests_, std::nullopt);
-    if (best == nullptr || family_wise_log10_p(*best) > kLog10FamilyRisk) break;
+    const FamilyTest* best = outstanding();
+    if (best == nullptr) break;
     add(FamilyTest(*best));
     test();
     if (names > 1 && scans_are_silent() && explain_together(kept.size())) return true;
@@ -422,8 +452,7 @@ bool EffectSearch::is_added(std::size_t family) const {
 }
 
 /// Best of those that are not in the model, `but` one that is.
-const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests,
-                                        std::optional<std::size_t> but) const {
+const FamilyTest* EffectSearch::leading(const std::vector<FamilyTest>& tests, std::size_t but) const {
   const FamilyTest* best = nullptr;
   for (const FamilyTest& test : tests) {
     if (!may_be_added(test) && (test.family != but || test.score.dof == 0)) continue;

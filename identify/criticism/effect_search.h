@@ -1,10 +1,11 @@
 #pragma once
-/// The search for missing effects: the leading one of the catalogue is added while it stands out of the noise
-/// and no generic test does better; then every added one must stand against all others again. Several powers
-/// of one driver on one target are no name, nor is what explains less than it leaves or what varies
-/// (constancy_test.h): such are left out again, or a rival that stands takes their place. Where nothing
-/// stands out, effects are looked for that a wander has taken up (beside_noise.h). A search for one step
-/// climbs as well, so that what it names stands beside all the rest, and then keeps the first.
+/// The search for missing effects: the leading one of the catalogue is added while it stands out of the
+/// noise, as well as that is known (noise_freedom.h), and no generic test does better; then every added one
+/// must stand against all others again. Several powers of one driver on one target are no name, nor is what
+/// explains less than it leaves or what varies (constancy_test.h): such are left out again, or a rival that
+/// stands takes their place. Where nothing stands out, effects are looked for that a wander has taken up
+/// (beside_noise.h). A search for one step climbs as well, so that what it names stands beside all the rest,
+/// and then keeps the first.
 
 #include <functional>
 #include <map>
@@ -89,6 +90,8 @@ class EffectSearch {
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
   void climb();
+  void find_outstanding();
+  const FamilyTest* outstanding() const;
   bool something_stands_out() const;
   bool add_leading();
   bool add_several();
@@ -119,7 +122,7 @@ class EffectSearch {
   void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);
   bool may_be_added(const FamilyTest& test) const;
-  const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::optional<std::size_t> but) const;
+  const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
   bool generic_does_better(const FamilyTest& best) const;
   bool does_better(const GenericTest& scan, double gain, double log10_p, double share) const;
   bool scans_are_silent() const;
@@ -136,6 +139,7 @@ class EffectSearch {
   std::vector<NoiseParameters> noise_;
   std::unique_ptr<Projector> projector_;
   std::vector<FamilyTest> tests_;
+  std::vector<std::size_t> outstanding_;  ///< of `tests_`: above the noise, best first
   std::vector<FamilyTest> first_tests_;
   std::vector<GenericTest> generic_;
   std::vector<GenericTest> first_generic_;

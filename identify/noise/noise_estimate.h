@@ -25,7 +25,7 @@ struct NoiseOptions {
   /// that is free without it (Davies 1987, Biometrika 74, 33) and needs more.
   double threshold = 4.0;
   double wander_threshold = 7.0;
-  bool uncertainty = true;  ///< find log_uncertainty; costs as much as a search that starts near its end
+  bool uncertainty = true;  ///< of the parameters; costs as much as a search that starts near its end
   int threads = 1;
 };
 
@@ -53,6 +53,8 @@ struct InstrumentNoise {
   /// Standard uncertainties of the logarithms from the second derivatives of l, 3 where it says nothing; NaN:
   /// off.
   NoiseParameters log_uncertainty;
+  /// Covariance of the same logarithms, in the order white, wander, tau, line, per_metre; 0 where off.
+  Eigen::Matrix<double, 5, 5> log_covariance = Eigen::Matrix<double, 5, 5>::Zero();
   TermEvidence wander;
   TermEvidence line;
   TermEvidence per_metre;

@@ -415,7 +415,7 @@ void NoiseSearch::run(InstrumentNoise& result, const InstrumentNoise& previous) 
   for (std::size_t term = 0; term < kTerms; ++term) evidence[term]->on = found->active[term];
   result.parameters = parameters(found->at, found->active);
   result.start = {found->at, found->slope, found->active, total_};
-  if (options_.uncertainty) find_uncertainty(*found, result.log_uncertainty);
+  if (options_.uncertainty) find_uncertainty(*found, result);
 }
 
 /// The logarithm of a parameter moved by `shift`.
@@ -428,8 +428,9 @@ Eigen::VectorXd NoiseSearch::moved(const Eigen::VectorXd& at, Eigen::Index param
 }
 
 /// Second differences of -2 l over about half a standard uncertainty.
-void NoiseSearch::find_uncertainty(const Point& point, NoiseParameters& log_uncertainty) {
+void NoiseSearch::find_uncertainty(const Point& point, InstrumentNoise& result) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  NoiseParameters& log_uncertainty = result.log_uncertainty;
   log_uncertainty = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   const std::array<double*, kParameters> targets{&log_uncertainty.white, &log_uncertainty.wander,
                                                  &log_uncertainty.tau, &log_uncertainty.line,
@@ -470,10 +471,12 @@ void NoiseSearch::find_uncertainty(const Point& point, NoiseParameters& log_unce
   }
   const SymmetricEigen eigen = eigen_decomposition(0.5 * hessian);
   const Eigen::ArrayXd information = eigen.values.array().max(0.0) + 1.0 / (kSpread * kSpread);
-  const Eigen::VectorXd inverse = information.inverse().matrix();
-  const Eigen::VectorXd variance = eigen.vectors.cwiseAbs2() * inverse;
+  const Eigen::MatrixXd covariance =
+      eigen.vectors * information.inverse().matrix().asDiagonal() * eigen.vectors.transpose();
+  result.log_covariance.setZero();
+  result.log_covariance(free, free) = covariance;
   for (std::size_t a = 0; a < count; ++a)
-    *targets[static_cast<std::size_t>(free[a])] = std::sqrt(variance(static_cast<Eigen::Index>(a)));
+    *targets[static_cast<std::size_t>(free[a])] = std::sqrt(result.log_covariance(free[a], free[a]));
 }
 
 }  // namespace volcal

@@ -54,7 +54,7 @@ class NoiseSearch {
   Point search(InstrumentNoise& result);
   std::optional<Point> resume(InstrumentNoise& result, const InstrumentNoise& previous);
   Eigen::VectorXd moved(const Eigen::VectorXd& at, Eigen::Index parameter, double shift) const;
-  void find_uncertainty(const Point& point, NoiseParameters& log_uncertainty);
+  void find_uncertainty(const Point& point, InstrumentNoise& result);
 
   RestrictedLikelihood& likelihood_;
   std::size_t group_;

@@ -9,7 +9,8 @@
 namespace volcal {
 namespace {
 
-constexpr double kFarOut = 200.0;  // exponent below which the probability itself may underflow
+constexpr double kFarOut = 200.0;     // exponent below which the probability itself may underflow
+constexpr double kManyDegrees = 1e6;  // of freedom: an estimated variance is as good as a known one
 
 /// log of Gamma(a, x) / Gamma(a) for x > a + 1 by Legendre's continued fraction (Abramowitz and Stegun
 /// 6.5.31), Lentz's algorithm.
@@ -69,6 +70,12 @@ double log10_chi_squared_exceedance(double chi2, double dof) {
   if (!(chi2 > 0.0)) return 0.0;
   if (chi2 < kFarOut || chi2 < 2.0 * dof) return std::log10(chi_squared_exceedance(chi2, dof));
   return log_upper_gamma(dof / 2.0, chi2 / 2.0) / std::log(10.0);
+}
+
+double exceedance_of_estimated(double chi2, double dof, double freedom) {
+  if (!(chi2 > 0.0)) return 1.0;
+  if (!(freedom < kManyDegrees)) return chi_squared_exceedance(chi2, dof);
+  return Eigen::numext::betainc(freedom / 2.0, dof / 2.0, freedom / (freedom + chi2));
 }
 
 double chi_squared_quantile(double log10_probability, double dof) {

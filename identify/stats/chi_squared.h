@@ -1,5 +1,6 @@
 #pragma once
-/// Tails of the chi-squared distribution, far out in logarithms, and what a test of given level detects.
+/// Tails of the chi-squared distribution, far out in logarithms, what a test of given level detects, and the
+/// tail where the noise itself is estimated.
 
 namespace volcal {
 
@@ -7,6 +8,9 @@ namespace volcal {
 double chi_squared_exceedance(double chi2, double dof);
 /// Its decimal logarithm, also where the probability itself is below the smallest number.
 double log10_chi_squared_exceedance(double chi2, double dof);
+/// The same where chi2 was divided by a variance that is known with `freedom` degrees of freedom: chi2 / dof
+/// follows an F distribution (Abramowitz and Stegun 26.6.2). 0 below the smallest number.
+double exceedance_of_estimated(double chi2, double dof, double freedom);
 /// chi2 that is exceeded with probability 10^log10_probability.
 double chi_squared_quantile(double log10_probability, double dof);
 /// Noncentrality at which a chi-squared test with `dof` degrees of freedom and the level 10^log10_level

@@ -52,5 +52,15 @@ TEST(ChiSquared, DetectableNoncentrality) {
   EXPECT_NEAR(detectable_noncentrality(level, 3, 0.8), 10.903, 0.001);
 }
 
+/// Two-sided 5 % of Student's t with 10 degrees of freedom is 2.228139; with two amplitudes the tail is
+/// (1 + chi2 / freedom)^(-freedom / 2).
+TEST(ChiSquared, OfAnEstimatedVarianceHasTheTailOfF) {
+  EXPECT_NEAR(exceedance_of_estimated(2.228139 * 2.228139, 1.0, 10.0), 0.05, 1e-7);
+  EXPECT_NEAR(exceedance_of_estimated(30.0, 2.0, 16.0), std::pow(1.0 + 30.0 / 16.0, -8.0), 1e-12);
+  EXPECT_NEAR(exceedance_of_estimated(30.0, 2.0, 1e5), std::pow(1.0 + 30.0 / 1e5, -5e4), 1e-12);
+  EXPECT_DOUBLE_EQ(exceedance_of_estimated(30.0, 3.0, HUGE_VAL), chi_squared_exceedance(30.0, 3.0));
+  EXPECT_DOUBLE_EQ(exceedance_of_estimated(0.0, 2.0, 16.0), 1.0);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -10,6 +10,7 @@
 
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/effect_search.h"
+#include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
 namespace {
@@ -73,6 +74,9 @@ TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
   EXPECT_GE(test.score.lm, bound - 0.1);
   EXPECT_LT(test.log10_p, tested_at(noise.parameters()).log10_p);
   EXPECT_LT(test.log10_p, -6.0);
+  // three amplitudes, white noise, the wander and its time; offsets of lines may come
+  EXPECT_GE(test.log10_p, log10_chi_squared_exceedance(test.score.lm, 3 + 3) - 1e-9);
+  EXPECT_LE(test.log10_p, log10_chi_squared_exceedance(test.score.lm, 3 + 5) + 1e-9);
 }
 
 /// Under a true wander the ratio of an effect that is not there is chi-squared with its three amplitudes.

@@ -44,8 +44,17 @@ struct Tracking {
   double seconds_per_reading = 4.0;
 };
 
-/// ISO 230-4 circles, clockwise (run 0) and counter-clockwise (run 1), one setup per plane.
+/// ISO 230-4 circles, clockwise (run 0) and counter-clockwise (run 1), one setup per plane; or, of runs that
+/// are listed, positions as given, one setup per run. The centre ball of a run stands at centre_w.
 struct BallBarCircles {
+  struct Run {
+    std::string name;  ///< of its setup
+    Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
+    std::string tool;
+    std::vector<CommandedPoint> points;  ///< on a sphere about the centre, within the bar's stroke
+    SourcePlace place = {};              ///< of the study file, for messages
+  };
+  std::vector<Run> runs;  ///< in place of planes
   std::vector<std::string> planes = {"XY", "YZ", "ZX"};
   std::string tool;  ///< empty = the first
   Eigen::Vector3d at{0.5, 0.5, 0.5};

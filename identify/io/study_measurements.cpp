@@ -130,8 +130,26 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
   return settings;
 }
 
+/// Runs with their positions say themselves what these keys say of circles.
+void refuse_keys_of_circles(const TomlTable& table) {
+  for (const char* key : {"planes", "tool", "at", "radius_mm", "points_per_turn", "feed_mm_min"}) {
+    if (!table.has(key)) continue;
+    table.fail(key, table.path() + " has runs with their own positions, and " + key + " of circles",
+               std::string("leave ") + key + " or the runs out");
+  }
+}
+
+void read_ball_bar_runs(const TomlTable& table, sim::BallBarCircles& settings) {
+  for (const TomlTable& run : table.tables("runs")) {
+    settings.runs.push_back({run.required_text("name"), run.required_vector3("centre_mm"),
+                             run.required_text("tool"), read_points(run), run.place()});
+  }
+  if (!settings.runs.empty()) refuse_keys_of_circles(table);
+}
+
 sim::MeasurementSettings read_ball_bar(const TomlTable& table) {
   sim::BallBarCircles settings;
+  read_ball_bar_runs(table, settings);
   read_planes(table, settings.planes);
   read(table, "tool", settings.tool);
   read_at(table, settings.at);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <set>
+#include <string>
 
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/datum.h"
@@ -160,6 +161,82 @@ TEST(Simulate, BallBarRunsClockwiseThenCounterClockwise) {
                 0.1, 1e-15);
     EXPECT_NE(point.direction[0], 0);
   }
+}
+
+/// A quarter of a circle in YZ, 100 mm about a centre that no share of the travel gives.
+BallBarCircles quarter_circle(const Machine& machine) {
+  const CommandedPoint centre = at_fraction(machine, {0.31, 0.42, 0.53});
+  BallBarCircles::Run run{"P1_quarter", {}, machine.tools.back().name, {}};
+  run.centre_w = TruthMachine(machine).nominal_point({centre.position, centre.direction, 0.0, {}},
+                                                     machine.tools.back().offset);
+  for (int i = 0; i <= 9; ++i) {
+    CommandedPoint point = centre;
+    point.position[1] += 0.1 * std::cos(i * 0.1745329251994330);
+    point.position[2] += 0.1 * std::sin(i * 0.1745329251994330);
+    point.direction = {1, -1, 1};
+    point.line = 7;
+    run.points.push_back(point);
+  }
+  BallBarCircles circles;
+  circles.runs = {run};
+  circles.noise = {};
+  circles.length_error = 0.0;
+  circles.length_sigma = 0.0;
+  return circles;
+}
+
+TEST(Simulate, BallBarRunsAreTakenAsGiven) {
+  Study study;
+  study.machine = reference_machines()[0];
+  study.truth.perfect = true;
+  const BallBarCircles circles = quarter_circle(study.machine);
+  const BallBarCircles::Run& run = circles.runs.front();
+  study.measurements = {{"bar", circles}};
+  const SimulatedCampaign simulated = simulate(study);
+  ASSERT_EQ(simulated.campaign.setups.size(), 1U);  // no circles besides
+  const volcal::Setup& setup = simulated.campaign.setups.front();
+  EXPECT_EQ(setup.name, "bar_P1_quarter");
+  EXPECT_EQ(setup.instrument, "ball-bar");
+  EXPECT_EQ(setup.tool, study.machine.tools.size() - 1);
+  EXPECT_LT((*setup.options.vector("centre") - run.centre_w).norm(), 200e-6);  // 20 um a component
+  EXPECT_EQ(*setup.options.number("length_sigma"), 0.0);
+  ASSERT_EQ(setup.readings.size(), run.points.size());
+  for (std::size_t i = 0; i < run.points.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(setup.readings.position[k][i], run.points[i].position[k]);
+      EXPECT_EQ(setup.readings.direction[k][i], run.points[i].direction[k]);
+    }
+    EXPECT_EQ(setup.readings.line[i], 7);
+    EXPECT_NEAR(setup.readings.value[0][i], 0.1, 1e-12);
+  }
+  // 10 degrees in 0.1 s: 17.45 mm along the arc, the chord a little less.
+  const CommandedPoint& middle = simulated.plans.front().points[5];
+  EXPECT_NEAR(std::hypot(middle.velocity[1], middle.velocity[2]), 0.1745, 2e-3);
+}
+
+TEST(Simulate, BallBarRunsStayOnASphere) {
+  Study study;
+  study.machine = reference_machines()[0];
+  BallBarCircles circles = quarter_circle(study.machine);
+  const auto problem = [&] {
+    study.measurements = {{"", circles}};
+    try {
+      simulate(study);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(problem(), "");
+  circles.runs[0].place = {"study.toml", 12};
+  circles.runs[0].points[3].position[1] += 0.005;
+  EXPECT_NE(problem().find("study.toml:12: run P1_quarter has positions from 100 to 104 mm"),
+            std::string::npos)
+      << problem();
+  circles.runs[0].points.clear();
+  EXPECT_NE(problem().find("has no positions"), std::string::npos) << problem();
+  circles.runs[0].tool = "longest";
+  EXPECT_NE(problem().find("study.toml:12"), std::string::npos) << problem();
 }
 
 TEST(Simulate, StepDiagonalMovesOneAxisAtATime) {

@@ -120,6 +120,10 @@ TEST(SimulationFile, DefaultsAreThoseOfTheSettings) {
   EXPECT_EQ(study.validation.points, 400);
 }
 
+const std::string kBallBarMeasurement = "[[measurements]]\nkind = \"ball-bar-circles\"\n";
+const std::string kRunWithoutPoints =
+    "[[measurements.runs]]\nname = \"P1\"\ncentre_mm = [0, 0, 0]\ntool = \"short\"\n";
+
 struct BadStudy {
   std::string body;
   int line;              ///< that the message names
@@ -144,26 +148,27 @@ TEST_P(BadSimulationFiles, NamesLineAndProblem) {
 
 INSTANTIATE_TEST_SUITE_P(
     SimulationFile, BadSimulationFiles,
-    testing::Values(BadStudy{"seed = -1\n" + kOneMeasurement, 3, "seed"},
-                    BadStudy{"sed = 1\n" + kOneMeasurement, 3, "sed"},
-                    BadStudy{"seed = 1\n", 0, "measurements"},
-                    BadStudy{"[[measurements]]\nkind = \"diagonal\"\n", 4, "diagonal"},
-                    BadStudy{"[[measurements]]\nname = \"d\"\n", 3, "kind"},
-                    BadStudy{kOneMeasurement + "points = 1\n", 5, "points"},
-                    BadStudy{kOneMeasurement + "radius_mm = 1\n", 5, "radius_mm"},
-                    BadStudy{kOneMeasurement + "tool = \"long\"\n", 3, "long"},
-                    BadStudy{kOneMeasurement + "at = [0.5, 50, 0.5]\n", 5, "at"},
-                    BadStudy{kOneMeasurement + kOneMeasurement, 5, "body_ppp"},
-                    BadStudy{"[[measurements]]\nkind = \"ball-bar-circles\"\nradius_mm = 400\n", 3,
-                             "leaves the travel"},
-                    BadStudy{"[[measurements]]\nkind = \"squares\"\nplanes = [\"XX\"]\n", 3, "XX"},
-                    BadStudy{"[[measurements]]\nkind = \"laser-tracer\"\ngrid = [9, 7]\n", 5, "grid"},
-                    BadStudy{"[[measurements]]\nkind = \"axis-lines\"\naxes = [\"C\"]\n", 5, "axes"},
-                    BadStudy{"[truth.locations_urad]\nEA0Y = 1.0\n" + kOneMeasurement, 4, "EC0Y, EA0Z, EB0Z"},
-                    BadStudy{"[truth.locations_urad]\nEC0C = 1.0\n" + kOneMeasurement, 4, "EC0C"},
-                    BadStudy{"[truth.reversals_um]\nEAX = 1.0\n" + kOneMeasurement, 4, "EAX"},
-                    BadStudy{"[truth]\nvolumetric_rms_um = [20, 10]\n" + kOneMeasurement, 4, "range"},
-                    BadStudy{"[validation]\ntools = [\"none\"]\n" + kOneMeasurement, 4, "none"}));
+    testing::Values(
+        BadStudy{"seed = -1\n" + kOneMeasurement, 3, "seed"},
+        BadStudy{"sed = 1\n" + kOneMeasurement, 3, "sed"}, BadStudy{"seed = 1\n", 0, "measurements"},
+        BadStudy{"[[measurements]]\nkind = \"diagonal\"\n", 4, "diagonal"},
+        BadStudy{"[[measurements]]\nname = \"d\"\n", 3, "kind"},
+        BadStudy{kOneMeasurement + "points = 1\n", 5, "points"},
+        BadStudy{kOneMeasurement + "radius_mm = 1\n", 5, "radius_mm"},
+        BadStudy{kOneMeasurement + "tool = \"long\"\n", 3, "long"},
+        BadStudy{kOneMeasurement + "at = [0.5, 50, 0.5]\n", 5, "at"},
+        BadStudy{kOneMeasurement + kOneMeasurement, 5, "body_ppp"},
+        BadStudy{"[[measurements]]\nkind = \"ball-bar-circles\"\nradius_mm = 400\n", 3, "leaves the travel"},
+        BadStudy{kBallBarMeasurement + "planes = [\"XY\"]\n" + kRunWithoutPoints, 5, "planes of circles"},
+        BadStudy{kBallBarMeasurement + kRunWithoutPoints, 5, "has no positions"},
+        BadStudy{"[[measurements]]\nkind = \"squares\"\nplanes = [\"XX\"]\n", 3, "XX"},
+        BadStudy{"[[measurements]]\nkind = \"laser-tracer\"\ngrid = [9, 7]\n", 5, "grid"},
+        BadStudy{"[[measurements]]\nkind = \"axis-lines\"\naxes = [\"C\"]\n", 5, "axes"},
+        BadStudy{"[truth.locations_urad]\nEA0Y = 1.0\n" + kOneMeasurement, 4, "EC0Y, EA0Z, EB0Z"},
+        BadStudy{"[truth.locations_urad]\nEC0C = 1.0\n" + kOneMeasurement, 4, "EC0C"},
+        BadStudy{"[truth.reversals_um]\nEAX = 1.0\n" + kOneMeasurement, 4, "EAX"},
+        BadStudy{"[truth]\nvolumetric_rms_um = [20, 10]\n" + kOneMeasurement, 4, "range"},
+        BadStudy{"[validation]\ntools = [\"none\"]\n" + kOneMeasurement, 4, "none"}));
 
 }  // namespace
 }  // namespace volcal

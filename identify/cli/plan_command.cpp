@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/plan_writer.h"
 #include "volcal/identify/planning/campaign_plan.h"
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/report/plan_text.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/model/description/errors.h"
@@ -43,7 +45,9 @@ struct PlanArguments {
   int tool_count = 0;
   double station_min = 20.0;
   double run_min = 5.0;
-  double reading_s = 4.0;
+  double bar_mm = 0.0;
+  double bar_sigma_um = -1.0;  ///< negative: not given
+  double reading_s = 0.0;      ///< 0: what is usual for the instrument
   double feed_mm_min = 6000.0;
   double clearance_mm = 100.0;
   double spindle_mm = 100.0;
@@ -54,6 +58,23 @@ struct PlanArguments {
 
 [[noreturn]] void fail(const std::string& problem, const std::string& remedy) {
   throw InputError({}, problem, remedy);
+}
+
+/// Options of an instrument that this one does not have.
+void refuse_other_options(const CLI::App& app, const std::string& instrument) {
+  const std::vector<std::string> own = find_plan_instrument(instrument)->own_options();
+  for (const PlanInstrument* other : plan_instruments()) {
+    for (const std::string& option : other->own_options()) {
+      if (app.count(option) == 0 || std::ranges::find(own, option) != own.end()) continue;
+      fail(fmt::format("{} does not apply to a {}", option, instrument),
+           fmt::format("leave it out, or plan for --instrument {}", other->name()));
+    }
+  }
+}
+
+void read_bar(const PlanArguments& arguments, PlanSettings& settings) {
+  settings.bar.length = arguments.bar_mm * kMetrePerMillimetre;
+  if (arguments.bar_sigma_um >= 0.0) settings.bar.length_sigma = arguments.bar_sigma_um * kMicro;
 }
 
 void read_tools(const PlanArguments& arguments, PlanSettings& settings) {
@@ -134,9 +155,12 @@ PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Cam
   settings.surroundings.clearance = arguments.clearance_mm * kMetrePerMillimetre;
   settings.surroundings.spindle_radius = arguments.spindle_mm * kMetrePerMillimetre;
   read_region(arguments, settings);
+  read_bar(arguments, settings);
+  const double reading_s =
+      arguments.reading_s > 0.0 ? arguments.reading_s : plan_instrument_of(settings).usual_reading_time();
   constexpr double kSecondsPerMinute = 60.0;
   settings.costs = {arguments.station_min * kSecondsPerMinute, arguments.run_min * kSecondsPerMinute,
-                    arguments.reading_s, arguments.feed_mm_min * kMetrePerMillimetre / kSecondsPerMinute};
+                    reading_s, arguments.feed_mm_min * kMetrePerMillimetre / kSecondsPerMinute};
   check_plan_settings(settings);
   read_target(arguments, with ? &*with : nullptr, settings);
   if (arguments.extend) settings.existing = &*with;
@@ -166,7 +190,8 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
   folder.commit();
 }
 
-int run_plan(const PlanArguments& arguments) {
+int run_plan(const PlanArguments& arguments, const CLI::App& app) {
+  refuse_other_options(app, arguments.settings.instrument);
   if (!arguments.output.empty()) require_output_folder(arguments.output);
   const std::optional<Campaign> with = given_campaign(arguments);
   PlanSettings settings = settings_of(arguments, with);
@@ -190,7 +215,7 @@ int run_plan(const PlanArguments& arguments) {
 
 void define_budget(CLI::App& app, PlanArguments& arguments) {
   app.add_option("--stations", arguments.settings.budget.stations,
-                 "stations; with --extend: setups to be added")
+                 "stations, or places of a ball-bar's centre ball; with --extend: setups to be added")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
   app.add_option("--readings", arguments.readings,
@@ -205,21 +230,29 @@ void define_budget(CLI::App& app, PlanArguments& arguments) {
   app.add_option("--station-min", arguments.station_min, "minutes to put up the instrument")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--run-min", arguments.run_min, "minutes to change the tool at a station")
+  app.add_option("--run-min", arguments.run_min,
+                 "minutes to change the tool, or the plane of a ball-bar, at a station")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--reading-s", arguments.reading_s, "seconds that the machine stands for a reading")
-      ->check(positive())
-      ->capture_default_str();
+  app.add_option("--reading-s", arguments.reading_s,
+                 "seconds that the machine stands for a reading; default: 4, of a ball-bar on its way 0.1")
+      ->check(positive());
   app.add_option("--feed-mm-min", arguments.feed_mm_min, "between positions")
       ->check(positive())
       ->capture_default_str();
 }
 
 void define_instrument(CLI::App& app, PlanArguments& arguments) {
+  std::vector<std::string> instruments;
+  for (const PlanInstrument* each : plan_instruments()) instruments.push_back(each->name());
   app.add_option("--instrument", arguments.settings.instrument)
-      ->check(CLI::IsMember({"laser-tracer", "laser-tracker"}))
+      ->check(CLI::IsMember(instruments))
       ->capture_default_str();
+  app.add_option("--bar-mm", arguments.bar_mm, "length of the ball-bar, between the ball centres")
+      ->check(positive());
+  app.add_option("--bar-sigma-um", arguments.bar_sigma_um,
+                 "standard uncertainty of the ball-bar's calibrated length; 0 = exact, default: unknown")
+      ->check(not_negative());
   app.add_option("--noise", arguments.noise,
                  "CONSTANT_um,PER_METRE_um,REPEATABILITY_um of readings to be taken (k = 1)")
       ->delimiter(',')
@@ -239,14 +272,15 @@ void define_instrument(CLI::App& app, PlanArguments& arguments) {
       ->capture_default_str();
   app.add_option(
          "--region-mm", arguments.region_mm,
-         "X0,X1,Y0,Y1,Z0,Z1 where stations may stand, workpiece coordinates; default: around the lower half "
-         "of the volume")
+         "X0,X1,Y0,Y1,Z0,Z1 where stations or centre balls may stand, workpiece coordinates; default: around "
+         "the lower half of the volume, centre balls anywhere in it")
       ->delimiter(',')
       ->expected(6);
   app.add_option("--clearance-mm", arguments.clearance_mm, "of stations from what tools and spindle sweep")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--spindle-mm", arguments.spindle_mm, "radius of the spindle, which beams must pass by")
+  app.add_option("--spindle-mm", arguments.spindle_mm,
+                 "radius of the spindle, which beams and bars must pass by")
       ->check(not_negative())
       ->capture_default_str();
 }
@@ -282,7 +316,7 @@ std::function<int()> define_plan(CLI::App& app) {
   app.add_option("--threads", arguments->settings.threads, "0 = all; results do not depend on it")
       ->check(not_negative());
   app.add_flag("--json", arguments->json, "print plan.json on standard output and nothing else");
-  return [arguments] { return run_plan(*arguments); };
+  return [arguments, &app] { return run_plan(*arguments, app); };
 }
 
 }  // namespace
@@ -297,7 +331,9 @@ const Command& plan_command() {
       "  volcal plan machine.toml --readings 480 --minimise \"separate:station-drift:station "
       "P1,dead-path:readings of "
       "P1_short\"\n"
-      "  volcal plan machine.toml --with campaign.toml --extend --stations 1 --readings 200 -o more\n",
+      "  volcal plan machine.toml --with campaign.toml --extend --stations 1 --readings 200 -o more\n"
+      "  volcal plan machine.toml --instrument ball-bar --bar-mm 100 --bar-sigma-um 0.5 --stations 3 "
+      "--readings 1200 -o plan\n",
       define_plan};
   return command;
 }

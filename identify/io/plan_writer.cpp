@@ -5,9 +5,13 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -40,6 +44,10 @@ const char* name_of(PlanTarget target) {
 PlanJson budget_json(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
   PlanJson json = {{"instrument", settings.instrument}, {"stations", settings.budget.stations}};
+  if (settings.bar.length > 0.0) {
+    json["bar_mm"] = settings.bar.length / kMetrePerMillimetre;
+    if (settings.bar.length_sigma) json["bar_sigma_um"] = *settings.bar.length_sigma / kMicro;
+  }
   if (settings.budget.readings) json["readings"] = *settings.budget.readings;
   if (settings.budget.time) json["time_h"] = *settings.budget.time / kSecondsPerHour;
   for (const std::size_t tool : tools_of(settings))
@@ -62,12 +70,14 @@ PlanJson layout_json(const CampaignPlan& plan) {
     const std::string name = run_name(layout, run, plan.settings.machine);
     Setup named;
     named.name = name;
-    runs.push_back({{"setup", name},
-                    {"station", layout.station_names[run.station]},
-                    {"tool", plan.settings.machine.tools[run.tool].name},
-                    {"positions", run.positions.size()},
-                    {"readings", 2 * run.positions.size()},
-                    {"points", "campaign/" + readings_file_name(named)}});
+    PlanJson json = {{"setup", name},
+                     {"station", layout.station_names[run.station]},
+                     {"tool", plan.settings.machine.tools[run.tool].name}};
+    if (!run.part.empty()) json["plane"] = run.part;
+    json["positions"] = run.positions.size();
+    json["readings"] = 2 * run.positions.size();
+    json["points"] = "campaign/" + readings_file_name(named);
+    runs.push_back(std::move(json));
   }
   PlanJson json = {{"stations", std::move(stations)}, {"runs", std::move(runs)}};
   for (const Eigen::Vector3d& place : plan.searched.as_good_w)
@@ -132,6 +142,76 @@ PlanJson campaign_json(const ExpectedCampaign& campaign) {
           {"effects", effects_json(campaign)}};
 }
 
+std::string in_mm(const Eigen::Vector3d& place) {
+  return fmt::format("[{}, {}, {}]", edge_number(place.x(), kMetrePerMillimetre),
+                     edge_number(place.y(), kMetrePerMillimetre),
+                     edge_number(place.z(), kMetrePerMillimetre));
+}
+
+std::string points_of(const Setup& setup) { return toml_text("campaign/" + readings_file_name(setup)); }
+
+/// Where a setup of the plan's instrument stands.
+std::optional<NamedPlace> simulated_at(const CampaignPlan& plan, const Setup& setup) {
+  if (setup.instrument != plan.settings.instrument) return std::nullopt;
+  return plan_instrument_of(plan.settings).place_of(setup, plan.settings.machine);
+}
+
+std::string not_simulated(const CampaignPlan& plan) {
+  std::string comments;
+  for (const Setup& setup : plan.plan.campaign.setups) {
+    if (simulated_at(plan, setup)) continue;
+    comments += "# not simulated: setup " + setup.name + " of the campaign that is extended\n";
+  }
+  return comments;
+}
+
+/// First lines of a measurement; `more`: of its noise.
+std::string measurement_toml(const std::string& kind, const PlanSettings& settings, const std::string& more) {
+  const PlanNoise& noise = settings.noise;
+  return fmt::format(
+      "[[measurements]]\nkind = \"{}\"\nreading_s = {}\n"
+      "noise = {{ constant_um = {}, per_metre_um = {}, repeatability_um = {}{} }}\n",
+      kind, edge_number(settings.costs.reading, 1.0), edge_number(noise.constant, kMicro),
+      edge_number(noise.per_metre, kMicro), edge_number(noise.repeatability, kMicro), more);
+}
+
+std::string tracking_toml(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  std::string stations, runs;
+  std::set<std::string> known;
+  for (const Setup& setup : plan.plan.campaign.setups) {
+    const auto place = simulated_at(plan, setup);
+    if (!place) continue;
+    if (known.insert(place->name).second) {
+      stations += fmt::format("[[measurements.stations]]\nname = {}\nposition_mm = {}\n",
+                              toml_text(place->name), in_mm(place->place_w));
+    }
+    runs +=
+        fmt::format("[[measurements.runs]]\nstation = {}\ntool = {}\npoints = {}\n", toml_text(place->name),
+                    toml_text(settings.machine.tools[setup.tool].name), points_of(setup));
+  }
+  std::string angle;
+  if (settings.instrument == "laser-tracker") {
+    angle = ", angle_urad = " + edge_number(settings.noise.angle, kRadianPerMicroradian);
+  }
+  return measurement_toml(settings.instrument, settings, angle) + stations + runs;
+}
+
+std::string ball_bar_toml(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  std::string text = measurement_toml("ball-bar-circles", settings, "");
+  if (settings.bar.length_sigma)
+    text += fmt::format("length_sigma_um = {}\n", edge_number(*settings.bar.length_sigma, kMicro));
+  for (const Setup& setup : plan.plan.campaign.setups) {
+    const auto place = simulated_at(plan, setup);
+    if (!place) continue;
+    text += fmt::format("[[measurements.runs]]\nname = {}\ncentre_mm = {}\ntool = {}\npoints = {}\n",
+                        toml_text(setup.name), in_mm(place->place_w),
+                        toml_text(settings.machine.tools[setup.tool].name), points_of(setup));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string plan_json(const CampaignPlan& plan) {
@@ -161,38 +241,12 @@ std::string plan_json(const CampaignPlan& plan) {
 
 std::string plan_study_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
-  std::string stations, runs, known, left_out;
-  for (const Setup& setup : plan.plan.campaign.setups) {
-    const auto place = setup.options.vector("station");
-    if (setup.instrument != settings.instrument || !place) {
-      left_out += "# not simulated: setup " + setup.name + " of the campaign that is extended\n";
-      continue;
-    }
-    const std::string name = setup.options.text("station").value_or(setup.name);
-    if (known.find("|" + name + "|") == std::string::npos) {
-      known += "|" + name + "|";
-      stations += fmt::format("[[measurements.stations]]\nname = {}\nposition_mm = [{}, {}, {}]\n",
-                              toml_text(name), edge_number(place->x(), kMetrePerMillimetre),
-                              edge_number(place->y(), kMetrePerMillimetre),
-                              edge_number(place->z(), kMetrePerMillimetre));
-    }
-    runs += fmt::format("[[measurements.runs]]\nstation = {}\ntool = {}\npoints = {}\n", toml_text(name),
-                        toml_text(settings.machine.tools[setup.tool].name),
-                        toml_text("campaign/" + readings_file_name(setup)));
-  }
-  const PlanNoise& noise = settings.noise;
-  std::string angle;
-  if (settings.instrument == "laser-tracker") {
-    angle = ", angle_urad = " + edge_number(noise.angle, kRadianPerMicroradian);
-  }
+  const std::string measurement =
+      settings.instrument == "ball-bar" ? ball_bar_toml(plan) : tracking_toml(plan);
   return fmt::format(
       "# The plan measured on a random machine: volcal simulate study.toml -o simulated\n"
-      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n"
-      "[[measurements]]\nkind = \"{}\"\nreading_s = {}\n"
-      "noise = {{ constant_um = {}, per_metre_um = {}, repeatability_um = {}{} }}\n{}{}",
-      settings.seed, edge_number(settings.costs.run, 1.0), left_out, settings.instrument,
-      edge_number(settings.costs.reading, 1.0), edge_number(noise.constant, kMicro),
-      edge_number(noise.per_metre, kMicro), edge_number(noise.repeatability, kMicro), angle, stations, runs);
+      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n{}",
+      settings.seed, edge_number(settings.costs.run, 1.0), not_simulated(plan), measurement);
 }
 
 void write_plan_campaign(const CampaignPlan& plan, const AtomicFolder& folder) {

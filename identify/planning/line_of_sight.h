@@ -1,48 +1,48 @@
 #pragma once
-/// Whether an instrument at a station sees the reflector at the tool, and whether it can stand there.
+/// Whether the instrument of a plan at a place reads the tool at a position, and whether it can stand there:
+/// the settings' instrument (plan_instrument.h) on the settings' machine.
 ///
-/// Checked are the instrument's range and elevation, that the beam passes by the spindle (a cylinder about
-/// the tool axis, from the spindle's reference point away from the tool), and that the station is outside the
-/// box that tools and spindle sweep. Not checked: columns, covers, clamped workpieces, the reflector's own
-/// angle of acceptance, the tool's shank.
+/// Not checked: columns, covers, clamped workpieces, a reflector's own angle of acceptance, the tool's shank.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "volcal/identify/planning/plan_settings.h"
-#include "volcal/model/kinematics/chain.h"
+#include "volcal/identify/planning/plan_instrument.h"
+#include "volcal/identify/planning/swept_volume.h"
 
 namespace volcal {
 
 class LineOfSight {
  public:
+  /// The settings must outlive the object. Throws InputError for an instrument that cannot be planned for.
   explicit LineOfSight(const PlanSettings& settings);
 
+  const PlanInstrument& instrument() const { return instrument_; }
   /// Box of the functional points of all tools, workpiece coordinates, rotary axes at home.
-  const Eigen::AlignedBox3d& swept_w() const { return swept_w_; }
+  const Eigen::AlignedBox3d& swept_w() const { return swept_.box_w(); }
   /// Where stations may be looked for.
   const Eigen::AlignedBox3d& stations_w() const { return stations_w_; }
   /// Direction from the tool to the spindle, workpiece coordinates, rotary axes at home.
-  const Eigen::Vector3d& spindle_w() const { return spindle_w_; }
+  const Eigen::Vector3d& spindle_w() const { return swept_.spindle_w(); }
+  int along_spindle() const { return swept_.along_spindle(); }
 
   bool can_stand(const Eigen::Vector3d& station_w) const;
   bool sees(const Eigen::Vector3d& station_w, const AxisPosition& position, std::size_t tool) const;
   Eigen::Vector3d point_w(const AxisPosition& position, std::size_t tool) const;
 
+  std::vector<Eigen::Vector3d> textbook_stations_w(int count) const;
+  /// As PlanInstrument says; `station` and `tool` number the runs.
+  std::vector<PlanRun> candidate_runs(const Eigen::Vector3d& station_w, std::size_t station, std::size_t tool,
+                                      const CandidateGrid& grid) const;
+  PlanRun moved(const Eigen::Vector3d& station_w, const PlanRun& run) const;
+
  private:
+  PlanScene scene() const { return {settings_, swept_}; }
+
   const PlanSettings& settings_;
-  KinematicChain chain_;
-  Eigen::AlignedBox3d swept_w_;
-  Eigen::AlignedBox3d kept_clear_w_;
+  const PlanInstrument& instrument_;
+  SweptVolume swept_;
   Eigen::AlignedBox3d stations_w_;
-  Eigen::Vector3d spindle_w_;
 };
-
-/// Shortest distance of the segment a-b from the half line that starts at `from` along `direction` (unit).
-double distance_from_half_line(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                               const Eigen::Vector3d& from, const Eigen::Vector3d& direction);
-
-/// All axes at home, X, Y, Z at shares of their travel.
-AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share);
 
 }  // namespace volcal

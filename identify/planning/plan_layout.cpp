@@ -5,7 +5,7 @@
 #include <random>
 #include <tuple>
 
-#include "volcal/model/instruments/registry.h"
+#include "volcal/identify/planning/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -45,36 +45,45 @@ double run_duration(const PlanRun& run, const PlanSettings& settings) {
 /// Uniform in -1 ... 1, the same with every standard library.
 double even(std::mt19937_64& random) { return 2.0 * (static_cast<double>(random() >> 11U) * 0x1p-53) - 1.0; }
 
+/// There and back without a stop, already on the way at the first; axes that rest count as approached in the
+/// + direction.
+std::vector<PlanReading> read_on_the_way(std::vector<PlanPosition> ordered, bool both) {
+  std::vector<PlanReading> path;
+  for (int pass = 0; pass < (both ? 2 : 1); ++pass) {
+    std::array<std::int8_t, kAxisCount> direction{};
+    direction.fill(1);
+    for (std::size_t i = 0; i < ordered.size(); ++i) {
+      const std::size_t from = i > 0 ? i - 1 : 0, to = std::min(from + 1, ordered.size() - 1);
+      direction = approach(ordered[from].position, ordered[to].position, direction);
+      path.push_back({ordered[i].position, direction, pass, pass});
+    }
+    std::ranges::reverse(ordered);
+  }
+  return path;
+}
+
 class SetupMaker {
  public:
   SetupMaker(const PlanLayout& layout, const PlanSettings& settings)
-      : layout_(layout), settings_(settings), chain_(settings.machine) {}
+      : layout_(layout),
+        settings_(settings),
+        instrument_(plan_instrument_of(settings)),
+        chain_(settings.machine) {}
 
   Setup make(const PlanRun& run, bool both, double start) const {
     Setup setup;
     setup.name = run_name(layout_, run, settings_.machine);
     setup.instrument = settings_.instrument;
     setup.tool = run.tool;
-    setup.options.set("station", layout_.station_names[run.station]);
-    setup.options.set("station", layout_.stations_w[run.station]);
-    state_noise(setup);
+    instrument_.describe(settings_, {layout_.station_names[run.station], layout_.stations_w[run.station]},
+                         setup);
     fill(run, both, start, setup);
     return setup;
   }
 
  private:
-  void state_noise(Setup& setup) const {
-    setup.has_noise = true;
-    setup.noise.set("constant", settings_.noise.constant);
-    setup.noise.set("per_metre", settings_.noise.per_metre);
-    if (settings_.instrument == "laser-tracker") setup.noise.set("angle", settings_.noise.angle);
-    setup.repeatability = settings_.noise.repeatability;
-  }
-
   void fill(const PlanRun& run, bool both, double start, Setup& setup) const {
     Readings& readings = setup.readings;
-    const bool angles = settings_.instrument == "laser-tracker";
-    readings.value.resize(angles ? 3 : 1);
     double time = start;
     for (const PlanReading& reading : readings_of(run, both)) {
       for (const Axis& axis : settings_.machine.axes) {
@@ -82,14 +91,12 @@ class SetupMaker {
         readings.position[k].push_back(reading.position[k]);
         readings.direction[k].push_back(reading.direction[k]);
       }
-      const Eigen::Vector3d beam =
+      const std::vector<double> values = instrument_.nominal_reading(
           chain_.nominal_point_w(reading.position, settings_.machine.tools[run.tool].offset) -
-          layout_.stations_w[run.station];
-      readings.value[0].push_back(beam.norm());
-      if (angles) {
-        readings.value[1].push_back(std::atan2(beam.y(), beam.x()));
-        readings.value[2].push_back(std::atan2(beam.z(), std::hypot(beam.x(), beam.y())));
-      }
+          layout_.stations_w[run.station]);
+      readings.value.resize(values.size());
+      for (std::size_t channel = 0; channel < values.size(); ++channel)
+        readings.value[channel].push_back(values[channel]);
       readings.line.push_back(reading.line);
       readings.run.push_back(reading.run);
       readings.time.push_back(time);
@@ -100,6 +107,7 @@ class SetupMaker {
 
   const PlanLayout& layout_;
   const PlanSettings& settings_;
+  const PlanInstrument& instrument_;
   KinematicChain chain_;
 };
 
@@ -131,6 +139,7 @@ std::size_t PlanLayout::positions() const {
 
 std::vector<PlanReading> readings_of(const PlanRun& run, bool both) {
   const std::vector<PlanPosition> ordered = in_path_order(run.positions);
+  if (!run.part.empty()) return read_on_the_way(ordered, both);
   std::vector<PlanReading> path;
   std::array<std::int8_t, kAxisCount> direction{};
   direction.fill(1);
@@ -160,7 +169,8 @@ double duration(const PlanLayout& layout, const PlanSettings& settings) {
 }
 
 std::string run_name(const PlanLayout& layout, const PlanRun& run, const Machine& machine) {
-  return layout.station_names[run.station] + "_" + machine.tools[run.tool].name;
+  return layout.station_names[run.station] + "_" + machine.tools[run.tool].name +
+         (run.part.empty() ? "" : "_" + run.part);
 }
 
 Campaign campaign_of(const PlanLayout& layout, const PlanSettings& settings, bool both) {

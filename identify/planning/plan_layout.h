@@ -23,6 +23,7 @@ struct PlanRun {
   std::size_t station = 0;
   std::size_t tool = 0;
   std::vector<PlanPosition> positions;
+  std::string part = {};  ///< of what is measured there, where there are several: "XY", the plane of a circle
 };
 
 struct PlanLayout {
@@ -48,7 +49,8 @@ struct PlanReading {
 std::vector<PlanPosition> in_path_order(std::vector<PlanPosition> positions);
 
 /// There in path order, then the same positions in reverse order
-/// from the other side. One pass alone when `both` is false.
+/// from the other side. One pass alone when `both` is false. A run with a part is read on its way
+/// instead: each pass has the directions in which the machine comes.
 std::vector<PlanReading> readings_of(const PlanRun& run, bool both = true);
 
 /// Time that a plan takes, s: stations, runs, readings, moves between them (the slowest axis at the feed).

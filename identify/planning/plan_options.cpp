@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -26,12 +27,6 @@ constexpr std::size_t kLeastSeen = 8;
 constexpr double kFinerPool = 6.0;
 constexpr int kOptionSites = 5;
 constexpr std::size_t kMostOptions = 12;
-
-struct Place {
-  std::string name;
-  Eigen::Vector3d station_w;
-  bool is_new = false;
-};
 
 std::string in_mm(const Eigen::Vector3d& place) {
   return fmt::format("[{:.0f}, {:.0f}, {:.0f}] mm", place.x() / kMetrePerMillimetre,
@@ -94,16 +89,35 @@ class OptionSearch {
     double value = 0.0;
   };
 
-  PlanLayout layout_of(const Place& place, std::size_t tool, const LineOfSight& sight) const {
+  PlanLayout layout_of(const NamedPlace& place, std::size_t tool, const LineOfSight& sight) const {
     PlanLayout layout;
-    layout.stations_w = {place.station_w};
+    layout.stations_w = {place.place_w};
     layout.station_names = {place.name};
+    if (sight.instrument().takes_runs_whole()) {
+      add_whole_runs(tool, sight, layout);
+    } else {
+      add_even_run(tool, sight, layout);
+    }
+    return layout;
+  }
+
+  /// Those that are not measured yet, as many as the readings allow, one at least.
+  void add_whole_runs(std::size_t tool, const LineOfSight& sight, PlanLayout& layout) const {
+    for (PlanRun& run : sight.candidate_runs(layout.stations_w.front(), 0, tool, {})) {
+      const std::string name = run_name(layout, run, settings_.machine);
+      const bool measured = std::ranges::find(existing_.setups, name, &Setup::name) != existing_.setups.end();
+      const bool fits = layout.runs.empty() || layout.positions() + run.positions.size() <= positions_;
+      if (!measured && fits) layout.runs.push_back(std::move(run));
+    }
+  }
+
+  void add_even_run(std::size_t tool, const LineOfSight& sight, PlanLayout& layout) const {
     PlanRun run{0, tool, {}};
     for (std::size_t asked = positions_; asked <= 4 * positions_ + 64; asked += 1 + asked / 8) {
       run.positions = grid_over_travel(settings_.machine, even_grid(settings_.machine, asked), kOptionJitter,
                                        settings_.seed, kOptionStream + tool);
       std::erase_if(run.positions, [&](const PlanPosition& each) {
-        return !sight.sees(place.station_w, each.position, tool);
+        return !sight.sees(layout.stations_w.front(), each.position, tool);
       });
       if (run.positions.size() < positions_) continue;
       std::vector<PlanPosition> even;
@@ -113,16 +127,19 @@ class OptionSearch {
       break;
     }
     if (run.positions.size() >= kLeastSeen) layout.runs.push_back(std::move(run));
-    return layout;
   }
 
-  std::vector<Place> known_places() const {
-    std::vector<Place> places;
+  std::optional<NamedPlace> place_of(const Setup& setup) const {
+    if (setup.instrument != settings_.instrument) return std::nullopt;
+    return plan_instrument_of(settings_).place_of(setup, settings_.machine);
+  }
+
+  std::vector<NamedPlace> known_places() const {
+    std::vector<NamedPlace> places;
     for (const Setup& setup : existing_.setups) {
-      const auto at = setup.options.vector("station");
-      const std::string name = setup.options.text("station").value_or(setup.name);
-      if (!at || setup.instrument != settings_.instrument) continue;
-      if (std::ranges::find(places, name, &Place::name) == places.end()) places.push_back({name, *at, false});
+      const auto place = place_of(setup);
+      if (!place) continue;
+      if (std::ranges::find(places, place->name, &NamedPlace::name) == places.end()) places.push_back(*place);
     }
     return places;
   }
@@ -137,9 +154,9 @@ class OptionSearch {
 
   std::vector<PlanLayout> at_known_places(const LineOfSight& sight) const {
     std::vector<PlanLayout> layouts;
-    for (const Place& place : known_places()) {
+    for (const NamedPlace& place : known_places()) {
       for (std::size_t tool = 0; tool < settings_.machine.tools.size(); ++tool) {
-        if (is_measured(place.name, tool)) continue;
+        if (!sight.instrument().takes_runs_whole() && is_measured(place.name, tool)) continue;
         PlanLayout layout = layout_of(place, tool, sight);
         if (!layout.runs.empty()) layouts.push_back(std::move(layout));
       }
@@ -152,6 +169,7 @@ class OptionSearch {
     for (const Setup& setup : existing_.setups) {
       used.insert(setup.name);
       used.insert(setup.options.text("station").value_or(""));
+      if (const auto place = place_of(setup)) used.insert(place->name);
     }
     int number = 1;
     while (used.contains("P" + std::to_string(number))) ++number;
@@ -174,7 +192,7 @@ class OptionSearch {
       std::vector<PlanLayout> all(sites.size());
       std::vector<double> values(sites.size(), std::numeric_limits<double>::infinity());
       run_parallel(sites.size(), thread_count(settings_.threads), [&](std::size_t i) {
-        all[i] = layout_of({new_name(), sites[i], true}, tool, sight);
+        all[i] = layout_of({new_name(), sites[i]}, tool, sight);
         if (!all[i].runs.empty()) values[i] = problem.value(all[i]);
       });
       if (values.empty()) continue;
@@ -195,11 +213,13 @@ class OptionSearch {
     const PlanRun& run = layout.runs.front();
     const Tool& tool = settings.machine.tools[run.tool];
     option.new_tool = run.tool >= own_machine_.tools.size();
-    const std::vector<Place> known = known_places();
-    option.new_station = std::ranges::find(known, layout.station_names.front(), &Place::name) == known.end();
+    const std::vector<NamedPlace> known = known_places();
+    option.new_station =
+        std::ranges::find(known, layout.station_names.front(), &NamedPlace::name) == known.end();
     const std::string tool_words =
         option.new_tool ? "a tool of offset " + in_mm(tool.offset) : "tool " + tool.name;
-    option.words = option.new_station ? fmt::format("a further station at {} with {}",
+    option.words = option.new_station ? fmt::format("a further {} at {} with {}",
+                                                    plan_instrument_of(settings_).words().place,
                                                     in_mm(layout.stations_w.front()), tool_words)
                                       : fmt::format("{} at {}", tool_words, layout.station_names.front());
     option.readings = layout.readings();
@@ -243,6 +263,7 @@ SetupOptions setup_options(const PlanSettings& settings, const ExpectedCampaign&
 }
 
 PlanLayout with_chosen_positions(const PlanSettings& settings, const PlanLayout& layout) {
+  if (plan_instrument_of(settings).takes_runs_whole()) return layout;
   PlanSettings own = settings;
   own.budget.stations = 1;
   own.budget.tools.clear();
@@ -256,12 +277,10 @@ PlanLayout with_chosen_positions(const PlanSettings& settings, const PlanLayout&
   PlanLayout fine = layout;
   for (PlanRun& run : fine.runs) {
     const auto asked = static_cast<std::size_t>(kFinerPool * static_cast<double>(run.positions.size()));
-    run.positions = grid_over_travel(settings.machine, even_grid(settings.machine, asked), kOptionJitter,
-                                     settings.seed, run.tool);
-    std::erase_if(run.positions, [&](const PlanPosition& each) {
-      return !sight.sees(fine.stations_w[run.station], each.position, run.tool);
-    });
-    run.positions = in_path_order(std::move(run.positions));
+    run = sight
+              .candidate_runs(fine.stations_w[run.station], run.station, run.tool,
+                              {asked, kOptionJitter, run.tool})
+              .front();
   }
   const PlanProblem::Pool pool = problem.pool_of(fine);
   ExchangeOptions options;

@@ -10,7 +10,7 @@ namespace volcal {
 
 struct SetupOptions {
   std::vector<PlanOption> options;  ///< best first
-  PlanLayout best;                  ///< one run, on an even grid
+  PlanLayout best;                  ///< one run on an even grid, or all that are taken whole
   Machine machine;                  ///< with the tool that the best needs
   std::size_t imagined_tools = 0;   ///< of it
 };
@@ -19,7 +19,8 @@ struct SetupOptions {
 /// invisible, then the smaller the target. The twelve best are listed.
 SetupOptions setup_options(const PlanSettings& settings, const ExpectedCampaign& now);
 
-/// The positions of a layout's runs chosen anew among a fine grid, as many as there are.
+/// The positions of a layout's runs chosen anew among a fine grid, as many as there are; runs that are taken
+/// whole as they are.
 PlanLayout with_chosen_positions(const PlanSettings& settings, const PlanLayout& layout);
 
 /// Adds stations and runs of `more`; stations of one name are one.

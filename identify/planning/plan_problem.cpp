@@ -21,6 +21,7 @@ constexpr int kSearchIntervals = 8;
 constexpr int kVolumePerAxis = 4;
 constexpr int kTablePositions = 11;
 constexpr double kWideNuisance = 1.0;  // m or rad
+constexpr double kApart = 1.0;         // m, of an instrument that is tried from the volume
 
 bool uses_automatic_knots(const FunctionSpec& function) {
   const BasisKind* kind = find_basis(function.basis);
@@ -48,6 +49,13 @@ ModelSpec with_few_knots(ModelSpec model, const Machine& machine) {
 
 bool comes_from_setups(const ParameterBlock& block) {
   return block.kind == ParameterKind::Nuisance || block.kind == ParameterKind::ToolOffset;
+}
+
+/// Where no position is: a length of zero has no derivative.
+Eigen::Vector3d probe_place_w(const LineOfSight& sight) {
+  const Eigen::Vector3d corner_w = sight.stations_w().min();
+  const bool among_positions = sight.swept_w().contains(corner_w);
+  return among_positions ? corner_w - kApart * Eigen::Vector3d::Ones() - sight.swept_w().sizes() : corner_w;
 }
 
 /// First row of every setup.
@@ -151,7 +159,7 @@ void PlanProblem::learn_machine() {
       grid_over_travel(settings_.machine, Eigen::Vector3i::Constant(3), 0.0, 0, 0);
   const LineOfSight sight(settings_);
   for (int station = 0; station < settings_.budget.stations; ++station) {
-    probe.stations_w.push_back(sight.stations_w().min());
+    probe.stations_w.push_back(probe_place_w(sight));
     probe.station_names.push_back("P" + std::to_string(station + 1));
     for (const std::size_t tool : tools_of(settings_)) {
       probe.runs.push_back({static_cast<std::size_t>(station), tool, grid});

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/planning/path_choice.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
@@ -77,17 +78,18 @@ class PlanSearch {
     for (std::size_t station = 0; station < stations.size(); ++station) {
       for (const std::size_t tool : tools_) {
         if (is_dropped(station, tool)) continue;
-        PlanRun run{station, tool, {}};
-        const Eigen::Vector3i counts = even_grid(settings_.machine, kCoarsePositions);
-        for (const PlanPosition& each :
-             grid_over_travel(settings_.machine, counts, kPoolJitter, settings_.seed,
-                              kCoarseStream + station * settings_.machine.tools.size() + tool)) {
-          if (sight_.sees(stations[station], each.position, tool)) run.positions.push_back(each);
+        for (PlanRun& run : candidate_runs(stations, station, tool, kCoarsePositions, kCoarseStream)) {
+          if (run.positions.size() >= kLeastOfRun) layout.runs.push_back(std::move(run));
         }
-        if (run.positions.size() >= kLeastOfRun) layout.runs.push_back(std::move(run));
       }
     }
     return layout;
+  }
+
+  std::vector<PlanRun> candidate_runs(const std::vector<Eigen::Vector3d>& stations, std::size_t station,
+                                      std::size_t tool, std::size_t positions, std::uint64_t stream) const {
+    const std::uint64_t own = stream + station * settings_.machine.tools.size() + tool;
+    return sight_.candidate_runs(stations[station], station, tool, {positions, kPoolJitter, own});
   }
 
   bool is_dropped(std::size_t station, std::size_t tool) const {
@@ -97,7 +99,9 @@ class PlanSearch {
   double coarse_value(const std::vector<Eigen::Vector3d>& stations) const {
     const PlanLayout layout = coarse(stations);
     if (layout.runs.empty()) return std::numeric_limits<double>::infinity();
-    return problem_.value(layout, affordable_readings(settings_, layout));
+    const std::size_t affordable = affordable_readings(settings_, layout);
+    const bool whole = sight_.instrument().takes_runs_whole();
+    return problem_.value(layout, whole ? std::min(affordable, layout.readings()) : affordable);
   }
 
   /// Of several sets of stations, at once.
@@ -130,8 +134,7 @@ class PlanSearch {
   }
 
   std::vector<Eigen::Vector3d> sites() const {
-    int up = 0;
-    sight_.spindle_w().cwiseAbs().maxCoeff(&up);
+    const int up = sight_.along_spindle();
     const Eigen::AlignedBox3d& region = sight_.stations_w();
     std::vector<Eigen::Vector3d> all;
     for (int i = 0; i < kSitesAcross; ++i) {
@@ -235,7 +238,7 @@ class PlanSearch {
 
   /// Where time is limited, a run less leaves readings for the others.
   void drop_runs(const std::vector<Eigen::Vector3d>& stations) {
-    if (!settings_.budget.time) return;
+    if (!settings_.budget.time || sight_.instrument().takes_runs_whole()) return;
     double value = coarse_value(stations);
     while (true) {
       const PlanLayout layout = coarse(stations);
@@ -263,15 +266,7 @@ class PlanSearch {
     PlanLayout layout = coarse(stations);
     const std::size_t each =
         std::max(kLeastPool, kPoolPerPosition * positions / std::max<std::size_t>(1, layout.runs.size()));
-    const Eigen::Vector3i counts = even_grid(settings_.machine, each);
-    for (PlanRun& run : layout.runs) {
-      run.positions = grid_over_travel(settings_.machine, counts, kPoolJitter, settings_.seed,
-                                       run.station * settings_.machine.tools.size() + run.tool);
-      std::erase_if(run.positions, [&](const PlanPosition& position) {
-        return !sight_.sees(stations[run.station], position.position, run.tool);
-      });
-      run.positions = in_path_order(std::move(run.positions));
-    }
+    for (PlanRun& run : layout.runs) run = candidate_runs(stations, run.station, run.tool, each, 0).front();
     return layout;
   }
 
@@ -309,6 +304,15 @@ class PlanSearch {
     return kept;
   }
 
+  /// Of all runs at these stations, whole ones that are best.
+  PlanLayout whole_runs(const std::vector<Eigen::Vector3d>& stations) {
+    const PlanLayout all = coarse(stations);
+    ChosenPaths chosen = choose_paths(settings_, problem_, all, threads_);
+    found_.pool = all.positions();
+    found_.converged = chosen.converged;
+    return std::move(chosen.layout);
+  }
+
   PlanLayout within_time(const PlanLayout& all, std::size_t positions, double done) {
     PlanLayout layout = chosen(all, positions, done);
     for (int i = 0; settings_.budget.time && i < 4; ++i) {
@@ -333,11 +337,7 @@ class PlanSearch {
   /// Positions as chosen, those that are still seen; lost ones are readings lost.
   PlanLayout seen_from(PlanLayout layout, const std::vector<Eigen::Vector3d>& stations) const {
     layout.stations_w = stations;
-    for (PlanRun& run : layout.runs) {
-      std::erase_if(run.positions, [&](const PlanPosition& each) {
-        return !sight_.sees(stations[run.station], each.position, run.tool);
-      });
-    }
+    for (PlanRun& run : layout.runs) run = sight_.moved(stations[run.station], run);
     std::erase_if(layout.runs, [](const PlanRun& run) { return run.positions.empty(); });
     return layout;
   }
@@ -354,7 +354,9 @@ class PlanSearch {
     for (int turn = 0; turn < kTurns; ++turn) {
       const double done = 0.55 + 0.13 * turn;
       const std::size_t positions = affordable_readings(settings_, coarse(stations)) / 2;
-      const PlanLayout layout = within_time(pool_layout(stations, positions), positions, done);
+      const PlanLayout layout = sight_.instrument().takes_runs_whole()
+                                    ? whole_runs(stations)
+                                    : within_time(pool_layout(stations, positions), positions, done);
       const double value = problem_.value(layout);
       const bool better = turn == 0 || value < found_.value * (1.0 - kWorthwhile);
       if (better) {

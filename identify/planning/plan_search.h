@@ -4,8 +4,9 @@
 /// Stations: the best of a coarse lattice, added one after another, then exchanged one by one (Fedorov
 /// 1972, 3.3), and as a second start the textbook's corners; both refined by pattern search (Hooke and Jeeves
 /// 1961, J. ACM 8, 212) until steps are below 10 mm. Positions: exchange_design.h over a jittered grid for
-/// every run. The two take turns until neither helps. Runs that cost more time than they are worth are left
-/// out where time is limited.
+/// every run; of instruments whose runs are taken whole, path_choice.h over every tool at every station. The
+/// two take turns until neither helps. Runs that cost more time than they are worth are left out where time
+/// is limited.
 ///
 /// That the arrangement of stations decides what multilateration can know, and that some arrangements know
 /// nothing: Takatsuji, Koseki, Goto et al. 1998, Meas. Sci. Technol. 9, 1357; Takatsuji, Goto, Kirita et al.
@@ -20,8 +21,10 @@
 
 namespace volcal {
 
-/// What everybody would do: stations at the corners of the volume's floor (with another number: evenly around
-/// it), every fourth raised to the top of the region, every tool at each, an even grid for each run.
+/// What everybody would do. Trackers: stations at the corners of the volume's floor (with another number:
+/// evenly around it), every fourth raised to the top of the region, every tool at each, an even grid for each
+/// run. Ball-bars: places along the middle of the volume, circles in three planes with every tool, place and
+/// tool in turn as far as the budget goes. Throws InputError where nothing can be measured whole.
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight);
 
 struct SearchedPlan {

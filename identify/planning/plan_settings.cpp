@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -40,6 +41,7 @@ void check_plan_settings(const PlanSettings& settings) {
     fail("--tool-count asks for more tools than there are",
          "the machine file and --tools leave " + std::to_string(tools_of(settings).size()));
   }
+  plan_instrument_of(settings).check(settings);
 }
 
 }  // namespace volcal

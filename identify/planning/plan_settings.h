@@ -24,7 +24,13 @@ struct PlanNoise {
   double angle = 1e-6;            ///< rad, azimuth and elevation of a tracker
 };
 
-/// Where an instrument can look to.
+/// A telescoping ball-bar.
+struct PlannedBar {
+  double length = 0.0;                 ///< m, between the ball centres, nominal
+  std::optional<double> length_sigma;  ///< m, of its calibration; 0 = exact, absent = unknown
+};
+
+/// Where a tracking instrument can look to.
 struct InstrumentLimits {
   double range_min = 0.2;  ///< m, station to reflector
   double range_max = 15.0;
@@ -36,14 +42,15 @@ struct InstrumentLimits {
 struct MachineSurroundings {
   double spindle_radius = 0.1;  ///< m, of a cylinder about the tool axis behind the spindle's reference point
   double clearance = 0.1;       ///< m, of a station from the box that tools and spindle sweep
-  /// Where stations may stand, workpiece coordinates; without: beside the swept box up to 30 % of it
-  /// (250 mm at least), from the lowest functional point, where the table is, up to its middle.
+  /// Where stations may stand, workpiece coordinates. Without, tracking instruments: beside the swept box up
+  /// to 30 % of it (250 mm at least), from the lowest functional point, where the table is, up to its middle;
+  /// centre balls: in the swept box.
   std::optional<Eigen::AlignedBox3d> stations_w;
 };
 
 struct TimeCosts {
   double station = 1200.0;  ///< s, to put up an instrument
-  double run = 300.0;       ///< s, to change the tool and find the beam again
+  double run = 300.0;       ///< s, to change the tool and find the beam again; of a ball-bar: or the plane
   double reading = 4.0;     ///< s, the machine standing
   double feed = 0.1;        ///< m/s, from position to position
 };
@@ -73,6 +80,7 @@ struct PlanSettings {
   ModelSpec model;
   std::string instrument = "laser-tracer";
   PlanNoise noise;
+  PlannedBar bar;
   InstrumentLimits limits;
   MachineSurroundings surroundings;
   TimeCosts costs;

@@ -1,7 +1,9 @@
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
+#include "volcal/identify/planning/path_choice.h"
 #include "volcal/identify/planning/plan_search.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -18,56 +20,73 @@ std::vector<PlanPosition> even_choice(const std::vector<PlanPosition>& positions
   return chosen;
 }
 
-std::vector<PlanPosition> textbook_grid(const PlanSettings& settings, const LineOfSight& sight,
-                                        const PlanLayout& layout, const PlanRun& run, std::size_t count,
-                                        std::uint64_t stream) {
+std::vector<PlanPosition> textbook_grid(const LineOfSight& sight, const PlanLayout& layout,
+                                        const PlanRun& run, std::size_t count, std::uint64_t stream) {
   for (std::size_t asked = count; asked <= 4 * count + 64; asked += 1 + asked / 16) {
-    std::vector<PlanPosition> seen =
-        grid_over_travel(settings.machine, even_grid(settings.machine, asked), kTextbookJitter, settings.seed,
-                         kTextbookStream + stream);
-    std::erase_if(seen, [&](const PlanPosition& each) {
-      return !sight.sees(layout.stations_w[run.station], each.position, run.tool);
-    });
-    if (seen.size() >= count) return even_choice(in_path_order(std::move(seen)), count);
+    const PlanRun seen = sight
+                             .candidate_runs(layout.stations_w[run.station], run.station, run.tool,
+                                             {asked, kTextbookJitter, kTextbookStream + stream})
+                             .front();
+    if (seen.positions.size() >= count) return even_choice(seen.positions, count);
   }
   return {};
 }
 
-/// Around the floor of the region, at its corners where there are four; the fourth at its top, since four
-/// stations in one plane know next to nothing (Takatsuji et al. 1998, Meas. Sci. Technol. 9, 1357).
-std::vector<Eigen::Vector3d> around_volume(const LineOfSight& sight, int count) {
-  int up = 0;
-  sight.spindle_w().cwiseAbs().maxCoeff(&up);
-  const int first = (up + 1) % 3, second = (up + 2) % 3;
-  const Eigen::AlignedBox3d& region = sight.stations_w();
-  const Eigen::AlignedBox3d& swept = sight.swept_w();
-  const double floor = std::clamp(sight.spindle_w()[up] > 0.0 ? swept.min()[up] : swept.max()[up],
-                                  region.min()[up], region.max()[up]);
-  constexpr int kAround[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
-  std::vector<Eigen::Vector3d> stations;
-  for (int i = 0; i < count; ++i) {
-    const double turn = 4.0 * i / count;
-    const int corner = static_cast<int>(turn);
-    const double share = turn - corner;
-    Eigen::Vector3d station;
-    const bool raised = i % 4 == 3;
-    station[up] = raised ? sight.spindle_w()[up] > 0.0 ? region.max()[up] : region.min()[up] : floor;
-    for (int k = 0; k < 2; ++k) {
-      const int axis = k == 0 ? first : second;
-      const double place = kAround[corner][k] + share * (kAround[corner + 1][k] - kAround[corner][k]);
-      station[axis] = region.min()[axis] + place * region.sizes()[axis];
-    }
-    stations.push_back(station);
-  }
-  return stations;
-}
-
 /// Evenly over the runs.
-void spread_over_runs(const PlanSettings& settings, const LineOfSight& sight, std::size_t positions,
-                      PlanLayout& layout) {
+void spread_over_runs(const LineOfSight& sight, std::size_t positions, PlanLayout& layout) {
   for (std::size_t r = 0; r < layout.runs.size(); ++r) {
     const std::size_t own = positions / layout.runs.size() + (r < positions % layout.runs.size() ? 1 : 0);
-    layout.runs[r].positions = textbook_grid(settings, sight, layout, layout.runs[r], own, r);
+    layout.runs[r].positions = textbook_grid(sight, layout, layout.runs[r], own, r);
+  }
+}
+
+/// Every tool at every station, an even grid for each.
+void lay_grids(const PlanSettings& settings, const LineOfSight& sight, PlanLayout& layout) {
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
+    for (const std::size_t tool : tools_of(settings)) layout.runs.push_back({i, tool, {}});
+  }
+  std::size_t positions = affordable_readings(settings, layout) / 2;
+  spread_over_runs(sight, positions, layout);
+  while (settings.budget.time && positions > layout.runs.size() &&
+         duration(layout, settings) > *settings.budget.time) {
+    positions -= 1 + positions / 50;
+    spread_over_runs(sight, positions, layout);
+  }
+  std::erase_if(layout.runs, [](const PlanRun& run) { return run.positions.empty(); });
+}
+
+/// Refuses a budget that does not hold one path at every place, before anything is searched.
+void require_paths(const PlanSettings& settings, const LineOfSight& sight, PlanLayout layout) {
+  for (std::size_t place = 0; place < layout.stations_w.size(); ++place) {
+    std::vector<PlanRun> runs;
+    for (const std::size_t tool : tools_of(settings)) {
+      if (runs.empty()) runs = sight.candidate_runs(layout.stations_w[place], place, tool, {});
+    }
+    if (!runs.empty()) layout.runs.push_back(runs.front());
+  }
+  if (layout.runs.empty()) {
+    throw InputError({}, "nothing can be measured about the middle of the volume: no tool gets round it",
+                     "give a shorter --bar-mm, a smaller --spindle-mm or another --region-mm");
+  }
+  if (!fits_budget(layout, settings)) {
+    throw InputError({}, "readings or time do not suffice for one path at every place",
+                     "give more --readings or --time, or fewer --stations");
+  }
+}
+
+/// All that a tool measures at a place, tools in turn from place to place so that each is used alike, as far
+/// as the budget goes.
+void lay_paths(const PlanSettings& settings, const LineOfSight& sight, PlanLayout& layout) {
+  require_paths(settings, sight, layout);
+  const std::vector<std::size_t> tools = tools_of(settings);
+  for (std::size_t turn = 0; turn < tools.size(); ++turn) {
+    for (std::size_t place = 0; place < layout.stations_w.size(); ++place) {
+      const std::size_t tool = tools[(place + turn) % tools.size()];
+      for (PlanRun& run : sight.candidate_runs(layout.stations_w[place], place, tool, {})) {
+        layout.runs.push_back(std::move(run));
+        if (!fits_budget(layout, settings)) layout.runs.pop_back();
+      }
+    }
   }
 }
 
@@ -75,19 +94,14 @@ void spread_over_runs(const PlanSettings& settings, const LineOfSight& sight, st
 
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight) {
   PlanLayout layout;
-  layout.stations_w = around_volume(sight, settings.budget.stations);
-  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
+  layout.stations_w = sight.textbook_stations_w(settings.budget.stations);
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i)
     layout.station_names.push_back("P" + std::to_string(i + 1));
-    for (const std::size_t tool : tools_of(settings)) layout.runs.push_back({i, tool, {}});
+  if (sight.instrument().takes_runs_whole()) {
+    lay_paths(settings, sight, layout);
+  } else {
+    lay_grids(settings, sight, layout);
   }
-  std::size_t positions = affordable_readings(settings, layout) / 2;
-  spread_over_runs(settings, sight, positions, layout);
-  while (settings.budget.time && positions > layout.runs.size() &&
-         duration(layout, settings) > *settings.budget.time) {
-    positions -= 1 + positions / 50;
-    spread_over_runs(settings, sight, positions, layout);
-  }
-  std::erase_if(layout.runs, [](const PlanRun& run) { return run.positions.empty(); });
   return layout;
 }
 

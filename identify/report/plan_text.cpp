@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/model/description/units.h"
@@ -40,13 +42,45 @@ std::vector<const ExpectedCampaign*> compared(const CampaignPlan& plan) {
   return all;
 }
 
+InstrumentWords words_of(const CampaignPlan& plan) { return plan_instrument_of(plan.settings).words(); }
+
+/// "100 mm, u 0.5 um"
+std::string bar_words(const PlannedBar& bar) {
+  const std::string length = fmt::format("{:g} mm", bar.length * kPerMillimetre);
+  if (!bar.length_sigma) return length + ", length unknown";
+  return fmt::format("{}, u {:g} um", length, *bar.length_sigma * kPerMicrometre);
+}
+
+/// "short 76, side_x 90"; where a tool has several parts "short XY 72, short YZ 66".
+std::string readings_by_tool(const PlanLayout& layout, std::size_t station, const Machine& machine) {
+  std::string text;
+  for (const PlanRun& run : layout.runs) {
+    if (run.station != station) continue;
+    text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", machine.tools[run.tool].name,
+                        run.part.empty() ? "" : " " + run.part, 2 * run.positions.size());
+  }
+  return text;
+}
+
+/// Stations of a campaign, or places of centre balls, whichever the plan has.
+std::set<std::string> places_of(const Campaign& campaign, const InstrumentWords& words) {
+  std::set<std::string> places;
+  for (const Setup& setup : campaign.setups) {
+    const PlanInstrument* instrument = find_plan_instrument(setup.instrument);
+    if (instrument == nullptr || instrument->words().place != words.place) continue;
+    if (const auto place = instrument->place_of(setup, campaign.machine)) places.insert(place->name);
+  }
+  return places;
+}
+
 std::string head(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
   const PlanBudget& budget = settings.budget;
   std::string text = fmt::format("{} ({})\n", settings.machine.name, settings.machine.structure.code);
   text += fmt::format("minimised: {}\n", target_words(settings));
-  text += fmt::format("budget: {} {}stations of {}", budget.stations, settings.existing ? "further " : "",
-                      settings.instrument);
+  text += fmt::format("budget: {} {}{} of {}", budget.stations, settings.existing ? "further " : "",
+                      words_of(plan).places, settings.instrument);
+  if (settings.bar.length > 0.0) text += " " + bar_words(settings.bar);
   if (budget.readings) text += fmt::format(", {} readings", count_number(*budget.readings));
   if (budget.time) text += fmt::format(", {} h", hours(*budget.time));
   text += "\n";
@@ -55,25 +89,20 @@ std::string head(const CampaignPlan& plan) {
 
 std::string layout_table(const CampaignPlan& plan) {
   const PlanLayout& layout = plan.searched.layout;
-  TextTable table({{"station", Align::Left},
+  const InstrumentWords words = words_of(plan);
+  TextTable table({{words.place, Align::Left},
                    {"x [mm]"},
                    {"y [mm]"},
                    {"z [mm]"},
                    {"may be off [mm]"},
                    {"readings by tool", Align::Left}},
-                  "Stations, workpiece coordinates");
+                  words.heading);
   for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
-    std::string runs;
-    for (const PlanRun& run : layout.runs) {
-      if (run.station != i) continue;
-      runs += fmt::format("{}{} {}", runs.empty() ? "" : ", ", plan.settings.machine.tools[run.tool].name,
-                          2 * run.positions.size());
-    }
     const Eigen::Vector3d at = layout.stations_w[i] * kPerMillimetre;
     const bool known = i < plan.searched.station_tolerance.size();
     table.add_row({layout.station_names[i], fixed_number(at.x(), 0), fixed_number(at.y(), 0),
                    fixed_number(at.z(), 0), known ? tolerance_text(plan.searched.station_tolerance[i]) : "-",
-                   runs});
+                   readings_by_tool(layout, i, plan.settings.machine)});
   }
   std::string text = table.text();
   if (!plan.searched.as_good_w.empty()) {
@@ -89,8 +118,9 @@ std::string layout_table(const CampaignPlan& plan) {
 }
 
 std::string figures_table(const CampaignPlan& plan) {
+  const InstrumentWords words = words_of(plan);
   TextTable table({{"campaign", Align::Left},
-                   {"stations"},
+                   {words.places},
                    {"setups"},
                    {"readings"},
                    {"time [h]"},
@@ -101,14 +131,8 @@ std::string figures_table(const CampaignPlan& plan) {
                    {"not visible", Align::Left}},
                   "What it would tell (standard uncertainties)");
   for (const ExpectedCampaign* each : compared(plan)) {
-    std::vector<std::string> stations;
-    for (const Setup& setup : each->campaign.setups) {
-      const std::string station = setup.options.text("station").value_or("");
-      if (!station.empty() && std::ranges::find(stations, station) == stations.end())
-        stations.push_back(station);
-    }
     const std::vector<std::string> hidden = each->invisible();
-    table.add_row({each->name, count_number(static_cast<long long>(stations.size())),
+    table.add_row({each->name, count_number(static_cast<long long>(places_of(each->campaign, words).size())),
                    count_number(static_cast<long long>(each->campaign.setups.size())),
                    count_number(static_cast<long long>(each->campaign.reading_count())),
                    hours(each->duration), fixed_number(each->volumetric.rms * kPerMicrometre, 3),

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -90,6 +91,23 @@ TEST(Guide, PlansTheCampaignThatItQuotes) {
   const auto one_tool = testing::run_program("plan " + machine + " --tools short --readings 480");
   EXPECT_EQ(one_tool.exit_code, 1) << one_tool.errors;
   expect_quoted(block_of_guide("```", "makes visible", guide), one_tool.output);
+}
+
+TEST(Guide, PlansTheBallBarCampaignThatItQuotes) {
+  const testing::ScratchFolder scratch;
+  const std::string guide = "plan-a-campaign.md", machine = (kSource / "datasets/demo/machine.toml").string();
+  const std::string model = (scratch.path() / "quadratic.toml").string();
+  std::ofstream file(model);
+  for (const std::string& line : block_of_guide("```toml", "legendre", guide))
+    file << (line.starts_with("machine") ? "machine = \"" + machine + "\"" : line) << "\n";
+  file.close();
+  const std::string bar =
+      "plan " + machine + " --model " + model + " --instrument ball-bar --bar-mm 150 --bar-sigma-um 0.5";
+  expect_quoted(block_of_guide("```", "3 places of ball-bar", guide),
+                run(bar + " --stations 3 --readings 1200"));
+  const auto two_places = testing::run_program(bar + " --stations 2 --readings 1200");
+  EXPECT_EQ(two_places.exit_code, 1) << two_places.errors;
+  expect_quoted(block_of_guide("```", "a further place", guide), two_places.output);
 }
 
 /// A command of a guide and the lines that it quotes of what is printed.

@@ -64,6 +64,88 @@ TEST(Plan, IsSimulatedAndFitted) {
               1.0, 0.05);  // the same positions; stations are guessed 5 mm off
 }
 
+/// Root mean square of u over the errors of one kind, in um or urad; `errors`: of a plan or of a result, with
+/// the factor to the micro unit.
+double mean_u(const nlohmann::json& errors, const char* key, double micro, bool rotations) {
+  double squares = 0.0, count = 0.0;
+  for (const nlohmann::json& error : errors) {
+    const bool is_rotation =
+        std::string("ABC").find(error["symbol"].get<std::string>()[1]) != std::string::npos;
+    if (is_rotation != rotations) continue;
+    squares += std::pow(error[key].get<double>() * micro, 2);
+    count += 1.0;
+  }
+  return std::sqrt(squares / count);
+}
+
+/// Circles of a ball-bar with three tools about three places; the simulated machine has no errors, so that
+/// the fit finds the noise that the plan assumed.
+TEST(Plan, OfABallBarIsSimulatedAndFitted) {
+  const testing::ScratchFolder scratch;
+  const std::string plan = (scratch.path() / "plan").string(),
+                    model = (scratch.path() / "model.toml").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\nmachine = \"" << kMachine
+                       << "\"\n[functions]\ndefault = { basis = \"legendre\", degree = 2 }\n";
+  const auto planned = run_program("plan " + kMachine + " --model " + model +
+                                   " --instrument ball-bar --bar-mm 150 --bar-sigma-um 0.5 --stations 3"
+                                   " --readings 1200 -o " +
+                                   plan);
+  ASSERT_EQ(planned.exit_code, 0) << planned.output << planned.errors;
+  EXPECT_THAT(planned.output, HasSubstr("budget: 3 places of ball-bar 150 mm, u 0.5 um, 1,200 readings"));
+  EXPECT_THAT(planned.output, HasSubstr("Places of the centre ball, workpiece coordinates"));
+  const nlohmann::json json = json_of(std::filesystem::path(plan) / "plan.json");
+  const nlohmann::json& expected = json["campaigns"][0];
+  EXPECT_LE(expected["readings"], 1200);
+  EXPECT_TRUE(expected["not_visible"].empty());
+  std::ofstream(plan + "/study.toml", std::ios::app) << "\n[truth]\nkind = \"perfect\"\n";
+
+  const std::string measured = (scratch.path() / "measured").string();
+  const auto simulated = run_program("simulate " + plan + "/study.toml -o " + measured);
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+  EXPECT_THAT(simulated.output, HasSubstr(std::to_string(expected["readings"].get<int>()) + " readings in " +
+                                          std::to_string(expected["setups"].get<int>()) + " setups"));
+  const std::string result = (scratch.path() / "result").string();
+  const auto fitted =
+      run_program("fit " + measured + "/campaign.toml --model " + model + " --noise white -o " + result);
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.output << fitted.errors;
+  const nlohmann::json fit = json_of(std::filesystem::path(result) / "result.json");
+  for (const bool rotations : {false, true}) {
+    EXPECT_NEAR(mean_u(fit["rank"]["errors"], "u_rms", 1e6, rotations) /
+                    mean_u(expected["errors"], "u", 1.0, rotations),
+                1.0, 0.1)
+        << (rotations ? "rotations" : "displacements");
+  }
+}
+
+TEST(Plan, OfABallBarNamesWhatItCannotSee) {
+  const testing::ScratchFolder scratch;
+  const std::string model = model_of_two_pieces(scratch.path());
+  const auto planned = run_program("plan " + kMachine + " --model " + model +
+                                   " --instrument ball-bar --bar-mm 100 --stations 1 --tools short"
+                                   " --readings 300");
+  EXPECT_EQ(planned.exit_code, 1) << planned.errors;
+  EXPECT_THAT(planned.output, HasSubstr("What this budget cannot determine"));
+  EXPECT_THAT(planned.output, HasSubstr("a further place at ["));
+  EXPECT_THAT(planned.output, HasSubstr("tool side_y at P1"));
+}
+
+TEST(Plan, RefusesOptionsOfOtherInstruments) {
+  const auto refused = [](const std::string& arguments, const std::string& words) {
+    const auto run = run_program("plan " + kMachine + " --readings 400 " + arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments;
+    EXPECT_THAT(run.errors, HasSubstr(words)) << arguments;
+  };
+  refused("--bar-mm 100", "--bar-mm does not apply to a laser-tracer");
+  refused("--instrument laser-tracker --bar-sigma-um 1", "--bar-sigma-um does not apply to a laser-tracker");
+  refused("--instrument ball-bar --bar-mm 100 --range-mm 1,2", "--range-mm does not apply to a ball-bar");
+  refused("--instrument ball-bar --bar-mm 100 --clearance-mm 5",
+          "--clearance-mm does not apply to a ball-bar");
+  refused("--instrument ball-bar", "length of the ball-bar is missing");
+  refused("--instrument ball-bar --bar-mm 2000", "give a shorter --bar-mm");
+  refused("--instrument ball-bar --bar-mm -1", "--bar-mm");
+  refused("--instrument ball-bar --bar-mm 100 --stations 12", "fewer --stations");
+}
+
 TEST(Plan, RefusesBadInput) {
   const auto refused = [](const std::string& arguments, const std::string& words) {
     const auto run = run_program("plan " + arguments);

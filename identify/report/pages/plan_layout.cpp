@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/plan_text.h"
@@ -22,6 +23,12 @@ Json corners_json(const Eigen::AlignedBox3d& box) {
     corners.push_back(rounded_vector(box.min() + share.cwiseProduct(box.sizes()), kPerMilli, 6));
   }
   return corners;
+}
+
+/// What a setup of a plan measures with its tool, as "XY", from its name.
+std::string part_of(const Setup& setup, const std::string& place, const std::string& tool) {
+  const std::string before = place + "_" + tool + "_";
+  return setup.name.starts_with(before) ? setup.name.substr(before.size()) : "";
 }
 
 /// First readings of every position: the pass there.
@@ -43,11 +50,14 @@ Json planned_setup_json(const Setup& setup, const Machine& machine, const Kinema
     if (row % step == 0) points.push_back(point);
     if (row % beam_step == 0) beams.push_back(point);
   }
-  const auto station = setup.options.vector("station");
+  const std::string& tool = machine.tools[setup.tool].name;
+  const PlanInstrument* instrument = find_plan_instrument(setup.instrument);
+  const auto place = instrument != nullptr ? instrument->place_of(setup, machine) : std::nullopt;
   return {{"name", setup.name},
-          {"station", setup.options.text("station").value_or("")},
-          {"station_mm", station ? rounded_vector(*station, kPerMilli, 6) : Json(nullptr)},
-          {"tool", machine.tools[setup.tool].name},
+          {"station", place ? place->name : ""},
+          {"station_mm", place ? rounded_vector(place->place_w, kPerMilli, 6) : Json(nullptr)},
+          {"tool", tool},
+          {"part", place ? part_of(setup, place->name, tool) : ""},
           {"instrument", setup.instrument},
           {"readings", readings.size()},
           {"point_mm", std::move(points)},
@@ -97,10 +107,20 @@ Json plan_layout_page(const PlanPageInput& input) {
                        {"made_visible", option.made_visible},
                        {"still_invisible", option.still_invisible}});
   }
-  return {{"target", target_words(plan.settings)},         {"ratio", rounded(target_ratio(plan), 4)},
-          {"against", compared_with(plan).name},           {"volume_mm", corners_json(sight.swept_w())},
-          {"region_mm", corners_json(sight.stations_w())}, {"campaigns", std::move(campaigns)},
-          {"invisible", plan.plan.result.rank.invisible},  {"options", std::move(options)}};
+  const InstrumentWords words = sight.instrument().words();
+  return {{"place", words.place},
+          {"places", words.places},
+          {"heading", words.heading},
+          {"region", words.region},
+          {"checked", words.checked},
+          {"target", target_words(plan.settings)},
+          {"ratio", rounded(target_ratio(plan), 4)},
+          {"against", compared_with(plan).name},
+          {"volume_mm", corners_json(sight.swept_w())},
+          {"region_mm", corners_json(sight.stations_w())},
+          {"campaigns", std::move(campaigns)},
+          {"invisible", plan.plan.result.rank.invisible},
+          {"options", std::move(options)}};
 }
 
 }  // namespace volcal::report

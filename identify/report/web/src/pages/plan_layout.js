@@ -33,13 +33,13 @@ function toolTraces(campaign, tools) {
   });
 }
 
-function stationTrace(campaign) {
+function stationTrace(data, campaign) {
   const stations = stationsOf(campaign);
   const at = stations.map(([, place]) => place);
   return {
     x: column(at, 0), y: column(at, 1), z: column(at, 2), text: stations.map(([name]) => plainInScene(name)), customdata: stations.map(([name]) => plain(name)),
     type: 'scatter3d', mode: 'markers+text', textposition: 'top center', textfont: { size: 13, color: color('text') },
-    marker: { size: 6, symbol: 'diamond', color: color('text') }, name: 'stations', hovertemplate: '%{customdata}: %{x:.0f}, %{y:.0f}, %{z:.0f} mm<extra></extra>',
+    marker: { size: 6, symbol: 'diamond', color: color('text') }, name: data.places, hovertemplate: '%{customdata}: %{x:.0f}, %{y:.0f}, %{z:.0f} mm<extra></extra>',
   };
 }
 
@@ -50,8 +50,8 @@ function picture(data, campaign, node) {
     zeroline: false, showbackground: false, tickfont: { size: 10 }, nticks: 6, showspikes: false,
   });
   return {
-    data: [boxTrace(data.volume_mm, 'functional points', color('muted')), boxTrace(data.region_mm, 'stations may stand', color('rule'), 'dash'),
-      ...toolTraces(campaign, tools), stationTrace(campaign)],
+    data: [boxTrace(data.volume_mm, 'functional points', color('muted')), boxTrace(data.region_mm, data.region, color('rule'), 'dash'),
+      ...toolTraces(campaign, tools), stationTrace(data, campaign)],
     layout: {
       height: Math.round(1.15 * sceneHeight(node)), margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)', ...commonLayout(), uirevision: 'keep',
       legend: { x: 0, y: 0, yanchor: 'bottom', orientation: 'h', bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant' },
@@ -60,14 +60,16 @@ function picture(data, campaign, node) {
   };
 }
 
-function stationTable(campaign) {
+const capital = (word) => word.charAt(0).toUpperCase() + word.slice(1);
+
+function stationTable(data, campaign) {
   const rows = stationsOf(campaign).map(([name, place]) => ({
     name, place,
-    runs: campaign.setups.filter((setup) => setup.station === name).map((setup) => `${setup.tool} ${setup.readings}`).join(', '),
+    runs: campaign.setups.filter((setup) => setup.station === name).map((setup) => [setup.tool, setup.part, setup.readings].filter((word) => word !== '').join(' ')).join(', '),
     off: campaign.may_be_off_mm[name],
   }));
   return table([
-    { name: 'Station', align: 'left', cell: (row) => row.name },
+    { name: capital(data.place), align: 'left', cell: (row) => row.name },
     ...['x', 'y', 'z'].map((name, i) => ({ name, unit: 'mm', cell: (row) => fixed(row.place[i], 0) })),
     { name: 'May be off', unit: 'mm', title: 'along any axis, until the target is 1 % worse', cell: (row) => (row.off === 0 ? '< 10' : fixed(row.off, 0)) },
     { name: 'Readings by tool', align: 'left', cell: (row) => row.runs },
@@ -105,7 +107,7 @@ export function renderPlanLayout(body, data) {
   const node = el('div', { class: 'plot scene' });
   const stations = el('div', {});
   const redraw = addPlot(node, () => picture(data, view.campaign, node));
-  const describe = () => stations.replaceChildren(stationTable(view.campaign));
+  const describe = () => stations.replaceChildren(stationTable(data, view.campaign));
   const options = data.campaigns.map((campaign, k) => [k, campaign.name]);
   const controls = choice('Show', options, (k) => {
     view.campaign = data.campaigns[k];
@@ -114,8 +116,8 @@ export function renderPlanLayout(body, data) {
   });
   describe();
   body.append(
-    el('div', { class: 'controls' }, controls), node, stations,
-    note('Workpiece coordinates. Dots: functional points where readings are taken, every one from both directions; lines: some of the beams. Click a name in the legend to show or hide it; drag to turn, wheel to zoom. Checked: range and elevation of the instrument, that beams pass by the spindle, that stations are clear of what tools and spindle sweep; not columns, covers and clamped parts.'),
+    el('div', { class: 'controls' }, controls), node, el('h3', {}, data.heading), stations,
+    note(`Workpiece coordinates. Dots: functional points where readings are taken, every one from both directions; lines: some of the beams or bars. Click a name in the legend to show or hide it; drag to turn, wheel to zoom. ${data.checked}`),
   );
   if (data.options.length > 0) body.append(el('h3', {}, 'What one setup more would bring'), optionTable(data.options));
 }

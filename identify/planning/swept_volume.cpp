@@ -1,0 +1,104 @@
+#include "volcal/identify/planning/swept_volume.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace volcal {
+namespace {
+
+constexpr double kProgrammedSteps = 1e6;  // per metre
+
+/// Opposite to the tools, along a coordinate direction.
+Eigen::Vector3d spindle_direction(const Machine& machine) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Tool& tool : machine.tools) sum += tool.offset;
+  if (sum.norm() < 1e-6) return Eigen::Vector3d::UnitZ();
+  int along = 0;
+  sum.cwiseAbs().maxCoeff(&along);
+  return -Eigen::Vector3d::Unit(along) * std::copysign(1.0, sum[along]);
+}
+
+}  // namespace
+
+AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share) {
+  AxisPosition position{};
+  for (const Axis& axis : machine.axes) {
+    position[index_of(axis.name)] =
+        is_rotary(axis.name) ? axis.home : axis.travel_min + share[direction_of(axis.name)] * axis.travel();
+  }
+  return position;
+}
+
+double distance_from_half_line(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+  // Distance to the half line is convex along the segment: golden sections.
+  const auto distance = [&](double share) -> double {
+    const Eigen::Vector3d arm = a + share * (b - a) - from;
+    const double along = std::max(0.0, arm.dot(direction));
+    return (arm - along * direction).norm();
+  };
+  constexpr double kGolden = 0.6180339887498949;
+  double low = 0.0, high = 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double first = high - kGolden * (high - low), second = low + kGolden * (high - low);
+    if (distance(first) <= distance(second)) {
+      high = second;
+    } else {
+      low = first;
+    }
+  }
+  return std::min({distance(0.5 * (low + high)), distance(0.0), distance(1.0)});
+}
+
+SweptVolume::SweptVolume(const PlanSettings& settings)
+    : settings_(settings), chain_(settings.machine), spindle_w_(spindle_direction(settings.machine)) {
+  for (std::size_t tool = 0; tool < settings.machine.tools.size(); ++tool) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Eigen::Vector3d share(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+      box_w_.extend(point_w(position_at_share(settings.machine, share), tool));
+    }
+  }
+}
+
+int SweptVolume::along_spindle() const {
+  int along = 0;
+  spindle_w_.cwiseAbs().maxCoeff(&along);
+  return along;
+}
+
+Eigen::Vector3d SweptVolume::point_w(const AxisPosition& position, std::size_t tool) const {
+  return chain_.nominal_point_w(position, settings_.machine.tools[tool].offset);
+}
+
+std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& wanted_w,
+                                                     std::size_t tool) const {
+  AxisPosition position{};
+  for (const Axis& axis : settings_.machine.axes) {
+    if (is_rotary(axis.name)) position[index_of(axis.name)] = axis.home;
+  }
+  const Eigen::Vector3d at_zero = point_w(position, tool);
+  Eigen::Matrix3d directions;
+  for (const AxisName name : kLinearAxes) {
+    AxisPosition moved = position;
+    moved[index_of(name)] = 1.0;
+    directions.col(direction_of(name)) = point_w(moved, tool) - at_zero;
+  }
+  const Eigen::Vector3d moves = directions.inverse() * (wanted_w - at_zero);
+  for (const AxisName name : kLinearAxes) {
+    const double q = std::round(moves[direction_of(name)] * kProgrammedSteps) / kProgrammedSteps;
+    const Axis& axis = settings_.machine.axis(name);
+    if (q < axis.travel_min || q > axis.travel_max) return std::nullopt;
+    position[index_of(name)] = q;
+  }
+  return position;
+}
+
+bool SweptVolume::passes_spindle(const Eigen::Vector3d& from_w, const AxisPosition& position,
+                                 std::size_t tool) const {
+  const Eigen::Vector3d reference = chain_.nominal_point_w(position, Eigen::Vector3d::Zero());
+  return distance_from_half_line(from_w, point_w(position, tool), reference, spindle_w_) >=
+         settings_.surroundings.spindle_radius;
+}
+
+}  // namespace volcal

@@ -13,8 +13,9 @@
 namespace volcal {
 namespace {
 
-constexpr int kLines = 24;
-constexpr int kReadings = 8;
+constexpr Eigen::Index kLines = 24;
+constexpr Eigen::Index kReadings = 8;  // of a line
+constexpr Eigen::Index kAll = kLines * kReadings;
 constexpr double kSigma = 1e-6;
 
 NoiseProblem balanced_layout(double line_offset) {
@@ -22,17 +23,15 @@ NoiseProblem balanced_layout(double line_offset) {
   std::normal_distribution<double> normal;
   NoiseProblem problem;
   NoiseSequence sequence;
-  problem.jacobian.setOnes(kLines * kReadings, 1);
-  problem.residual.resize(kLines * kReadings);
-  for (int line = 0; line < kLines; ++line) {
-    const double offset = line_offset * normal(random);
-    for (int k = 0; k < kReadings; ++k) {
-      const int i = line * kReadings + k;
-      sequence.observation.push_back(static_cast<std::size_t>(i));
-      sequence.line.push_back(line);
-      problem.data.sigma.push_back(kSigma);
-      problem.residual[i] = offset + kSigma * normal(random);
-    }
+  problem.jacobian.setOnes(kAll, 1);
+  problem.residual.resize(kAll);
+  double offset = 0.0;
+  for (Eigen::Index i = 0; i < kAll; ++i) {
+    if (i % kReadings == 0) offset = line_offset * normal(random);
+    sequence.observation.push_back(static_cast<std::size_t>(i));
+    sequence.line.push_back(static_cast<std::int32_t>(i / kReadings));
+    problem.data.sigma.push_back(kSigma);
+    problem.residual[i] = offset + kSigma * normal(random);
   }
   problem.data.sequences.push_back(sequence);
   return problem;
@@ -49,22 +48,23 @@ double freedom_of(const Eigen::VectorXd& moved, double line_offset) {
 
 /// Rises from line to line.
 Eigen::VectorXd between_lines() {
-  return Eigen::VectorXd::NullaryExpr(
-      kLines * kReadings, [](Eigen::Index i) { return 1e-6 * static_cast<double>(i / kReadings); });
+  Eigen::VectorXd moved(kAll);
+  for (Eigen::Index line = 0; line < kLines; ++line)
+    moved.segment(line * kReadings, kReadings).setConstant(1e-6 * static_cast<double>(line));
+  return moved;
 }
 
 /// Alternates within every line.
 Eigen::VectorXd within_lines() {
-  return Eigen::VectorXd::NullaryExpr(kLines * kReadings,
-                                      [](Eigen::Index i) { return i % 2 == 0 ? 1e-6 : -1e-6; });
+  return Eigen::VectorXd::NullaryExpr(kAll, [](Eigen::Index i) { return i % 2 == 0 ? 1e-6 : -1e-6; });
 }
 
 TEST(NoiseFreedom, BetweenLinesIsThatOfTheirMeans) {
-  EXPECT_NEAR(freedom_of(between_lines(), 2e-6), kLines - 1.0, 2.5);
+  EXPECT_NEAR(freedom_of(between_lines(), 2e-6), static_cast<double>(kLines - 1), 2.5);
 }
 
 TEST(NoiseFreedom, WithinLinesIsThatOfTheScatterAboutTheirMeans) {
-  EXPECT_NEAR(freedom_of(within_lines(), 2e-6), kLines * (kReadings - 1.0), 8.0);
+  EXPECT_NEAR(freedom_of(within_lines(), 2e-6), static_cast<double>(kLines * (kReadings - 1)), 8.0);
 }
 
 TEST(NoiseFreedom, IsUnlimitedWhereNoiseIsWhite) {

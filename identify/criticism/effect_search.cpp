@@ -11,8 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "volcal/identify/criticism/beside_noise.h"
-#include "volcal/identify/criticism/noise_freedom.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/stats/chi_squared.h"
@@ -27,10 +25,9 @@ const double kLog10RiskBesideNoise = std::log10(0.0005);
 
 namespace {
 
-constexpr double kToldApart = 6.0;         // of the extended BIC
-constexpr double kWorthRefining = 40.0;    // the same, below the leading one
-constexpr double kNotByChance = -2.0;      // log10 p of a family for itself, before its shape is refined
-constexpr double kWorthEstimating = 20.0;  // of a likelihood ratio: what noise estimated beside it may add
+constexpr double kToldApart = 6.0;       // of the extended BIC
+constexpr double kWorthRefining = 40.0;  // the same, below the leading one
+constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, before its shape is refined
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
 constexpr double kMoreGain = 2.0;        // of a scan that does better than the leading name
@@ -38,7 +35,6 @@ constexpr double kLessProbable = 0.03;   // the same, share of log10 p, family-w
 constexpr double kLessProbableByComponents = 0.1;  // those that are not there cost probability
 constexpr int kMostChanges = 4;
 constexpr int kMostTogether = 3;
-constexpr std::size_t kMostBesideNoise = 3;
 constexpr int kNoiseRounds = 2;
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
@@ -198,31 +194,6 @@ void EffectSearch::climb() {
   }
 }
 
-/// Above the noise, also where the noise that the effect would stand on is hardly known.
-void EffectSearch::find_outstanding() {
-  outstanding_.clear();
-  std::vector<std::size_t> above;
-  for (std::size_t i = 0; i < tests_.size(); ++i) {
-    if (tests_[i].score.dof > 0 && family_wise_log10_p(tests_[i]) <= kLog10FamilyRisk) above.push_back(i);
-  }
-  if (above.empty()) return;
-  std::ranges::sort(above, std::greater{}, [this](std::size_t i) { return tests_[i].gain; });
-  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), static_cast<Eigen::Index>(above.size()));
-  for (std::size_t k = 0; k < above.size(); ++k) {
-    const FamilyTest& test = tests_[above[k]];
-    moved.col(static_cast<Eigen::Index>(k)) =
-        family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
-  }
-  const std::vector<double> freedom = noise_freedom(
-      moved, *projector_, noise_with_uncertainty(),
-      [this](const auto& noise) { return projector_of(without(model_.problem().data, heldout_), noise); });
-  for (std::size_t k = 0; k < above.size(); ++k) {
-    const FamilyTest& test = tests_[above[k]];
-    const double p = exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) * test.multiplicity;
-    if (std::log10(p) + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(above[k]);
-  }
-}
-
 /// The best of those that are not in the model; null: none.
 const FamilyTest* EffectSearch::outstanding() const {
   const auto found =
@@ -290,32 +261,6 @@ bool EffectSearch::explain_together(std::size_t first) const {
   const std::vector<GenericTest> scans = generic_scan(model_, variables_, *before, options_.threads);
   return std::ranges::none_of(
       scans, [&](const GenericTest& scan) { return does_better(scan, lm - price, log10_p, kLessProbable); });
-}
-
-/// Noise that was estimated without an effect can have taken it for wander: the most promising are tested
-/// with the noise estimated beside them.
-bool EffectSearch::add_hidden_in_noise() {
-  if (options_.progress) options_.progress("effects that noise may hold", 0.9);
-  const NoiseProblem problem = problem_with_added();
-  std::vector<FamilyTest> tests;
-  for (const NoiseAlternative& other : noise_without_wander(problem, *noise_estimate_, options_.threads)) {
-    const auto projector = projector_of(without(problem.data, heldout_), other.noise);
-    for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
-      if (!may_be_added(test) || test.score.lm < other.loss - kWorthEstimating) continue;
-      refine_shape(model_, families_[test.family], *projector, test);
-      test.gain -= other.loss;
-      tests.push_back(std::move(test));
-    }
-  }
-  std::ranges::sort(tests, std::greater{}, &FamilyTest::gain);
-  if (tests.size() > kMostBesideNoise) tests.resize(kMostBesideNoise);
-  for (FamilyTest& test : tests) {
-    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, options_.threads, test);
-  }
-  const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
-  if (best == tests.end() || family_wise_log10_p(*best) > kLog10RiskBesideNoise) return false;
-  add(FamilyTest(*best));
-  return true;
 }
 
 void EffectSearch::add(const FamilyTest& test) {

@@ -3,9 +3,9 @@
 /// noise, as well as that is known (noise_freedom.h), and no generic test does better; then every added one
 /// must stand against all others again. Several powers of one driver on one target are no name, nor is what
 /// explains less than it leaves or what varies (constancy_test.h): such are left out again, or a rival that
-/// stands takes their place. Where nothing stands out, effects are looked for that a wander has taken up
-/// (beside_noise.h). A search for one step climbs as well, so that what it names stands beside all the rest,
-/// and then keeps the first.
+/// stands takes their place. Where nothing stands out, effects are looked for that a wander has taken up, or
+/// that would stand out were the noise better known (beside_noise.h). A search for one step climbs as well,
+/// so that what it names stands beside all the rest, and then keeps the first.
 
 #include <functional>
 #include <map>
@@ -97,6 +97,8 @@ class EffectSearch {
   bool add_several();
   std::vector<FamilyTest> added_tests() const;
   bool explain_together(std::size_t first) const;
+  std::vector<FamilyTest> held_by_a_wander(const NoiseProblem& problem) const;
+  std::vector<FamilyTest> above_doubtful_noise() const;
   bool add_hidden_in_noise();
   void add(const FamilyTest& test);
   Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;

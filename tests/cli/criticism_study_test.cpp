@@ -74,6 +74,22 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
   EXPECT_GE(strong, 2);
 }
 
+/// A servo mismatch twenty times the noise, of which a wander of some seconds on the ball-bar leaves so
+/// little that it is above the noise by chi-squared and not by F.
+TEST(CriticismStudy, NamesWhatAShortWanderHasTakenUp) {
+  const testing::ScratchFolder folder;
+  const std::string output = (folder.path() / "kept").string();
+  const auto kept = run_program("study criticism --one listed:43 --seed 2001 -o " + output);
+  ASSERT_EQ(kept.exit_code, 0) << kept.errors;
+  const auto run =
+      run_program("diagnose " + output + "/campaign.toml -m " + output + "/model.toml --auto --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const json diagnosis = json::parse(run.output);
+  EXPECT_EQ(diagnosis.at("verdict"), "NAMED");
+  ASSERT_EQ(diagnosis.at("effects").size(), 1U);
+  EXPECT_EQ(diagnosis.at("effects")[0].at("kind"), "servo-mismatch");
+}
+
 TEST(CriticismStudy, DoesNotDependOnTheNumberOfThreads) {
   const std::string command = "study criticism --rows listed -n 2 --readings 400 --json --threads ";
   const auto one = run_program(command + "1");

@@ -1,0 +1,94 @@
+// EffectSearch: what stands out, and how well the noise is known that it stands on.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "volcal/identify/criticism/beside_noise.h"
+#include "volcal/identify/criticism/effect_search.h"
+#include "volcal/identify/criticism/noise_freedom.h"
+#include "volcal/identify/criticism/shape_refinement.h"
+#include "volcal/identify/stats/chi_squared.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kWorthEstimating = 20.0;  // of a likelihood ratio: what noise estimated beside it may add
+constexpr std::size_t kMostBesideNoise = 3;
+
+void keep_best(std::vector<FamilyTest>& tests) {
+  std::ranges::sort(tests, std::greater{}, &FamilyTest::gain);
+  if (tests.size() > kMostBesideNoise) tests.resize(kMostBesideNoise);
+}
+
+}  // namespace
+
+/// Above the noise, also where the noise that the effect would stand on is hardly known.
+void EffectSearch::find_outstanding() {
+  outstanding_.clear();
+  std::vector<std::size_t> above;
+  for (std::size_t i = 0; i < tests_.size(); ++i) {
+    if (tests_[i].score.dof > 0 && family_wise_log10_p(tests_[i]) <= kLog10FamilyRisk) above.push_back(i);
+  }
+  if (above.empty()) return;
+  std::ranges::sort(above, std::greater{}, [this](std::size_t i) { return tests_[i].gain; });
+  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), static_cast<Eigen::Index>(above.size()));
+  for (std::size_t k = 0; k < above.size(); ++k) {
+    const FamilyTest& test = tests_[above[k]];
+    moved.col(static_cast<Eigen::Index>(k)) =
+        family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
+  }
+  const std::vector<double> freedom = noise_freedom(
+      moved, *projector_, noise_with_uncertainty(),
+      [this](const auto& noise) { return projector_of(without(model_.problem().data, heldout_), noise); });
+  for (std::size_t k = 0; k < above.size(); ++k) {
+    const FamilyTest& test = tests_[above[k]];
+    const double p = exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) * test.multiplicity;
+    if (std::log10(p) + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(above[k]);
+  }
+}
+
+/// Effects that would stand out were there no wander: noise that was estimated without an effect can have
+/// taken it for one.
+std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& problem) const {
+  std::vector<FamilyTest> tests;
+  for (const NoiseAlternative& other : noise_without_wander(problem, *noise_estimate_, options_.threads)) {
+    const auto projector = projector_of(without(problem.data, heldout_), other.noise);
+    for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
+      if (!may_be_added(test) || test.score.lm < other.loss - kWorthEstimating) continue;
+      refine_shape(model_, families_[test.family], *projector, test);
+      test.gain -= other.loss;
+      tests.push_back(std::move(test));
+    }
+  }
+  keep_best(tests);
+  return tests;
+}
+
+/// Effects above the noise, if it were as well known as that.
+std::vector<FamilyTest> EffectSearch::above_doubtful_noise() const {
+  std::vector<FamilyTest> tests;
+  for (const FamilyTest& test : tests_) {
+    if (may_be_added(test) && family_wise_log10_p(test) <= kLog10FamilyRisk) tests.push_back(test);
+  }
+  keep_best(tests);
+  return tests;
+}
+
+/// Where nothing stands out: the most promising of both, with the noise estimated beside them.
+bool EffectSearch::add_hidden_in_noise() {
+  if (options_.progress) options_.progress("effects that noise may hold", 0.9);
+  const NoiseProblem problem = problem_with_added();
+  std::vector<FamilyTest> tests = held_by_a_wander(problem);
+  std::ranges::move(above_doubtful_noise(), std::back_inserter(tests));
+  for (FamilyTest& test : tests) {
+    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, options_.threads, test);
+  }
+  const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
+  if (best == tests.end() || family_wise_log10_p(*best) > kLog10RiskBesideNoise) return false;
+  add(FamilyTest(*best));
+  return true;
+}
+
+}  // namespace volcal

@@ -31,10 +31,23 @@ std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, 
 
 namespace {
 
-/// Those that a group has, under either estimate.
-int noise_parameters(const NoiseEstimate& one, const NoiseEstimate& other) {
+/// Whether readings of a group are moved, per group.
+std::vector<bool> moved_groups(const NoiseData& data, const Eigen::VectorXd& moved, std::size_t groups) {
+  std::vector<bool> is_moved(groups, false);
+  for (const NoiseSequence& sequence : data.sequences) {
+    if (std::ranges::any_of(sequence.observation,
+                            [&](std::size_t row) { return moved[static_cast<Eigen::Index>(row)] != 0.0; })) {
+      is_moved[sequence.group] = true;
+    }
+  }
+  return is_moved;
+}
+
+/// Those that the groups counted have, under either estimate.
+int noise_parameters(const NoiseEstimate& one, const NoiseEstimate& other, const std::vector<bool>& counted) {
   int count = 0;
-  for (std::size_t group = 0; group < one.instruments.size(); ++group) {
+  for (std::size_t group = 0; group < counted.size(); ++group) {
+    if (!counted[group]) continue;
     const InstrumentNoise &a = one.instruments[group], &b = other.instruments[group];
     count += 1 + (a.wander.on || b.wander.on ? 2 : 0) + (a.line.on || b.line.on ? 1 : 0) +
              (a.per_metre.on || b.per_metre.on ? 1 : 0);
@@ -56,8 +69,9 @@ void test_beside_noise(const LinearModel& model, const Family& family, NoiseProb
   const NoiseEstimate alone = estimate_noise(problem, options, &beside);
   const double without = std::max(estimate.log_likelihood, alone.log_likelihood);
   test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - without));
-  test.score.log10_p =
-      log10_chi_squared_exceedance(test.score.lm, test.score.dof + noise_parameters(alone, beside));
+  const int beside_it =
+      noise_parameters(alone, beside, moved_groups(problem.data, moved, beside.instruments.size()));
+  test.score.log10_p = log10_chi_squared_exceedance(test.score.lm, test.score.dof + beside_it);
   test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));
 }
 

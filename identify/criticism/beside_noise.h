@@ -8,7 +8,8 @@
 /// since it has several maxima. It is at most 2 [max l(y - G a) - l(y at the true noise)], which by Wilks
 /// (1938, Ann. Math. Statist. 9, 60) is chi-squared with the amplitudes and the noise parameters as degrees
 /// of freedom. These are what it is judged by: an effect that is picked because it lets the noise become
-/// another has those to play with too.
+/// another has those to play with too. Of instruments whose readings the effect does not move the noise is
+/// the same on both sides, and is not counted.
 
 #include <vector>
 

@@ -411,6 +411,10 @@ bool EffectSearch::may_be_added(const FamilyTest& test) const {
          !dropped_.contains(test.family);
 }
 
+bool EffectSearch::is_above(const FamilyTest& test) const {
+  return test.score.dof > 0 && family_wise_log10_p(test) <= kLog10FamilyRisk;
+}
+
 /// An unlisted effect of few terms has a larger gain among the polynomials; bumps and waves make a kernel
 /// less probable than any name.
 bool EffectSearch::generic_does_better(const FamilyTest& best) const {

@@ -124,6 +124,8 @@ class EffectSearch {
   void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);
   bool may_be_added(const FamilyTest& test) const;
+  /// Stands out of noise that is taken as known.
+  bool is_above(const FamilyTest& test) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
   bool generic_does_better(const FamilyTest& best) const;
   bool does_better(const GenericTest& scan, double gain, double log10_p, double share) const;

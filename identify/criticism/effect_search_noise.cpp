@@ -29,7 +29,7 @@ void EffectSearch::find_outstanding() {
   outstanding_.clear();
   std::vector<std::size_t> above;
   for (std::size_t i = 0; i < tests_.size(); ++i) {
-    if (tests_[i].score.dof > 0 && family_wise_log10_p(tests_[i]) <= kLog10FamilyRisk) above.push_back(i);
+    if (is_above(tests_[i])) above.push_back(i);
   }
   if (above.empty()) return;
   std::ranges::sort(above, std::greater{}, [this](std::size_t i) { return tests_[i].gain; });
@@ -70,7 +70,7 @@ std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& probl
 std::vector<FamilyTest> EffectSearch::above_doubtful_noise() const {
   std::vector<FamilyTest> tests;
   for (const FamilyTest& test : tests_) {
-    if (may_be_added(test) && family_wise_log10_p(test) <= kLog10FamilyRisk) tests.push_back(test);
+    if (may_be_added(test) && is_above(test)) tests.push_back(test);
   }
   keep_best(tests);
   return tests;

@@ -17,10 +17,7 @@ constexpr std::array<double NoiseParameters::*, 5> kParameters = {
 
 /// |m|^2 of every column.
 Eigen::ArrayXd information(const Projector& projector, const Eigen::MatrixXd& moved) {
-  Eigen::ArrayXd squares(moved.cols());
-  for (Eigen::Index k = 0; k < moved.cols(); ++k)
-    squares[k] = projector.project(Eigen::MatrixXd(moved.col(k))).gram(0, 1)(0, 0);
-  return squares;
+  return projector.project(moved).gram(0, moved.cols()).diagonal();
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ struct CandidateGrid {
 struct NamedPlace {
   std::string name;
   Eigen::Vector3d place_w = Eigen::Vector3d::Zero();
+  std::string part = {};  ///< of what is measured from there with a tool; empty: all of it
 };
 
 class PlanInstrument {

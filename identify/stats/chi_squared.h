@@ -8,8 +8,8 @@ namespace volcal {
 double chi_squared_exceedance(double chi2, double dof);
 /// Its decimal logarithm, also where the probability itself is below the smallest number.
 double log10_chi_squared_exceedance(double chi2, double dof);
-/// The same where chi2 was divided by a variance that is known with `freedom` degrees of freedom: chi2 / dof
-/// follows an F distribution (Abramowitz and Stegun 26.6.2). 0 below the smallest number.
+/// Probability that `chi2` is exceeded where it was divided by a variance known with `freedom` degrees of
+/// freedom: chi2 / dof follows an F distribution (Abramowitz and Stegun 26.6.2). 0 below the smallest number.
 double exceedance_of_estimated(double chi2, double dof, double freedom);
 /// chi2 that is exceeded with probability 10^log10_probability.
 double chi_squared_quantile(double log10_probability, double dof);

@@ -129,8 +129,11 @@ class PlannedBallBar : public PlanInstrument {
   std::optional<NamedPlace> place_of(const Setup& setup, const Machine& machine) const override {
     const auto place_w = setup.options.vector("centre");
     if (!place_w) return std::nullopt;
-    const std::size_t tool = setup.name.rfind("_" + machine.tools[setup.tool].name + "_");
-    return NamedPlace{setup.name.substr(0, tool), *place_w};
+    const std::string tool = "_" + machine.tools[setup.tool].name + "_";
+    const std::size_t place_ends = setup.name.rfind(tool);
+    const std::string part =
+        place_ends == std::string::npos ? "" : setup.name.substr(place_ends + tool.size());
+    return NamedPlace{setup.name.substr(0, place_ends), *place_w, part};
   }
 
  private:

@@ -25,12 +25,6 @@ Json corners_json(const Eigen::AlignedBox3d& box) {
   return corners;
 }
 
-/// What a setup of a plan measures with its tool, as "XY", from its name.
-std::string part_of(const Setup& setup, const std::string& place, const std::string& tool) {
-  const std::string before = place + "_" + tool + "_";
-  return setup.name.starts_with(before) ? setup.name.substr(before.size()) : "";
-}
-
 /// First readings of every position: the pass there.
 Json planned_setup_json(const Setup& setup, const Machine& machine, const KinematicChain& chain,
                         std::size_t most) {
@@ -57,7 +51,7 @@ Json planned_setup_json(const Setup& setup, const Machine& machine, const Kinema
           {"station", place ? place->name : ""},
           {"station_mm", place ? rounded_vector(place->place_w, kPerMilli, 6) : Json(nullptr)},
           {"tool", tool},
-          {"part", place ? part_of(setup, place->name, tool) : ""},
+          {"part", place ? place->part : ""},
           {"instrument", setup.instrument},
           {"readings", readings.size()},
           {"point_mm", std::move(points)},

@@ -79,6 +79,40 @@ TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
   EXPECT_LE(test.log10_p, log10_chi_squared_exceedance(test.score.lm, 3 + 5) + 1e-9);
 }
 
+/// A ball-bar's servo mismatch moves no reading of the tracer beside it, whose noise has four parameters.
+TEST(BesideNoiseOfSeveral, CountsTheParametersOfThoseThatAreMoved) {
+  sim::Study study = testing_support::hiding({}, {5, 4, 3});
+  sim::BallBarCircles circles;
+  circles.planes = {"XY"};
+  circles.records_feed = true;
+  study.measurements.emplace_back().settings = circles;
+  const testing_support::FittedStudy fitted(study);
+  NoiseProblem problem = fitted.model.problem();
+  problem.prior_mean.setZero();
+  std::mt19937_64 random(10);
+  problem.residual = white_residual(fitted.model, random);
+  const auto groups = fitted.model.noise_groups();
+  const auto tracer = static_cast<std::size_t>(std::ranges::find(groups, "ball-bar") == groups.begin());
+  for (const NoiseSequence& sequence : problem.data.sequences) {
+    if (sequence.group != tracer) continue;
+    for (std::size_t k = 0; k < sequence.observation.size(); ++k)
+      problem.residual[static_cast<Eigen::Index>(sequence.observation[k])] +=
+          2e-6 * std::sin(sequence.time[k] / 300.0);
+  }
+  NoiseOptions options;
+  options.uncertainty = false;
+  const NoiseEstimate noise = estimate_noise(problem, options);
+  ASSERT_GT(noise.instruments.at(tracer).parameters.wander, 0.0);
+  const InstrumentNoise& bar = noise.instruments.at(1 - tracer);
+  ASSERT_FALSE(bar.wander.on || bar.line.on || bar.per_metre.on);
+
+  const std::vector<Family> servo = families_of(fitted.model, "servo-mismatch");
+  const Projector projector(problem, problem.data, noise.parameters(), 1, fitted.model.parts());
+  FamilyTest test = test_families(fitted.model, servo, projector, 1).at(0);
+  test_beside_noise(fitted.model, servo.at(0), problem, noise, 1, test);
+  EXPECT_NEAR(test.score.log10_p, log10_chi_squared_exceedance(test.score.lm, test.score.dof + 1), 1e-9);
+}
+
 /// Under a true wander the ratio of an effect that is not there is chi-squared with its three amplitudes.
 TEST_F(BesideNoise, StaysWithinChanceUnderATrueWander) {
   std::mt19937_64 random(9);

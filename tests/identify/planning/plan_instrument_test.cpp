@@ -75,13 +75,17 @@ TEST(PlanInstruments, FindTheirPlacesAgain) {
   for (const PlanInstrument* each : plan_instruments()) {
     settings.instrument = each->name();
     const PlanLayout layout = textbook_layout(settings, LineOfSight(settings));
-    for (const volcal::Setup& setup : campaign_of(layout, settings).setups) {
+    const Campaign campaign = campaign_of(layout, settings);
+    ASSERT_EQ(campaign.setups.size(), layout.runs.size());
+    for (std::size_t run = 0; run < layout.runs.size(); ++run) {
+      const volcal::Setup& setup = campaign.setups[run];
       const auto place = each->place_of(setup, settings.machine);
       ASSERT_TRUE(place) << setup.name;
       const auto known = std::ranges::find(layout.station_names, place->name);
       ASSERT_NE(known, layout.station_names.end()) << place->name;
       EXPECT_EQ(layout.stations_w[static_cast<std::size_t>(known - layout.station_names.begin())],
                 place->place_w);
+      EXPECT_EQ(place->part, layout.runs[run].part);
     }
   }
 }

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "volcal/identify/io/campaign_writer.h"
@@ -175,7 +179,8 @@ std::string measurement_toml(const std::string& kind, const PlanSettings& settin
       edge_number(noise.per_metre, kMicro), edge_number(noise.repeatability, kMicro), more);
 }
 
-std::string tracking_toml(const CampaignPlan& plan) {
+/// `more_noise`: beside constant, proportional and repeatability.
+std::string tracking_toml(const CampaignPlan& plan, const std::string& more_noise) {
   const PlanSettings& settings = plan.settings;
   std::string stations, runs;
   std::set<std::string> known;
@@ -190,11 +195,14 @@ std::string tracking_toml(const CampaignPlan& plan) {
         fmt::format("[[measurements.runs]]\nstation = {}\ntool = {}\npoints = {}\n", toml_text(place->name),
                     toml_text(settings.machine.tools[setup.tool].name), points_of(setup));
   }
-  std::string angle;
-  if (settings.instrument == "laser-tracker") {
-    angle = ", angle_urad = " + edge_number(settings.noise.angle, kRadianPerMicroradian);
-  }
-  return measurement_toml(settings.instrument, settings, angle) + stations + runs;
+  return measurement_toml(settings.instrument, settings, more_noise) + stations + runs;
+}
+
+std::string laser_tracer_toml(const CampaignPlan& plan) { return tracking_toml(plan, ""); }
+
+std::string laser_tracker_toml(const CampaignPlan& plan) {
+  return tracking_toml(plan,
+                       ", angle_urad = " + edge_number(plan.settings.noise.angle, kRadianPerMicroradian));
 }
 
 std::string ball_bar_toml(const CampaignPlan& plan) {
@@ -211,6 +219,16 @@ std::string ball_bar_toml(const CampaignPlan& plan) {
   }
   return text;
 }
+
+/// [[measurements]] of a study that takes the planned readings.
+struct StudyOfPlan {
+  std::string_view instrument;
+  std::string (*measurement_toml)(const CampaignPlan& plan);
+};
+
+constexpr std::array kStudies = {StudyOfPlan{"laser-tracer", &laser_tracer_toml},
+                                 StudyOfPlan{"laser-tracker", &laser_tracker_toml},
+                                 StudyOfPlan{"ball-bar", &ball_bar_toml}};
 
 }  // namespace
 
@@ -241,12 +259,14 @@ std::string plan_json(const CampaignPlan& plan) {
 
 std::string plan_study_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
-  const std::string measurement =
-      settings.instrument == "ball-bar" ? ball_bar_toml(plan) : tracking_toml(plan);
+  const auto study = std::ranges::find(kStudies, settings.instrument, &StudyOfPlan::instrument);
+  if (study == kStudies.end())
+    throw std::logic_error("no study is written for plans of " + settings.instrument);
   return fmt::format(
       "# The plan measured on a random machine: volcal simulate study.toml -o simulated\n"
       "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n{}",
-      settings.seed, edge_number(settings.costs.run, 1.0), not_simulated(plan), measurement);
+      settings.seed, edge_number(settings.costs.run, 1.0), not_simulated(plan),
+      study->measurement_toml(plan));
 }
 
 void write_plan_campaign(const CampaignPlan& plan, const AtomicFolder& folder) {

@@ -1,0 +1,58 @@
+#include "volcal/identify/io/plan_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/scratch_folder.h"
+#include "volcal/identify/io/study_reader.h"
+#include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/planning/line_of_sight.h"
+#include "volcal/identify/planning/plan_search.h"
+#include "volcal/sim/reference_machines.h"
+
+namespace volcal {
+namespace {
+
+using testing::ScratchFolder;
+
+/// The readings of the campaign, setup by setup, at the same positions.
+void expect_measured(const Campaign& planned, const Campaign& measured) {
+  ASSERT_EQ(measured.setups.size(), planned.setups.size());
+  for (std::size_t k = 0; k < planned.setups.size(); ++k) {
+    const Readings &wanted = planned.setups[k].readings, &taken = measured.setups[k].readings;
+    EXPECT_EQ(measured.setups[k].instrument, planned.setups[k].instrument);
+    EXPECT_EQ(measured.setups[k].tool, planned.setups[k].tool);
+    ASSERT_EQ(taken.size(), wanted.size());
+    for (std::size_t axis = 0; axis < kAxisCount; ++axis) {
+      ASSERT_EQ(taken.position[axis].size(), wanted.position[axis].size());
+      for (std::size_t row = 0; row < wanted.position[axis].size(); ++row)
+        ASSERT_NEAR(taken.position[axis][row], wanted.position[axis][row], 1e-9);
+    }
+  }
+}
+
+TEST(StudyOfAPlan, MeasuresThePlanOfEveryInstrument) {
+  PlanSettings settings;
+  settings.machine = sim::reference_machines().front();
+  settings.bar = {0.1, 0.5e-6};
+  settings.budget.stations = 2;
+  settings.budget.readings = 600;
+  for (const PlanInstrument* each : plan_instruments()) {
+    SCOPED_TRACE(each->name());
+    settings.instrument = each->name();
+    CampaignPlan plan;
+    plan.settings = settings;
+    plan.plan.campaign = campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
+    ASSERT_GT(plan.plan.campaign.reading_count(), 0U);
+    const ScratchFolder scratch;
+    const std::string target = (scratch.path() / "plan").string();
+    AtomicFolder folder(target);
+    write_plan_campaign(plan, folder);
+    folder.commit();
+    expect_measured(plan.plan.campaign, sim::simulate(read_study(target + "/study.toml")).campaign);
+  }
+}
+
+}  // namespace
+}  // namespace volcal

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "volcal/identify/criticism/noise_freedom.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
@@ -29,49 +31,24 @@ std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, 
   return alternatives;
 }
 
-namespace {
-
-/// Whether readings of a group are moved, per group.
-std::vector<bool> moved_groups(const NoiseData& data, const Eigen::VectorXd& moved, std::size_t groups) {
-  std::vector<bool> is_moved(groups, false);
-  for (const NoiseSequence& sequence : data.sequences) {
-    if (std::ranges::any_of(sequence.observation,
-                            [&](std::size_t row) { return moved[static_cast<Eigen::Index>(row)] != 0.0; })) {
-      is_moved[sequence.group] = true;
-    }
-  }
-  return is_moved;
-}
-
-/// Those that the groups counted have, under either estimate.
-int noise_parameters(const NoiseEstimate& one, const NoiseEstimate& other, const std::vector<bool>& counted) {
-  int count = 0;
-  for (std::size_t group = 0; group < counted.size(); ++group) {
-    if (!counted[group]) continue;
-    const InstrumentNoise &a = one.instruments[group], &b = other.instruments[group];
-    count += 1 + (a.wander.on || b.wander.on ? 2 : 0) + (a.line.on || b.line.on ? 1 : 0) +
-             (a.per_metre.on || b.per_metre.on ? 1 : 0);
-  }
-  return count;
-}
-
-}  // namespace
-
 void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
-                       const NoiseEstimate& estimate, int threads, FamilyTest& test) {
+                       const NoiseEstimate& estimate, const NoiseOptions& options, FamilyTest& test) {
   const Eigen::VectorXd moved = family_columns(model, family, test.shape) * test.score.amplitude;
-  NoiseOptions options;
-  options.threads = threads;
-  options.uncertainty = false;
+  NoiseOptions plain = options;
+  plain.uncertainty = false;
   problem.residual -= moved;
-  const NoiseEstimate beside = estimate_noise(problem, options, &estimate);
+  const NoiseEstimate beside = estimate_noise(problem, plain, &estimate);
   problem.residual += moved;
-  const NoiseEstimate alone = estimate_noise(problem, options, &beside);
+  NoiseOptions with_uncertainty = options;
+  with_uncertainty.uncertainty = true;
+  const NoiseEstimate alone = estimate_noise(problem, with_uncertainty, &beside);
   const double without = std::max(estimate.log_likelihood, alone.log_likelihood);
   test.score.lm = std::max(0.0, 2.0 * (beside.log_likelihood - without));
-  const int beside_it =
-      noise_parameters(alone, beside, moved_groups(problem.data, moved, beside.instruments.size()));
-  test.score.log10_p = log10_chi_squared_exceedance(test.score.lm, test.score.dof + beside_it);
+  const auto projector_of = [&](const std::vector<NoiseParameters>& noise) {
+    return std::make_unique<Projector>(problem, problem.data, noise, options.threads, model.parts());
+  };
+  const double freedom = noise_freedom(moved, *projector_of(alone.parameters()), alone, projector_of).front();
+  test.score.log10_p = log10_exceedance_of_estimated(test.score.lm, test.score.dof, freedom);
   test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));
 }
 

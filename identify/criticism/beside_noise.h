@@ -5,11 +5,9 @@
 /// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
 /// columns of the model are the same in both and G a is data, so that they can be compared
 /// (restricted_likelihood.h); l(y) is the largest found, from the noise beside the effect as from its own,
-/// since it has several maxima. It is at most 2 [max l(y - G a) - l(y at the true noise)], which by Wilks
-/// (1938, Ann. Math. Statist. 9, 60) is chi-squared with the amplitudes and the noise parameters as degrees
-/// of freedom. These are what it is judged by: an effect that is picked because it lets the noise become
-/// another has those to play with too. Of instruments whose readings the effect does not move the noise is
-/// the same on both sides, and is not counted.
+/// since it has several maxima. It is judged by F with the amplitudes and the degrees of freedom that the
+/// noise without the effect leaves (noise_freedom.h): a wander of seconds is known from a ball-bar's hundred
+/// correlation times, one of ten minutes from the few that a run spans.
 
 #include <vector>
 
@@ -33,6 +31,6 @@ std::vector<NoiseAlternative> noise_without_wander(const NoiseProblem& problem, 
 /// amplitude stays that of `test`, from whatever noise it was found with: another lower bound. `estimate`:
 /// for `problem`.
 void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
-                       const NoiseEstimate& estimate, int threads, FamilyTest& test);
+                       const NoiseEstimate& estimate, const NoiseOptions& options, FamilyTest& test);
 
 }  // namespace volcal

@@ -267,10 +267,7 @@ class Diagnostician {
 
   /// Significant generic tests, leading first, one per set of variables.
   void collect_unknown() {
-    std::vector<const GenericTest*> order;
-    for (const GenericTest& test : search_.generic()) {
-      if (search_.family_wise_log10_p(test) < kLog10GenericRisk) order.push_back(&test);
-    }
+    std::vector<const GenericTest*> order = search_.outstanding_scans();
     std::ranges::sort(order, {}, &GenericTest::log10_p);
     put_simplest_first(order);
     std::set<std::vector<std::string>> seen;

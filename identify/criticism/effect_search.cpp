@@ -21,7 +21,6 @@ const double kLog10FamilyRisk = std::log10(0.005);
 const double kLog10GenericRisk = std::log10(0.002);
 const double kLog10ConstancyRisk = std::log10(0.01);
 const double kLog10RivalRisk = std::log10(0.001);
-const double kLog10RiskBesideNoise = std::log10(0.0005);
 
 namespace {
 
@@ -31,11 +30,13 @@ constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, befo
 constexpr double kVisibleDerivative = 1e-3;
 constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
 constexpr double kMoreGain = 2.0;        // of a scan that does better than the leading name
-constexpr double kLessProbable = 0.03;   // the same, share of log10 p, family-wise
+constexpr double kMoreGainOfSilent = kToldApart;   // the same, where names leave all scans silent
+constexpr double kLessProbable = 0.03;             // the same, share of log10 p, family-wise
 constexpr double kLessProbableByComponents = 0.1;  // those that are not there cost probability
 constexpr int kMostChanges = 4;
 constexpr int kMostTogether = 3;
 constexpr int kNoiseRounds = 2;
+constexpr double kWanderInTests = 4.0;  // a wander that is left out raises alarms, one too many costs little
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
@@ -104,8 +105,7 @@ void EffectSearch::start() {
 /// Noise of all readings, then smoothing under it by those that are not held out, as the projector that
 /// chooses; twice where the smoothing changes, since either takes the other's part.
 void EffectSearch::find_noise() {
-  NoiseOptions noise;
-  noise.threads = options_.threads;
+  NoiseOptions noise = noise_options();
   noise.uncertainty = false;
   for (int round = 0; round < (model_.smoothing().empty() ? 1 : kNoiseRounds); ++round) {
     noise_estimate_ =
@@ -120,10 +120,15 @@ void EffectSearch::find_noise() {
   projector_ = projector_without({});
 }
 
-NoiseEstimate EffectSearch::noise_with_uncertainty() const {
+NoiseOptions EffectSearch::noise_options() const {
   NoiseOptions noise;
   noise.threads = options_.threads;
-  return estimate_noise(problem_with_added(), noise, &*noise_estimate_);
+  noise.wander_threshold = kWanderInTests;
+  return noise;
+}
+
+NoiseEstimate EffectSearch::noise_with_uncertainty() const {
+  return estimate_noise(problem_with_added(), noise_options(), &*noise_estimate_);
 }
 
 std::unique_ptr<Projector> EffectSearch::projector_of_all_readings() const {
@@ -162,9 +167,9 @@ NoiseProblem EffectSearch::problem_with_added() const {
 
 void EffectSearch::test() {
   tests_ = refined_tests(*projector_);
-  find_outstanding();
   generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
   log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
+  find_outstanding();
 }
 
 std::vector<FamilyTest> EffectSearch::refined_tests(const Projector& projector) const {
@@ -203,13 +208,17 @@ const FamilyTest* EffectSearch::outstanding() const {
 
 bool EffectSearch::something_stands_out() const { return outstanding() != nullptr || !scans_are_silent(); }
 
-double EffectSearch::least_family_wise_of_scans() const {
-  double least = 0.0;
-  for (const GenericTest& test : generic_) least = std::min(least, family_wise_log10_p(test));
-  return least;
+std::vector<const GenericTest*> EffectSearch::outstanding_scans() const {
+  std::vector<const GenericTest*> scans;
+  for (std::size_t i = 0; i < generic_.size(); ++i) {
+    if (scan_stands_out_[i]) scans.push_back(&generic_[i]);
+  }
+  return scans;
 }
 
-bool EffectSearch::scans_are_silent() const { return least_family_wise_of_scans() > kLog10GenericRisk; }
+bool EffectSearch::scans_are_silent() const {
+  return std::ranges::none_of(scan_stands_out_, std::identity{});
+}
 
 /// False when nothing stands out, or something that is in no catalogue stands out more.
 bool EffectSearch::add_leading() {
@@ -219,9 +228,9 @@ bool EffectSearch::add_leading() {
   return true;
 }
 
-/// A scan sees two effects that share a variable at once, and then does better than the name of either.
-/// False, and nothing added, unless a few names leave the scans silent and are, together, as improbable as
-/// the scan.
+/// A scan sees two effects that share a variable at once, and then does better than the name of either; or
+/// they hide each other, and nothing but the scan stands out. False, and nothing added, unless a few names
+/// leave the scans silent and explain, together, as much as the scan.
 bool EffectSearch::add_several() {
   const std::vector<FamilyTest> kept = added_tests();
   std::set<std::size_t> start;
@@ -229,16 +238,34 @@ bool EffectSearch::add_several() {
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kMostTogether && static_cast<int>(added_.size()) < options_.most; ++names) {
     const FamilyTest* best = outstanding();
+    if (best == nullptr && names == 1) best = best_by_the_variables_of_a_scan();
     if (best == nullptr) break;
     add(FamilyTest(*best));
     test();
-    if (names > 1 && scans_are_silent() && explain_together(kept.size())) return true;
+    if (scans_are_silent() && explain_together(kept.size())) return true;
   }
   if (added_.size() > kept.size()) {
     add_again(kept);
     test();
   }
   return false;
+}
+
+/// Of the names that go with nothing but what the most improbable scan goes with; null: no scan stands out.
+const FamilyTest* EffectSearch::best_by_the_variables_of_a_scan() const {
+  const std::vector<const GenericTest*> scans = outstanding_scans();
+  if (scans.empty()) return nullptr;
+  const GenericTest& leading = **std::ranges::min_element(scans, {}, &GenericTest::log10_p);
+  const FamilyTest* best = nullptr;
+  for (const FamilyTest& test : tests_) {
+    if (!may_be_added(test) || (best != nullptr && test.gain <= best->gain)) continue;
+    const std::vector<std::string> own = scan_variables_of(families_[test.family].name());
+    const bool among = std::ranges::all_of(own, [&](const std::string& variable) {
+      return std::ranges::find(leading.variables, variable) != leading.variables.end();
+    });
+    if (among && !own.empty()) best = &test;
+  }
+  return best;
 }
 
 /// No scan does better than the names from `first` on, at the noise that they leave: what was estimated
@@ -259,15 +286,34 @@ bool EffectSearch::explain_together(std::size_t first) const {
   const double log10_p =
       std::min(0.0, log10_chi_squared_exceedance(lm, static_cast<double>(dof)) + log10_choices);
   const std::vector<GenericTest> scans = generic_scan(model_, variables_, *before, options_.threads);
-  return std::ranges::none_of(
-      scans, [&](const GenericTest& scan) { return does_better(scan, lm - price, log10_p, kLessProbable); });
+  return std::ranges::none_of(scans, [&](const GenericTest& scan) {
+    return does_better(scan, {lm - price, log10_p}, kMoreGainOfSilent, kLessProbable);
+  });
 }
 
 void EffectSearch::add(const FamilyTest& test) {
   added_.push_back({test, accept(test, *projector_), {}});
   find_noise();
+  if (refine_shape_of_last()) find_noise();
   while (take_up_removed() > 0) find_noise();
   add_step(families_[test.family].label());
+}
+
+/// At the noise that the effect leaves; its shape was found at the noise that held it. True: it has changed.
+bool EffectSearch::refine_shape_of_last() {
+  AddedEffect& last = added_.back();
+  const Family& family = families_[last.test.family];
+  if (family.scan.size() < 2 || last.columns.cols() == family.amplitudes()) return false;
+  const auto projector = projector_without({added_.size() - 1});
+  FamilyTest again = last.test;
+  const ScoreTest score =
+      score_test(projector->project(family_columns(model_, family, again.shape)), 0, family.amplitudes());
+  update_test(again, family, again.shape, score, *projector);
+  refine_shape(model_, family, *projector, again);
+  if (again.shape == last.test.shape) return false;
+  last.columns = accept(again, *projector);
+  last.test = std::move(again);
+  return true;
 }
 
 /// Columns of the amplitudes, and of the shape where the readings see it move, into the model of `projector`.
@@ -421,13 +467,14 @@ bool EffectSearch::generic_does_better(const FamilyTest& best) const {
   const bool components = families_[best.family].independent_components();
   const double share = components ? kLessProbableByComponents : kLessProbable;
   return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    return does_better(test, best.gain, family_wise_log10_p(best), share);
+    return does_better(test, {best.gain, family_wise_log10_p(best)}, kMoreGain, share);
   });
 }
 
-bool EffectSearch::does_better(const GenericTest& scan, double gain, double log10_p, double share) const {
-  return (!scan.kernel && scan.gain > gain + kMoreGain) ||
-         family_wise_log10_p(scan) < (1.0 + share) * log10_p - 1.0;
+bool EffectSearch::does_better(const GenericTest& scan, const Evidence& names, double more_gain,
+                               double share) const {
+  return (!scan.kernel && scan.gain > names.gain + more_gain) ||
+         family_wise_log10_p(scan) < (1.0 + share) * names.log10_p - 1.0;
 }
 
 double EffectSearch::family_wise_log10_p(const FamilyTest& test) const {

@@ -1,6 +1,7 @@
 #pragma once
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the
-/// noise, as well as that is known (noise_freedom.h), and no generic test does better; then every added one
+/// noise, as well as that is known (noise_freedom.h: names and scans alike), and no generic test does better;
+/// then every added one
 /// must stand against all others again. Several powers of one driver on one target are no name, nor is what
 /// explains less than it leaves or what varies (constancy_test.h): such are left out again, or a rival that
 /// stands takes their place. Where nothing stands out, effects are looked for that a wander has taken up, or
@@ -51,6 +52,8 @@ class EffectSearch {
   /// At the model reached.
   const std::vector<FamilyTest>& tests() const { return tests_; }
   const std::vector<GenericTest>& generic() const { return generic_; }
+  /// Those of `generic()` that are above the noise, as well as that is known.
+  std::vector<const GenericTest*> outstanding_scans() const;
   /// At the given model.
   const std::vector<FamilyTest>& first_tests() const { return first_tests_; }
   const std::vector<GenericTest>& first_generic() const { return first_generic_; }
@@ -87,20 +90,25 @@ class EffectSearch {
   std::unique_ptr<Projector> projector_of(const NoiseData& data, const std::vector<NoiseParameters>& noise,
                                           const std::set<std::size_t>& left_out = {}) const;
   NoiseProblem problem_with_added() const;
+  NoiseOptions noise_options() const;
   void test();
   std::vector<FamilyTest> refined_tests(const Projector& projector) const;
   void climb();
   void find_outstanding();
+  std::vector<std::size_t> families_above() const;
+  std::vector<std::size_t> doubtful_scans() const;
   const FamilyTest* outstanding() const;
   bool something_stands_out() const;
   bool add_leading();
   bool add_several();
+  const FamilyTest* best_by_the_variables_of_a_scan() const;
   std::vector<FamilyTest> added_tests() const;
   bool explain_together(std::size_t first) const;
   std::vector<FamilyTest> held_by_a_wander(const NoiseProblem& problem) const;
   std::vector<FamilyTest> above_doubtful_noise() const;
   bool add_hidden_in_noise();
   void add(const FamilyTest& test);
+  bool refine_shape_of_last();
   Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;
   std::size_t take_up_removed();
   void add_step(const std::string& added);
@@ -128,9 +136,12 @@ class EffectSearch {
   bool is_above(const FamilyTest& test) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
   bool generic_does_better(const FamilyTest& best) const;
-  bool does_better(const GenericTest& scan, double gain, double log10_p, double share) const;
+  struct Evidence {
+    double gain = 0.0;
+    double log10_p = 0.0;  ///< family-wise
+  };
+  bool does_better(const GenericTest& scan, const Evidence& names, double more_gain, double share) const;
   bool scans_are_silent() const;
-  double least_family_wise_of_scans() const;
 
   LinearModel& model_;
   std::vector<bool> heldout_;
@@ -146,6 +157,7 @@ class EffectSearch {
   std::vector<std::size_t> outstanding_;  ///< of `tests_`: above the noise, best first
   std::vector<FamilyTest> first_tests_;
   std::vector<GenericTest> generic_;
+  std::vector<bool> scan_stands_out_;  ///< of `generic_`: above the noise, as well as that is known
   std::vector<GenericTest> first_generic_;
   std::vector<AddedEffect> added_;
   std::map<std::size_t, std::string> given_up_;     ///< no names; reason
@@ -165,8 +177,5 @@ extern const double kLog10GenericRisk;
 /// Risks that a right name is refused, or left out of a set, because its amplitude seems to vary.
 extern const double kLog10ConstancyRisk;
 extern const double kLog10RivalRisk;
-/// Of effects that are tested with the noise estimated beside them: smaller, since chi-squared holds for many
-/// readings and a wander spans few of its own lengths.
-extern const double kLog10RiskBesideNoise;
 
 }  // namespace volcal

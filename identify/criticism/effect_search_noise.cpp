@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kWorthEstimating = 20.0;  // of a likelihood ratio: what noise estimated beside it may add
 constexpr std::size_t kMostBesideNoise = 3;
+constexpr std::size_t kMostDoubtful =
+    40;  // scans; a weak finding is seen by some of them, a strong one by most
 
 void keep_best(std::vector<FamilyTest>& tests) {
   std::ranges::sort(tests, std::greater{}, &FamilyTest::gain);
@@ -24,28 +26,54 @@ void keep_best(std::vector<FamilyTest>& tests) {
 
 }  // namespace
 
-/// Above the noise, also where the noise that the effect would stand on is hardly known.
-void EffectSearch::find_outstanding() {
-  outstanding_.clear();
+/// Best first.
+std::vector<std::size_t> EffectSearch::families_above() const {
   std::vector<std::size_t> above;
   for (std::size_t i = 0; i < tests_.size(); ++i) {
     if (is_above(tests_[i])) above.push_back(i);
   }
-  if (above.empty()) return;
   std::ranges::sort(above, std::greater{}, [this](std::size_t i) { return tests_[i].gain; });
-  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), static_cast<Eigen::Index>(above.size()));
-  for (std::size_t k = 0; k < above.size(); ++k) {
-    const FamilyTest& test = tests_[above[k]];
-    moved.col(static_cast<Eigen::Index>(k)) =
-        family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
+  return above;
+}
+
+/// Scans above the noise if that were known; none where so many are that something is there beyond doubt.
+std::vector<std::size_t> EffectSearch::doubtful_scans() const {
+  std::vector<std::size_t> above;
+  for (std::size_t i = 0; i < generic_.size(); ++i) {
+    if (scan_stands_out_[i]) above.push_back(i);
   }
+  return above.size() > kMostDoubtful ? std::vector<std::size_t>{} : above;
+}
+
+/// Above the noise, also where the noise that a name or a scan would stand on is hardly known.
+void EffectSearch::find_outstanding() {
+  outstanding_.clear();
+  scan_stands_out_.clear();
+  for (const GenericTest& test : generic_)
+    scan_stands_out_.push_back(family_wise_log10_p(test) <= kLog10GenericRisk);
+  const std::vector<std::size_t> names = families_above(), scans = doubtful_scans();
+  if (names.empty() && scans.empty()) return;
+  const auto of_names = static_cast<Eigen::Index>(names.size()),
+             of_scans = static_cast<Eigen::Index>(scans.size());
+  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), of_names + of_scans);
+  for (Eigen::Index k = 0; k < of_names; ++k) {
+    const FamilyTest& test = tests_[names[static_cast<std::size_t>(k)]];
+    moved.col(k) = family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
+  }
+  moved.rightCols(of_scans) = scanned_displacements(model_, variables_, *projector_, scans);
   const std::vector<double> freedom = noise_freedom(
       moved, *projector_, noise_with_uncertainty(),
       [this](const auto& noise) { return projector_of(without(model_.problem().data, heldout_), noise); });
-  for (std::size_t k = 0; k < above.size(); ++k) {
-    const FamilyTest& test = tests_[above[k]];
-    const double p = exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) * test.multiplicity;
-    if (std::log10(p) + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(above[k]);
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const FamilyTest& test = tests_[names[k]];
+    const double log10_p = log10_exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) +
+                           std::log10(test.multiplicity);
+    if (log10_p + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(names[k]);
+  }
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const GenericTest& test = generic_[scans[k]];
+    const double log10_p = log10_exceedance_of_estimated(test.lm, test.dof, freedom[names.size() + k]);
+    scan_stands_out_[scans[k]] = log10_p + log10_generic_ <= kLog10GenericRisk;
   }
 }
 
@@ -83,10 +111,10 @@ bool EffectSearch::add_hidden_in_noise() {
   std::vector<FamilyTest> tests = held_by_a_wander(problem);
   std::ranges::move(above_doubtful_noise(), std::back_inserter(tests));
   for (FamilyTest& test : tests) {
-    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, options_.threads, test);
+    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, noise_options(), test);
   }
   const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
-  if (best == tests.end() || family_wise_log10_p(*best) > kLog10RiskBesideNoise) return false;
+  if (best == tests.end() || family_wise_log10_p(*best) > kLog10FamilyRisk) return false;
   add(FamilyTest(*best));
   return true;
 }

@@ -28,11 +28,10 @@ std::string shape_word(const EffectShape& shape) {
 
 /// Its own driver moves what an effect leaves: it has another shape, or is another effect.
 bool EffectSearch::still_moves(const std::vector<std::string>& drivers) const {
-  return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    return family_wise_log10_p(test) < kLog10GenericRisk &&
-           std::ranges::any_of(test.variables, [&](const std::string& variable) {
-             return std::ranges::find(drivers, variable) != drivers.end();
-           });
+  return std::ranges::any_of(outstanding_scans(), [&](const GenericTest* test) {
+    return std::ranges::any_of(test->variables, [&](const std::string& variable) {
+      return std::ranges::find(drivers, variable) != drivers.end();
+    });
   });
 }
 
@@ -56,8 +55,9 @@ void EffectSearch::find_no_names() {
 
 /// What the scans still see is less probable than the effect.
 bool EffectSearch::leaves_more(const AddedEffect& effect) const {
-  const double remains = least_family_wise_of_scans();
-  return remains < kLog10GenericRisk && remains < family_wise_log10_p(effect.test);
+  return std::ranges::any_of(outstanding_scans(), [&](const GenericTest* test) {
+    return family_wise_log10_p(*test) < family_wise_log10_p(effect.test);
+  });
 }
 
 /// Empty for a name that stands.

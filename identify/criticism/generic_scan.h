@@ -15,30 +15,9 @@
 
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/criticism/projector.h"
+#include "volcal/identify/criticism/scan_variables.h"
 
 namespace volcal {
-
-/// A recorded variable over all observations, scaled to -1..1.
-struct ScanVariable {
-  std::string name;  ///< "x", "time", "T_air", "dir_x", "length", "tool side", "station P1"
-  Eigen::VectorXd value;
-  bool two_valued = false;  ///< powers say nothing new
-  double centre = 0.0;      ///< what was recorded = centre + scale value, SI
-  double scale = 1.0;
-};
-std::vector<ScanVariable> scan_variables(const LinearModel& model);
-/// `value` over all observations, as recorded; nothing is added where it is constant.
-void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value);
-
-/// Names of the recorded variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its
-/// driver, "tool side_x" of either, "station P1" of its target. Empty where nothing recorded stands for it.
-std::vector<std::string> scan_variables_of(const EffectName& name);
-
-/// v, v^2, v^3; of a two-valued variable v alone.
-Eigen::MatrixXd scan_powers(const ScanVariable& variable);
-/// cos(k pi (v + 1) / 2) / k, k = 1 ... count: a Brownian-like prior, rough enough for kinks. Of a two-valued
-/// variable v alone.
-Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count);
 
 inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
 
@@ -53,6 +32,11 @@ struct GenericTest {
   double gain = 0.0;  ///< LM - dof ln n (polynomials)
   double rms = 0.0;   ///< SI: root mean square over the readings of what it would explain
 };
+
+/// What tests of a scan would explain, one a column: displacements of all observations, m or rad; of a kernel
+/// up to a factor, in the proportions of its score. `tests`: indices of what generic_scan() has returned.
+Eigen::MatrixXd scanned_displacements(const LinearModel& model, const std::vector<ScanVariable>& variables,
+                                      const Projector& projector, const std::vector<std::size_t>& tests);
 
 /// All tests, polynomials and kernels; the same for any number of threads.
 std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,

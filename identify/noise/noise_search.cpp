@@ -20,7 +20,7 @@ constexpr double kLeastSpreadOfLength = 1.05;
 constexpr double kBendOfScale = 0.1;  // of the residuals' standard deviation: where log1p turns from linear
 constexpr double kLargestShare = 30.0;
 constexpr double kWhiteDown = 1e-2, kWhiteUp = 10.0;  // of the factor that explains the residuals alone
-constexpr double kTauDown = 0.5, kTauUp = 3.0;        // of the usual gap, of the longest sequence
+constexpr double kTauDown = 2.0, kTauUp = 3.0;        // of the usual gap, of the longest sequence
 constexpr int kTauStarts = 6;
 constexpr std::size_t kRefinedStarts = 3;
 constexpr double kSlopeStep = 0.01;
@@ -34,6 +34,7 @@ constexpr double kHopeless = 30.0;     // above the better model: not refined
 constexpr double kAddedShare = 0.2;    // of the residuals' standard deviation: a term that may come
 constexpr double kDoubtful = 0.5;      // of the threshold: a term may have to come
 constexpr double kOverwhelming = 5.0;  // of the threshold: evidence that one effect more does not undo
+constexpr double kChanged = 0.02;      // of the residuals' standard deviation: another maximum may be higher
 constexpr double kSurrogateTolerance = 1e-3;
 constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
 
@@ -371,7 +372,7 @@ NoiseSearch::Point NoiseSearch::search(InstrumentNoise& result) {
   return best;
 }
 
-/// From the end of an earlier search; nothing when a term should come or go.
+/// From the end of an earlier search of nearly the same residuals; nothing when a term should come or go.
 std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
                                                       const InstrumentNoise& previous) {
   const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
@@ -407,7 +408,8 @@ void NoiseSearch::run(InstrumentNoise& result, const InstrumentNoise& previous) 
   }
   const double scale = total_;
   std::optional<Point> found;
-  if (previous.start.at.size() > 0) found = resume(result, previous);
+  if (previous.start.at.size() > 0 && std::abs(std::log(scale / previous.start.scale)) < kChanged)
+    found = resume(result, previous);
   if (!found) {
     total_ = scale;
     found = search(result);

@@ -9,6 +9,8 @@
 namespace volcal {
 namespace {
 
+constexpr double kSmallest = 1e-290;  // below, a probability is lost
+
 constexpr double kFarOut = 200.0;     // exponent below which the probability itself may underflow
 constexpr double kManyDegrees = 1e6;  // of freedom: an estimated variance is as good as a known one
 
@@ -76,6 +78,15 @@ double exceedance_of_estimated(double chi2, double dof, double freedom) {
   if (!(chi2 > 0.0)) return 1.0;
   if (!(freedom < kManyDegrees)) return chi_squared_exceedance(chi2, dof);
   return Eigen::numext::betainc(freedom / 2.0, dof / 2.0, freedom / (freedom + chi2));
+}
+
+double log10_exceedance_of_estimated(double chi2, double dof, double freedom) {
+  if (!(freedom < kManyDegrees)) return log10_chi_squared_exceedance(chi2, dof);
+  const double p = exceedance_of_estimated(chi2, dof, freedom);
+  if (p > kSmallest) return std::log10(p);
+  const double a = freedom / 2.0, b = dof / 2.0, x = freedom / (freedom + chi2);
+  const double log_beta = std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
+  return (a * std::log(x) + b * std::log1p(-x) - std::log(a) - log_beta) / std::log(10.0);
 }
 
 double chi_squared_quantile(double log10_probability, double dof) {

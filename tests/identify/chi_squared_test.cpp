@@ -62,5 +62,17 @@ TEST(ChiSquared, OfAnEstimatedVarianceHasTheTailOfF) {
   EXPECT_DOUBLE_EQ(exceedance_of_estimated(0.0, 2.0, 16.0), 1.0);
 }
 
+/// The same tail with two amplitudes, near and where the probability itself is lost.
+TEST(ChiSquared, LogarithmOfTheTailOfF) {
+  const auto tail = [](double chi2, double freedom) {
+    return -0.5 * freedom * std::log10(1.0 + chi2 / freedom);
+  };
+  EXPECT_NEAR(log10_exceedance_of_estimated(30.0, 2.0, 16.0), tail(30.0, 16.0), 1e-9);
+  EXPECT_NEAR(log10_exceedance_of_estimated(1e6, 2.0, 400.0), tail(1e6, 400.0), 0.5);
+  EXPECT_NEAR(log10_exceedance_of_estimated(5000.0, 2.0, 4000.0), tail(5000.0, 4000.0), 0.5);
+  EXPECT_DOUBLE_EQ(log10_exceedance_of_estimated(30.0, 3.0, HUGE_VAL),
+                   log10_chi_squared_exceedance(30.0, 3.0));
+}
+
 }  // namespace
 }  // namespace volcal

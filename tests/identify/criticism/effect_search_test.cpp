@@ -104,6 +104,18 @@ TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
   EXPECT_EQ(search.added().size(), 2U);
 }
 
+/// Backlash that grows along the travel and passes through zero on it: of either part there is little alone.
+TEST(EffectSearch, NamesTwoEffectsThatHideEachOther) {
+  sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden("reversal-position", "EYY", 0.0);
+  constant.rms.reset();
+  growing.rms.reset();
+  constant.amplitude = 1.6e-6;
+  growing.amplitude = -4e-6;
+  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({constant, growing}, kGrid)), true);
+  EXPECT_THAT(targets(diagnosis.effects),
+              ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
+}
+
 TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
   sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);

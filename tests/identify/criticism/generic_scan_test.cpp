@@ -10,6 +10,7 @@
 #include <set>
 
 #include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/score_test.h"
 
 namespace volcal {
 namespace {
@@ -135,6 +136,34 @@ TEST(GenericScan, FindsTheDifferenceOfTwoTemperatures) {
   const GenericTest& least = least_probable(tests);
   EXPECT_THAT(least.variables, ::testing::UnorderedElementsAre("T_air", "T_column"));
   EXPECT_EQ(least.direction, "Z");
+}
+
+/// What a test would explain, as one column, explains as much.
+TEST(GenericScan, TellsWhatATestWouldExplain) {
+  std::mt19937_64 random(6);
+  const LinearModel& model = model_of_nothing_hidden();
+  const Eigen::VectorXd moved =
+      model.direction(1).cwiseProduct(value_of_variable("T_column")).cwiseProduct(value_of_variable("dir_x"));
+  const Projector projector = white_projector(model, white_residual(model, random) + 0.8e-6 * moved);
+  const std::vector<GenericTest> tests = generic_scan(model, variables_of_nothing_hidden(), projector, 1);
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (holds({tests[i]}, {"T_column", "dir_x"}, "Y")) chosen.push_back(i);
+  }
+  ASSERT_GE(chosen.size(), 4U) << "polynomials and kernels, along Y, several directions, rotations";
+  const Eigen::MatrixXd explained =
+      scanned_displacements(model, variables_of_nothing_hidden(), projector, chosen);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const GenericTest& test = tests[chosen[k]];
+    const auto column = static_cast<Eigen::Index>(k);
+    const double lm = score_test(projector.project(explained.col(column)), 0, 1).lm;
+    if (!test.kernel) {
+      EXPECT_NEAR(lm, test.lm, 1e-6 * test.lm) << k;
+    }
+    if (!test.rotation.empty()) continue;
+    EXPECT_GT(lm, 50.0) << k;
+    EXPECT_GT(explained.col(column).normalized().dot(moved.normalized()), 0.7) << k;
+  }
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST(NoiseEstimate, IsTheMaximumOfTheDenseLikelihood) {
         std::log(std::max(found.line, 1e-8));
     Box box{at.array() - 2.0, at.array() + 2.0};
     box.lower(2) =
-        std::log(1.5);  // limits of the search: half the usual gap, three times the longest sequence
+        std::log(6.0);  // limits of the search: twice the usual gap, three times the longest sequence
     box.upper(2) = std::log(3.0 * 350.0);
     for (const double away : {0.0, 0.7, -0.7}) {
       const Minimum best = bounded_minimum(dense, at.array() + away, box, 1e-4, 60);
@@ -184,6 +184,19 @@ TEST(NoiseEstimate, ATermThatComesOrGoesIsFound) {
   ASSERT_TRUE(of_lines.instruments[0].line.on && !of_white.instruments[0].line.on);
   expect_same_noise(estimate_noise(lines, {}, &of_white), of_lines);
   expect_same_noise(estimate_noise(white, {}, &of_lines), of_white);
+}
+
+/// A search that began where an effect had been taken for a fast wander would end in a lower maximum.
+TEST(NoiseEstimate, AnEndForOtherResidualsIsNoStart) {
+  std::mt19937_64 generator(3);
+  const NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 120.0, 0.3e-6, 0.0}, {8, 5, 4}, 3);
+  const NoiseEstimate cold = estimate_noise(problem);
+  NoiseProblem disturbed = problem;
+  disturbed.residual +=
+      test::draw_noise(problem.data, {NoiseParameters{0.01, 10e-6, 9.0, 0.0, 0.0}}, generator);
+  const NoiseEstimate before = estimate_noise(disturbed);
+  ASSERT_LT(before.instruments[0].parameters.tau, 30.0);
+  expect_same_noise(cold, estimate_noise(problem, {}, &before));
 }
 
 /// Returns to the same points only start the search elsewhere.

@@ -9,6 +9,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
+#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"
@@ -53,15 +54,31 @@ std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
   return {all[static_cast<std::size_t>(arguments.rank) - 1]};
 }
 
+/// Throws when the model has it already.
+void require_new(const EffectName& name, const std::string& label, const std::string& remedy,
+                 const ExtendArguments& arguments, const ModelSpec& model) {
+  for (const EffectSpec& present : model.effects) {
+    if (find_effect(present.kind)->make(present, model.file)->name() != name) continue;
+    throw InputError({arguments.model, present.source_line}, "the model has " + label + " already", remedy);
+  }
+}
+
+void add_named(const std::string& text, const ExtendArguments& arguments, ModelSpec& model,
+               const Campaign& campaign) {
+  const EffectSpec spec = named_effect("--effect", text, campaign);
+  const auto made = find_effect(spec.kind)->make(spec, {});
+  require_new(made->name(), text, "leave out --effect " + text, arguments, model);
+  model.effects.push_back(spec);
+  fmt::print("added: {}\n", full_name(made->name()));
+}
+
 /// Throws when the model has it already, or the machine cannot have it.
 void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
                const Machine& machine) {
-  for (const EffectSpec& present : model.effects) {
-    if (find_effect(present.kind)->make(present, model.file)->name() != effect.name) continue;
-    throw InputError({arguments.model, present.source_line}, "the model has " + effect.label + " already",
-                     "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
-                         " -o DIR), or choose another --rank");
-  }
+  require_new(effect.name, effect.label,
+              "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
+                  " -o DIR), or choose another --rank",
+              arguments, model);
   if (restore_left_out(effect.spec, model)) {
     fmt::print("given back: {}\n", effect.label);
     return;
@@ -130,8 +147,7 @@ int run_extend(const ExtendArguments& arguments) {
   } else {
     campaign = read_campaign(arguments.campaign);
   }
-  for (const std::string& effect : arguments.effects)
-    model.effects.push_back(named_effect("--effect", effect, campaign));
+  for (const std::string& effect : arguments.effects) add_named(effect, arguments, model, campaign);
   if (!arguments.diagnosis.empty()) {
     for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, model, machine);
   }

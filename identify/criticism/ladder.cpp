@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
+#include "volcal/identify/criticism/heldout_errors.h"
 #include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
@@ -34,6 +34,32 @@ Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const Noi
     at += columns.cols();
   }
   return rows;
+}
+
+Eigen::VectorXd column_of(Eigen::Index parameter, const NoiseProblem& problem,
+                          const std::vector<Eigen::MatrixXd>& accepted) {
+  Eigen::Index at = problem.jacobian.cols();
+  if (parameter < at) return problem.jacobian.col(parameter);
+  for (const Eigen::MatrixXd& columns : accepted) {
+    if (parameter < at + columns.cols()) return columns.col(parameter - at);
+    at += columns.cols();
+  }
+  return Eigen::VectorXd::Zero(problem.jacobian.rows());
+}
+
+HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
+                                  std::span<const NoiseParameters> noise, const Projector& projector,
+                                  const std::vector<Eigen::MatrixXd>& accepted,
+                                  const Eigen::VectorXd& solution) {
+  const RowsOf rows = [&](const std::vector<Eigen::Index>& observations) {
+    return rows_of(observations, problem, accepted, solution.size());
+  };
+  const ColumnOf column = [&](Eigen::Index parameter) { return column_of(parameter, problem, accepted); };
+  const std::vector<HeldoutBlock> blocks =
+      heldout_errors(problem.data, heldout, noise, projector, rows, column, projector.threads());
+  Eigen::VectorXd residual = problem.residual;
+  for (const HeldoutBlock& block : blocks) residual(block.observation) -= rows(block.observation) * solution;
+  return heldout_figures(blocks, residual);
 }
 
 }  // namespace
@@ -98,23 +124,16 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
     step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
     return step;
   }
-  const Eigen::MatrixXd rows = rows_of(held, problem, accepted, solution.size());
-  const Eigen::ArrayXd squares = (problem.residual(held) - rows * solution).array().square();
-  Eigen::ArrayXd expected = projector.prediction_variance(rows).array();
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    expected[static_cast<Eigen::Index>(i)] += variance[static_cast<std::size_t>(held[i])];
-  }
-  const auto count = static_cast<double>(held.size());
-  const double excess = (squares - expected).mean();
-  const double spread = 1.96 * std::sqrt(2.0 * expected.square().sum()) / count;
-  const double loglik_now = -0.5 * (squares / expected + (2.0 * std::numbers::pi * expected).log()).sum();
-  step.rms_heldout = std::sqrt(squares.mean());
-  step.noise_floor = std::sqrt(expected.mean());
+  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, accepted, solution);
+  const double excess = (figures.squares - figures.expected) / figures.count;
+  const double spread = 1.96 * figures.spread / figures.count;
+  step.rms_heldout = std::sqrt(figures.squares / figures.count);
+  step.noise_floor = std::sqrt(figures.expected / figures.count);
   step.systematic = std::sqrt(std::max(0.0, excess));
   step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
   step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
-  step.heldout_loglik_gain = loglik ? loglik_now - *loglik : 0.0;
-  loglik = loglik_now;
+  step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
+  loglik = figures.log_likelihood;
   return step;
 }
 

@@ -184,10 +184,14 @@ Eigen::VectorXd Projector::solution() const {
   return scale_.cwiseProduct(lower_.triangularView<Eigen::Lower>().transpose().solve(rotated_));
 }
 
-Eigen::VectorXd Projector::prediction_variance(const Eigen::MatrixXd& rows) const {
+Eigen::MatrixXd Projector::rotated_rows(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd rotated = scale_.asDiagonal() * rows.transpose();
   solve_lower(lower_, rotated);
-  return rotated.colwise().squaredNorm();
+  return rotated;
+}
+
+Eigen::VectorXd Projector::prediction_variance(const Eigen::MatrixXd& rows) const {
+  return rotated_rows(rows).colwise().squaredNorm();
 }
 
 Eigen::MatrixXd Projector::accepted_covariance() const {

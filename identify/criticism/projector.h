@@ -63,7 +63,10 @@ class Projector {
 
   /// Correction of the model's parameters, accepted columns last, from the observations in use.
   Eigen::VectorXd solution() const;
-  /// Variance of predictions, one per row of `rows` (derivatives to all parameters, accepted ones last).
+  /// C^-1 rows^T with A = C C^T, parameters x rows (derivatives to all parameters, accepted ones last): the
+  /// products of its columns are rows A^-1 rows^T.
+  Eigen::MatrixXd rotated_rows(const Eigen::MatrixXd& rows) const;
+  /// Variance of predictions, one per row of `rows`.
   Eigen::VectorXd prediction_variance(const Eigen::MatrixXd& rows) const;
   /// Covariance of the accepted columns' amplitudes.
   Eigen::MatrixXd accepted_covariance() const;
@@ -75,6 +78,7 @@ class Projector {
   double log_determinant() const { return whitener_.log_determinant(); }
   std::size_t observations() const { return whitener_.observations(); }
   Eigen::Index parameters() const { return whitened_.front().cols() - 1; }
+  int threads() const { return threads_; }
   Eigen::Index accepted() const { return parameters() - base_parameters_; }
 
  private:

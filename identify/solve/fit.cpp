@@ -19,6 +19,7 @@
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/effects/driver_check.h"
 
 namespace volcal {
 namespace {
@@ -441,6 +442,7 @@ FitResult fit(const Campaign& campaign, const ModelSpec& spec, const FitOptions&
     throw InputError({campaign.file, 0}, "the campaign has no readings",
                      "give at least one setup with a data file");
   }
+  check_drivers_vary(campaign, spec);
   use_single_threaded_blas();
   return Identification(campaign, spec, options).run();
 }

@@ -98,19 +98,10 @@ CustomTarget target_of(const EffectTable& table) {
   return *target;
 }
 
-/// Name of a channel's variable: what is no letter, digit or underscore becomes an underscore.
-std::string variable_of_channel(const std::string& channel) {
-  std::string name = "T_" + channel;
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return name;
-}
-
 /// The channel that a variable T_... means.
 const std::vector<double>* temperature(const Readings& readings, const std::string& variable) {
   for (const auto& [channel, values] : readings.temperature) {
-    if (variable_of_channel(channel) == variable) return &values;
+    if (channel_variable(channel) == variable) return &values;
   }
   return nullptr;
 }

@@ -1,6 +1,7 @@
 #include "volcal/model/effects/effect_keys.h"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <set>
 
@@ -100,6 +101,14 @@ std::vector<std::string> temperature_channels(const Campaign& campaign) {
     for (const auto& [channel, values] : setup.readings.temperature) add_unique(channels, channel);
   }
   return channels;
+}
+
+std::string channel_variable(const std::string& channel) {
+  std::string name = "T_" + channel;
+  for (char& c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return name;
 }
 
 std::string listed_names(const std::vector<std::string>& names) {

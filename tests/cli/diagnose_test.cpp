@@ -86,6 +86,17 @@ TEST_F(ExtendProgram, AddsAnEffectByName) {
   EXPECT_THAT(text, HasSubstr("shape = \"linear\""));
 }
 
+TEST_F(ExtendProgram, TheSameEffectTwiceIsRefused) {
+  const auto run = extend({"axis-coupling:EAY:z:linear", "axis-coupling:EAY:z:linear"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("has axis-coupling:EAY:z:linear already"));
+  EXPECT_FALSE(fs::exists(output_));
+  ASSERT_EQ(extend({"axis-coupling:EAY:z:linear"}).exit_code, 0);
+  const auto again = run_program("extend " + output_ + " --effect axis-coupling:EAY:z:linear -o " + output_);
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.errors, HasSubstr("already"));
+}
+
 TEST_F(ExtendProgram, SaysWhatANameCouldMean) {
   const auto several = extend({"axis-coupling:EAY"});
   EXPECT_EQ(several.exit_code, 2);

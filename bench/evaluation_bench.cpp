@@ -34,6 +34,7 @@
 #include "volcal/identify/tables/error_field.h"
 #include "volcal/identify/tables/error_grid.h"
 #include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/tables/linear_axis_errors.h"
 #include "volcal/model/instruments/registry.h"
 #include "volcal/sim/random.h"
 #if defined(__SSE2__)
@@ -204,6 +205,12 @@ Json field_part(const Arguments& arguments) {
   return json;
 }
 
+double largest_difference(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).cwiseAbs().maxCoeff());
+  return largest;
+}
+
 Json points_part(const Arguments& arguments) {
   const Identified machine(arguments.threads);
   sim::RandomStream random(kSeedOfEvaluation, "points");
@@ -212,21 +219,22 @@ Json points_part(const Arguments& arguments) {
     for (const Axis& axis : machine.result.machine.axes)
       position[index_of(axis.name)] = random.uniform(axis.travel_min, axis.travel_max);
   }
-  const ErrorField field = identified_error_field(machine.result, machine.tool().offset);
-  std::vector<Eigen::Vector3d> errors(kPoints);
+  const auto many = LinearAxisErrors::make(machine.result, machine.tool().offset);
+  const ErrorField one = identified_error_field(machine.result, machine.tool().offset);
+  const ErrorField plain = plain_error_field(machine.result, machine.tool().offset);
+  const ApproachDirection mean{};
+  std::vector<Eigen::Vector3d> errors(kPoints), same(kPoints);
+  const auto one_by_one = [&](const ErrorField& field) {
+    for (std::size_t i = 0; i < kPoints; ++i) same[i] = field(positions[i], mean);
+  };
   Rounds rounds;
-  rounds.add("own", [&] {
-    for (std::size_t i = 0; i < kPoints; ++i) errors[i] = field(positions[i], {});
-  });
+  rounds.add("own", [&] { many->at(positions, {&mean, 1}, errors); });
+  rounds.add("one_by_one", [&] { one_by_one(one); });
+  rounds.add("plain", [&] { one_by_one(plain); });
   Json json = rounds.json(arguments.repeats);
+  json["largest_difference_m"] = largest_difference(errors, same);
   json["points"] = kPoints;
   return json;
-}
-
-double largest_difference(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).cwiseAbs().maxCoeff());
-  return largest;
 }
 
 Json transforms_of(const std::string& structure, const Arguments& arguments) {

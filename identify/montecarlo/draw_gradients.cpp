@@ -68,9 +68,10 @@ void DrawGradients::add_loads(std::size_t block, Eigen::Index first_observation,
   for (Eigen::Index k = 0; k < work.errors.cols(); ++k) {
     const LinearizationLanes& reading = work.readings[block * kDraws + static_cast<std::size_t>(k)];
     StateMap::Seen& load = work.seen[static_cast<std::size_t>(k)];
-    load = {};
+    for (int c = 0; c < reading.state_size(); ++c) state_component(load.tool, c).fill(0.0);
     for (int channel = 0; channel < reading.channels(); ++channel) {
       Lanes& error = load.offset[channel];
+      error.fill(0.0);
       for (int i = 0; i < place.size; ++i)
         error[i] = work.errors(first_observation + Eigen::Index{i} * reading.channels() + channel, k);
       for (int c = 0; c < reading.state_size(); ++c)

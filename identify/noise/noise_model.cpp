@@ -354,6 +354,11 @@ Eigen::VectorXd Whitener::weigh(const Eigen::VectorXd& column) const {
     const auto place = [&](Eigen::Index i) {
       return static_cast<Eigen::Index>(track.steps[static_cast<std::size_t>(i)].observation);
     };
+    if (track.independent) {
+      for (Eigen::Index i = 0; i < values.size(); ++i)
+        weighted[place(i)] *= track.scale[static_cast<std::size_t>(i)];
+      continue;
+    }
     for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = weighted[place(i)];
     filter_adjoint(track, 1, values.data());
     for (Eigen::Index i = 0; i < values.size(); ++i) weighted[place(i)] = values[i];

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/sample_start.h"
 
 namespace volcal {
 
@@ -91,6 +92,12 @@ class CompressedCost final : public ceres::CostFunction {
     return true;
   }
 
+  /// Of the next start, the Jacobian of which Ceres then has for nothing.
+  double cost_at_start(const Eigen::VectorXd& z) const {
+    accumulate(z, true);
+    return cost_;
+  }
+
  private:
   /// Ceres asks for the cost of a step first and, when it is taken, for the Jacobian at the same point.
   void accumulate(const Eigen::VectorXd& z, bool with_matrix) const {
@@ -159,13 +166,24 @@ MinimiseSummary summarise(const ceres::Solver::Summary& ceres_summary) {
           ceres_summary.final_cost, ceres_summary.message};
 }
 
+/// Moves `z` to a better start, where a sample of the readings finds one that all of them confirm.
+void begin_on_sample(const ReadingIndex& index, const std::vector<double>& weight, const DatumSpace& datum,
+                     const GaussianPrior& prior, const MinimiseOptions& options, const CompressedCost& cost,
+                     Eigen::VectorXd& z) {
+  if (options.loss != RobustLoss::None || index.observations() < options.sample_from) return;
+  const auto start = find_start_on_sample(index, weight, datum, prior, options.threads, z);
+  if (start && cost.cost_at_start(start->z) < start->cost_before) z = start->z;
+}
+
 MinimiseSummary minimise_compressed(const ReadingIndex& index, const std::vector<double>& weight,
                                     const DatumSpace& datum, const GaussianPrior& prior,
                                     const MinimiseOptions& options, Eigen::VectorXd& z) {
   const auto loss = make_loss(options);
   NormalAccumulator accumulator(index, weight, loss.get(), options.threads);
+  auto cost = std::make_unique<CompressedCost>(accumulator, datum, prior);
+  begin_on_sample(index, weight, datum, prior, options, *cost, z);
   ceres::Problem problem;
-  problem.AddResidualBlock(new CompressedCost(accumulator, datum, prior), nullptr, z.data());
+  problem.AddResidualBlock(cost.release(), nullptr, z.data());
   ceres::Solver::Options ceres_options = solver_options(options);
   ceres_options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   ceres_options.dense_linear_algebra_library_type = ceres::LAPACK;

@@ -37,6 +37,8 @@ struct MinimiseOptions {
   int threads = 1;
   int max_iterations = 100;
   double function_tolerance = 1e-12;
+  /// Least squares over so many observations or more begins on a sample of them (sample_start.h).
+  std::size_t sample_from = 65536;
 };
 
 struct MinimiseSummary {

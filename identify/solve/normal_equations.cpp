@@ -65,21 +65,30 @@ std::vector<std::size_t> ReadingIndex::left_out() const {
 }
 
 NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
-                                     const ceres::LossFunction* loss, int threads)
+                                     const ceres::LossFunction* loss, int threads, std::size_t share)
     : index_(index),
       weight_(weight),
       loss_(loss),
       threads_(std::max(1, threads)),
+      share_(std::max<std::size_t>(1, share)),
       by_pairs_(PairSums::pay(index.blocks())),
       chunks_(make_chunks()) {
   use_single_threaded_blas();
 }
 
 std::vector<NormalAccumulator::Chunk> NormalAccumulator::make_chunks() const {
-  const std::size_t observations = index_.observations();
+  const std::size_t observations = in_share(index_.observations());
   const std::size_t count =
       std::clamp<std::size_t>(observations / kReadingsPerChunk, observations >= 2000 ? 2 : 1, kMaxChunks);
   return std::vector<Chunk>(count);
+}
+
+/// Number of the item, out of `count`, that stands for its share; scattered, so that no grid keeps step.
+std::size_t NormalAccumulator::item(std::size_t of_share, std::size_t count) const {
+  if (share_ == 1) return of_share;
+  constexpr std::uint32_t kScatter = 2654435761U;  // 2^32 / golden ratio
+  const std::uint32_t scattered = (static_cast<std::uint32_t>(of_share) * kScatter) >> 8U;
+  return std::min(of_share * share_ + scattered % share_, count - 1);
 }
 
 template <class Work>
@@ -114,6 +123,7 @@ const NormalEquations& NormalAccumulator::accumulate(const Eigen::VectorXd& para
 void NormalAccumulator::collect(Sums what) {
   const bool by_cell = what == Sums::All && !by_pairs_;
   Chunk& total = chunks_.front();
+  std::vector<const PairSums*> others;
   for (std::size_t i = 1; i < chunks_.size(); ++i) {
     const Chunk& chunk = chunks_[i];
     total.sums.cost += chunk.sums.cost;
@@ -124,7 +134,7 @@ void NormalAccumulator::collect(Sums what) {
       total.sums.gradient += chunk.sums.gradient;
     } else {
       total.gradient->add(*chunk.gradient);
-      if (what == Sums::All) total.pairs->add(*chunk.pairs);
+      if (what == Sums::All) others.push_back(&*chunk.pairs);
     }
   }
   if (!by_cell) total.sums.gradient = total.gradient->gradient();
@@ -132,7 +142,8 @@ void NormalAccumulator::collect(Sums what) {
   if (by_pairs_) {
     const int size = index_.model().layout().size;
     total.sums.matrix.setZero(size, size);
-    total.pairs->add_to(total.sums.matrix);
+    total.pairs->add(others, threads_);
+    total.pairs->add_to(total.sums.matrix, threads_);
   }
   symmetrise_from_upper(total.sums.matrix);
 }
@@ -170,7 +181,7 @@ void NormalAccumulator::add_blocks(std::size_t chunk, const Eigen::VectorXd& par
   out.sums.observations = 0;
   const std::size_t blocks = model.blocks().size(), end = begin_of(chunk + 1, blocks);
   for (std::size_t i = begin_of(chunk, blocks); i < end; ++i) {
-    const ReadingBlock& block = model.blocks()[i];
+    const ReadingBlock& block = model.blocks()[item(i, blocks)];
     if (include != nullptr && !(*include)[block.setup]) continue;
     model.linearize(block, parameters, tabulated, out.levers, out.linearized);
     add_block(block, what, out);
@@ -216,7 +227,7 @@ void NormalAccumulator::add_by_cell(std::size_t chunk, const Eigen::VectorXd& pa
   const auto& sorted = index_.sorted();
   const std::size_t end = begin_of(chunk + 1, sorted.size());
   for (std::size_t i = begin_of(chunk, sorted.size()); i < end; ++i) {
-    const auto [setup, reading] = sorted[i];
+    const auto [setup, reading] = sorted[item(i, sorted.size())];
     if (include != nullptr && !(*include)[setup]) continue;
     model.linearize(setup, reading, parameters, row, &tabulated);
     const std::size_t observation = index_.first_observation(setup, reading);

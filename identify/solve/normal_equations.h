@@ -64,9 +64,10 @@ enum class Sums { All, AllButMatrix };
 
 class NormalAccumulator {
  public:
-  /// `weight`: 1/sigma^2 per observation, 0 = left out. `loss` may be null (least squares).
+  /// `weight`: 1/sigma^2 per observation, 0 = left out. `loss` may be null (least squares). `share`: one
+  /// block of readings in so many is summed, always the same ones, scattered over the campaign.
   NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
-                    const ceres::LossFunction* loss, int threads);
+                    const ceres::LossFunction* loss, int threads, std::size_t share = 1);
 
   /// All readings, or only those of setups for which `include[setup]`. The sums hold until the next call;
   /// AllButMatrix leaves an undefined M.
@@ -94,12 +95,17 @@ class NormalAccumulator {
   void collect(Sums what);
   template <class Work>
   void for_each_chunk(const Work& work) const;
-  std::size_t begin_of(std::size_t chunk, std::size_t count) const { return count * chunk / chunks_.size(); }
+  std::size_t begin_of(std::size_t chunk, std::size_t count) const {
+    return in_share(count) * chunk / chunks_.size();
+  }
+  std::size_t in_share(std::size_t count) const { return (count + share_ - 1) / share_; }
+  std::size_t item(std::size_t of_share, std::size_t count) const;
 
   const ReadingIndex& index_;
   const std::vector<double>& weight_;
   const ceres::LossFunction* loss_;
   int threads_;
+  std::size_t share_;
   bool by_pairs_;
   std::vector<Chunk> chunks_;
 };

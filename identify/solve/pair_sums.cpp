@@ -2,12 +2,14 @@
 
 #include <algorithm>
 
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/model/kinematics/vector_loops.h"
 
 namespace volcal {
 namespace {
 
 constexpr std::size_t kMostNumbers = std::size_t{1} << 20;  // of a table: 8 MiB
+constexpr std::ptrdiff_t kNumbersAtOnce = 8192;             // of sums that are joined
 constexpr std::size_t kMostWork = 4;  // spreading the sums may take 1/4 of the work of whole rows
 
 /// kRowAlignment numbers, which the compiler puts into as few registers as there are.
@@ -156,8 +158,14 @@ PairSums::PairSums(const BlockModel& model)
 
 void PairSums::set_zero() { std::fill_n(sums_.data(), sums_.size(), 0.0); }
 
-void PairSums::add(const PairSums& other) {
-  add_multiple(other.sums_.data(), 1.0, static_cast<int>(sums_.size()), sums_.data());
+void PairSums::add(std::span<const PairSums* const> others, int threads) {
+  const std::ptrdiff_t size = sums_.size(), parts = (size + kNumbersAtOnce - 1) / kNumbersAtOnce;
+  run_parallel(static_cast<std::size_t>(parts), threads, [&](std::size_t part) {
+    const std::ptrdiff_t begin = static_cast<std::ptrdiff_t>(part) * kNumbersAtOnce;
+    const auto count = static_cast<int>(std::min(kNumbersAtOnce, size - begin));
+    for (const PairSums* other : others)
+      add_multiple(other->sums_.data() + begin, 1.0, count, sums_.data() + begin);
+  });
 }
 
 /// Numbers of the positions where the block's readings stand.
@@ -187,14 +195,15 @@ void PairSums::add(const ReadingBlock& block, const double* rows) {
   }
 }
 
-void PairSums::add_to(Eigen::MatrixXd& matrix) const {
-  for (const Pair& pair : pairs_) {
+void PairSums::add_to(Eigen::MatrixXd& matrix, int threads) const {
+  run_parallel(pairs_.size(), threads, [&](std::size_t i) {
+    const Pair& pair = pairs_[i];
     if (segments_[pair.across].is_group) {
       add_group_pair(pair, matrix);
     } else {
       add_pair(pair, matrix);
     }
-  }
+  });
 }
 
 /// Both segments are functions: contiguous coefficients down a column.

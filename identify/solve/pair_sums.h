@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "volcal/identify/solve/tile_array.h"
@@ -30,9 +31,11 @@ class PairSums {
   void set_zero();
   /// Rows of a block as BlockModel::make_rows() makes them, from the beginning of a TileArray on.
   void add(const ReadingBlock& block, const double* rows);
-  void add(const PairSums& other);
-  /// Adds J^T J of all rows to the upper triangle of `matrix`; below the diagonal it is changed, too.
-  void add_to(Eigen::MatrixXd& matrix) const;
+  /// Adds the sums of others, in their order for every number of threads.
+  void add(std::span<const PairSums* const> others, int threads);
+  /// Adds J^T J of all rows to the upper triangle of `matrix`; below the diagonal it is changed, too. Pairs
+  /// of segments have parts of the matrix of their own, which threads share.
+  void add_to(Eigen::MatrixXd& matrix, int threads) const;
 
  private:
   struct Segment {

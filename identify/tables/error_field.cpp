@@ -1,7 +1,10 @@
 #include "volcal/identify/tables/error_field.h"
 
 #include <memory>
+#include <optional>
+#include <utility>
 
+#include "volcal/identify/tables/linear_axis_errors.h"
 #include "volcal/model/effects/reversal_label.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -37,7 +40,7 @@ AxisPosition without_rotary_axes(const AxisPosition& position) {
   return linear;
 }
 
-ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset) {
+ErrorField plain_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset) {
   const auto errors = std::make_shared<const IdentifiedErrors>(result);
   const KinematicChain chain(result.machine);
   return [errors, chain, tool_offset](const AxisPosition& position, const ApproachDirection& direction) {
@@ -48,6 +51,15 @@ ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d
       values.location[index_of(axis)] = {};
     }
     return Eigen::Vector3d(chain.first_order(linear, tool_offset, values).displacement_w);
+  };
+}
+
+ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset) {
+  std::optional<LinearAxisErrors> made = LinearAxisErrors::make(result, tool_offset);
+  if (!made) return plain_error_field(result, tool_offset);
+  const auto errors = std::make_shared<const LinearAxisErrors>(*std::move(made));
+  return [errors](const AxisPosition& position, const ApproachDirection& direction) {
+    return errors->at(position, direction);
   };
 }
 

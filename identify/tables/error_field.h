@@ -24,15 +24,17 @@ using ErrorField = std::function<Eigen::Vector3d(const AxisPosition&, const Appr
 /// Errors that a result holds: functions, squareness, and reversals (+b/2 towards +, -b/2 towards -).
 class IdentifiedErrors {
  public:
-  explicit IdentifiedErrors(const FitResult& result);
-
-  PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const;
-
- private:
   struct Reversal {
     ErrorSymbol symbol;
     double amplitude = 0.0;  ///< value towards + minus value towards -, m or rad
   };
+
+  explicit IdentifiedErrors(const FitResult& result);
+
+  PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const;
+  const std::vector<Reversal>& reversals() const { return reversals_; }
+
+ private:
   ParameterLayout layout_;
   Eigen::VectorXd parameters_;
   std::vector<Reversal> reversals_;
@@ -41,8 +43,11 @@ class IdentifiedErrors {
 /// The same position with every rotary axis at 0.
 AxisPosition without_rotary_axes(const AxisPosition& position);
 
-/// First order (chain.h), linear axes only: rotary axes contribute neither errors nor motion.
+/// First order (chain.h), linear axes only: rotary axes contribute neither errors nor motion. From
+/// polynomials between knots where the functions are such (linear_axis_errors.h), otherwise the plain field.
 ErrorField identified_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset);
+/// The same along the chain, joint by joint, at every call.
+ErrorField plain_error_field(const FitResult& result, const Eigen::Vector3d& tool_offset);
 
 /// Names of identified effects that tables cannot hold: everything beyond error motions, squareness and
 /// reversal.

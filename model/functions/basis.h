@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace volcal {
@@ -25,6 +26,8 @@ class Basis {
   int evaluate(double q, double* values) const { return evaluate(q, 0, values); }
   /// Ends of the pieces on which the functions are smooth, ascending; first and last are the travel.
   virtual std::vector<double> pieces() const = 0;
+  /// Degree of the polynomials that all functions are on these pieces; none where they are no polynomials.
+  virtual std::optional<int> degree() const { return std::nullopt; }
   /// Gauss-Legendre points per piece that integrate products of two functions to rounding.
   virtual int quadrature_order() const = 0;
   /// Order of the derivative that a smoothing prior penalises; 0 = the basis takes no prior.

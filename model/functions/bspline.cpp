@@ -40,6 +40,7 @@ class BSpline final : public Basis {
   int size() const override { return piece_count() + degree_; }
   int support() const override { return degree_ + 1; }
   std::vector<double> pieces() const override { return breakpoints_; }
+  std::optional<int> degree() const override { return degree_; }
   int quadrature_order() const override { return degree_ + 1; }
   int roughness_order() const override { return degree_ == 1 ? 1 : 2; }
 

@@ -18,6 +18,7 @@ class Legendre final : public Basis {
   int size() const override { return degree_ + 1; }
   int support() const override { return degree_ + 1; }
   std::vector<double> pieces() const override { return {travel_min_, travel_max_}; }
+  std::optional<int> degree() const override { return degree_; }
   int quadrature_order() const override { return degree_ + 1; }
   int roughness_order() const override { return 0; }
 

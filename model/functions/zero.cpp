@@ -12,6 +12,7 @@ class Zero final : public Basis {
   int support() const override { return 0; }
   int evaluate(double, int, double*) const override { return 0; }
   std::vector<double> pieces() const override { return {travel_min_, travel_max_}; }
+  std::optional<int> degree() const override { return 0; }
   int quadrature_order() const override { return 1; }
   int roughness_order() const override { return 0; }
 

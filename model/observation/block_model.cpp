@@ -83,22 +83,24 @@ BlockModel::BlockModel(const MeasurementModel& model) : model_(model) {
 void BlockModel::cut_setup(std::size_t setup) {
   const SetupBinding& place = model_.binding().setups[setup];
   const std::size_t rows = model_.campaign().setups[setup].readings.size();
-  std::vector<int> own, last;
+  const int count = place.bound->local_nuisance_size();
+  int index[kMaxLocalNuisance], last[kMaxLocalNuisance];
+  std::vector<int> own;
   std::uint32_t number = 0;
   for (std::size_t row = 0; row < rows; ++row) {
-    int index[kMaxLocalNuisance];
     place.bound->local_nuisance(row, index);
-    own.clear();
-    for (int k = 0; k < 3 && place.tool_error >= 0; ++k) own.push_back(place.tool_error + k);
-    for (int k = 0; k < place.bound->local_nuisance_size(); ++k)
-      own.push_back(place.nuisance[static_cast<std::size_t>(index[k])]);
-    const bool is_new = row == 0 || own != last;
-    if (is_new) number = own_number(own);
+    const bool is_new = row == 0 || !std::equal(index, index + count, last);
+    if (is_new) {
+      own.clear();
+      for (int k = 0; k < 3 && place.tool_error >= 0; ++k) own.push_back(place.tool_error + k);
+      for (int k = 0; k < count; ++k) own.push_back(place.nuisance[static_cast<std::size_t>(index[k])]);
+      number = own_number(own);
+      std::copy_n(index, count, last);
+    }
     if (is_new || blocks_.back().size == kLanes) {
       blocks_.push_back({static_cast<std::uint32_t>(setup), static_cast<std::uint32_t>(row), 0, number});
     }
     ++blocks_.back().size;
-    last = own;
   }
 }
 

@@ -11,6 +11,8 @@ using Octet = StateMap::Octet;
 constexpr int kVectors = StateMap::kVectors;
 constexpr int kMostComponents = kStateSize + kMaxChannels;
 constexpr int kAtOnce = 3;  // components of a pass
+constexpr int kNumbersOfArm = 3;
+constexpr int kFunctionsWithArm = 6;  // d, e
 
 using Vectors [[gnu::vector_size(sizeof(Octet)), gnu::may_alias]] = double;
 
@@ -22,24 +24,41 @@ struct GroupTable {
   int count;                      ///< functions
 };
 
-/// A block's readings. Slots: the functions of every group, then the parameters besides.
+/// A block's readings. Slots: the functions of every group without arms, then the parameters besides.
 template <class Numbers>
 struct Sweep {
+  std::vector<GroupTable<Numbers>> arms;
   std::vector<GroupTable<Numbers>> groups;
   std::vector<Numbers*> besides;
-  const double* coefficients;  ///< readings x slots x components
+  const double* coefficients;  ///< readings x (arms, then slots x components)
+  std::ptrdiff_t arm_numbers;  ///< of a reading
   int slots;
   int components;
   int size;
 };
+
+template <class Numbers>
+[[gnu::always_inline]] inline const double* coefficients_of(const Sweep<Numbers>& sweep, int i) {
+  return sweep.coefficients +
+         i * (sweep.arm_numbers + static_cast<std::ptrdiff_t>(sweep.slots) * sweep.components);
+}
+
+/// Calls use(six numbers, arm) for the groups with arms; only where the point alone is seen.
+template <class Numbers, class Use>
+[[gnu::always_inline]] inline void for_each_arm(const Sweep<Numbers>& sweep, int i, const Use& use) {
+  const double* arm = coefficients_of(sweep, i);
+  for (const GroupTable<Numbers>& group : sweep.arms) {
+    use(group.numbers + static_cast<std::ptrdiff_t>(group.position[i]) * kFunctionsWithArm, arm);
+    arm += kNumbersOfArm;
+  }
+}
 
 /// Calls use(number, coefficients) for the slots of reading `i`, coefficients of `first` and later
 /// components.
 template <class Numbers, class Use>
 [[gnu::always_inline]] inline void for_each_slot(const Sweep<Numbers>& sweep, int i, int first,
                                                  const Use& use) {
-  const double* coefficient =
-      sweep.coefficients + static_cast<std::ptrdiff_t>(i) * sweep.slots * sweep.components + first;
+  const double* coefficient = coefficients_of(sweep, i) + sweep.arm_numbers + first;
   for (const GroupTable<Numbers>& group : sweep.groups) {
     Numbers* number = group.numbers + static_cast<std::ptrdiff_t>(group.position[i]) * group.count;
     for (int slot = 0; slot < group.count; ++slot, coefficient += sweep.components)
@@ -58,6 +77,15 @@ template <int kCount>
   for (int i = 0; i < sweep.size; ++i) {
     Vectors sum[kCount];
     for (int k = 0; k < kCount; ++k) sum[k] = Vectors{} + constant[first + k].value[i];
+    if constexpr (kCount == kNumbersOfArm) {
+      for_each_arm(sweep, i, [&](const Octet* six, const double* arm) {
+        const auto* d = reinterpret_cast<const Vectors*>(six);
+        const auto* e = d + kNumbersOfArm;
+        sum[0] += d[0] + (e[1] * arm[2] - e[2] * arm[1]);
+        sum[1] += d[1] + (e[2] * arm[0] - e[0] * arm[2]);
+        sum[2] += d[2] + (e[0] * arm[1] - e[1] * arm[0]);
+      });
+    }
     for_each_slot(sweep, i, first, [&](const Octet& number, const double* coefficient) {
       const auto& values = reinterpret_cast<const Vectors&>(number);
       for (int k = 0; k < kCount; ++k) sum[k] += values * coefficient[k];
@@ -94,6 +122,16 @@ template <int kCount>
     }
     Vectors loads[kCount];
     for (int k = 0; k < kCount; ++k) loads[k] = reinterpret_cast<const Vectors&>(own[k]);
+    if constexpr (kCount == kNumbersOfArm) {
+      for_each_arm(sweep, i, [&](Octet* six, const double* arm) {
+        auto* d = reinterpret_cast<Vectors*>(six);
+        auto* e = d + kNumbersOfArm;
+        for (int k = 0; k < kNumbersOfArm; ++k) d[k] += loads[k];
+        e[0] += loads[2] * arm[1] - loads[1] * arm[2];
+        e[1] += loads[0] * arm[2] - loads[2] * arm[0];
+        e[2] += loads[1] * arm[0] - loads[0] * arm[1];
+      });
+    }
     for_each_slot(sweep, i, first, [&](Octet& number, const double* coefficient) {
       auto sum = reinterpret_cast<Vectors&>(number);
       for (int k = 0; k < kCount; ++k) sum += loads[k] * coefficient[k];
@@ -136,21 +174,46 @@ void list_lanes(Seen* seen, int components, int of_tool, Lane** lanes) {
 }
 
 template <class Numbers, class Functions, class Parameters>
-Sweep<Numbers> sweep_of(const MeasurementModel& model, const ReadingBlock& block, Functions& functions,
-                        Parameters& parameters, const std::vector<int>& besides) {
+Sweep<Numbers> sweep_of(const MeasurementModel& model, const ReadingBlock& block,
+                        const std::vector<char>& has_arm, Functions& functions, Parameters& parameters,
+                        const std::vector<int>& besides) {
   Sweep<Numbers> sweep{};
   for (std::size_t g = 0; g < functions.size(); ++g) {
     const FunctionGroup& group = model.layout().groups[g];
-    sweep.groups.push_back(
-        {functions[g].data(),
-         model.tables().entries(block.setup, index_of(group.axis)).data() + block.first_row, group.count()});
-    sweep.slots += group.count();
+    const GroupTable<Numbers> table{
+        functions[g].data(),
+        model.tables().entries(block.setup, index_of(group.axis)).data() + block.first_row, group.count()};
+    if (has_arm[g] != 0) {
+      sweep.arms.push_back(table);
+      sweep.arm_numbers += kNumbersOfArm;
+    } else {
+      sweep.groups.push_back(table);
+      sweep.slots += group.count();
+    }
   }
   for (const int parameter : besides)
     sweep.besides.push_back(&parameters[static_cast<std::size_t>(parameter)]);
   sweep.slots += static_cast<int>(besides.size());
   sweep.size = block.size;
   return sweep;
+}
+
+/// Coefficients of three components to d and e, where point += d + e x arm; `at(component, function)`.
+template <class At>
+Eigen::Vector3d arm_of(const At& at) {
+  return {at(1, 5), at(2, 3), at(0, 4)};
+}
+
+template <class At>
+bool is_of_arm(const At& at) {
+  const Eigen::Vector3d arm = arm_of(at);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k), turned = unit.cross(arm);
+    for (int component = 0; component < 3; ++component) {
+      if (at(component, k) != unit[component] || at(component, 3 + k) != turned[component]) return false;
+    }
+  }
+  return true;
 }
 
 void add_multiple(const Octet& from, double factor, Octet& to) {
@@ -180,38 +243,65 @@ void StateMap::add_block(const ReadingBlock& block, const TabulatedFunctions& ze
   const MeasurementModel& measured = model_.model();
   const int of_tool = tool_components(measured, block.setup);
   const int channels = measured.binding().effects.empty() ? 0 : measured.bound(block.setup).channels();
-  const Place place{of_tool + channels, coefficients_.size(), constants_.size()};
   BlockLinearization unused;
   model_.find_state(block, Eigen::VectorXd::Zero(measured.layout().size), zero, levers, unused);
+  Place place{of_tool + channels, coefficients_.size(), constants_.size(), {}};
   Seen at_zero{levers.tool, {}};
   for (int k = 0; k < place.components; ++k) constants_.push_back(*component(at_zero, k, of_tool));
-  std::vector<double> rows(static_cast<std::size_t>(model_.row_width() * block.size));
-  std::size_t slots = besides_[block.setup].size();
-  for (const FunctionGroup& group : measured.layout().groups)
-    slots += static_cast<std::size_t>(group.count());
-  coefficients_.resize(coefficients_.size() +
-                       slots * static_cast<std::size_t>(place.components * block.size));
-  places_.push_back(place);
+  Rows rows(static_cast<std::size_t>(place.components),
+            std::vector<double>(static_cast<std::size_t>(model_.row_width() * block.size)));
   for (int k = 0; k < place.components; ++k) {
-    model_.make_rows_of_state(block, k < of_tool ? k : kStateSize + k - of_tool, levers, rows.data());
-    keep_rows(block, k, rows);
+    model_.make_rows_of_state(block, k < of_tool ? k : kStateSize + k - of_tool, levers,
+                              rows[static_cast<std::size_t>(k)].data());
   }
+  for (std::size_t g = 0; g < model_.group_count(); ++g)
+    place.has_arm.push_back(has_arm(block, g, rows) ? 1 : 0);
+  places_.push_back(std::move(place));
+  keep_rows(block, rows);
 }
 
-void StateMap::keep_rows(const ReadingBlock& block, int component, const std::vector<double>& rows) {
+/// Whether the group's functions are the six motions of a joint, whose rows are those of an arm to the bit.
+bool StateMap::has_arm(const ReadingBlock& block, std::size_t group, const Rows& rows) const {
+  const int count = model_.model().layout().groups[group].count();
+  if (rows.size() != kNumbersOfArm || count != kFunctionsWithArm) return false;
+  const std::ptrdiff_t width = model_.row_width();
+  for (int i = 0; i < block.size; ++i) {
+    const std::ptrdiff_t first = i * width + model_.segment_begin(group);
+    const auto at = [&](int component, int function) {
+      return rows[static_cast<std::size_t>(component)][static_cast<std::size_t>(first + function)];
+    };
+    if (!is_of_arm(at)) return false;
+  }
+  return true;
+}
+
+void StateMap::keep_rows(const ReadingBlock& block, const Rows& rows) {
   const Place& place = places_.back();
-  double* to = coefficients_.data() + place.coefficients + component;
-  const auto keep = [&](const double* from, int count) {
-    for (int slot = 0; slot < count; ++slot, to += place.components) *to = from[slot];
-  };
+  const std::size_t groups = model_.group_count();
   const int shared = model_.model().shared_tail_size();
   const int own = static_cast<int>(besides_[block.setup].size()) - shared;
   for (int i = 0; i < block.size; ++i) {
-    const double* row = rows.data() + static_cast<std::ptrdiff_t>(i) * model_.row_width();
-    for (std::size_t g = 0; g < model_.group_count(); ++g)
-      keep(row + model_.segment_begin(g), model_.model().layout().groups[g].count());
-    keep(row + model_.segment_begin(model_.group_count()), shared);
-    keep(row + model_.segment_begin(model_.group_count() + 1), own);
+    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(i) * model_.row_width();
+    const auto number = [&](int component, std::ptrdiff_t at) {
+      return rows[static_cast<std::size_t>(component)][static_cast<std::size_t>(row + at)];
+    };
+    const auto keep = [&](std::size_t segment, int count) {
+      for (int slot = 0; slot < count; ++slot) {
+        for (int k = 0; k < place.components; ++k)
+          coefficients_.push_back(number(k, model_.segment_begin(segment) + slot));
+      }
+    };
+    for (std::size_t g = 0; g < groups; ++g) {
+      if (place.has_arm[g] == 0) continue;
+      const Eigen::Vector3d arm =
+          arm_of([&](int k, int function) { return number(k, model_.segment_begin(g) + function); });
+      coefficients_.insert(coefficients_.end(), arm.begin(), arm.end());
+    }
+    for (std::size_t g = 0; g < groups; ++g) {
+      if (place.has_arm[g] == 0) keep(g, model_.model().layout().groups[g].count());
+    }
+    keep(groups, shared);
+    keep(groups + 1, own);
   }
 }
 
@@ -253,8 +343,8 @@ void StateMap::set_parameters(const Eigen::MatrixXd& parameters, Numbers& values
 void StateMap::find(std::size_t block, const Numbers& values, Seen* seen) const {
   const ReadingBlock& readings = model_.blocks()[block];
   const Place& place = places_[block];
-  auto sweep = sweep_of<const Octet>(model_.model(), readings, values.functions_, values.parameters_,
-                                     besides_[readings.setup]);
+  auto sweep = sweep_of<const Octet>(model_.model(), readings, place.has_arm, values.functions_,
+                                     values.parameters_, besides_[readings.setup]);
   sweep.coefficients = coefficients_.data() + place.coefficients;
   sweep.components = place.components;
   Lanes* lanes[kMostComponents * kVectors];
@@ -271,8 +361,8 @@ void StateMap::find(std::size_t block, const Numbers& values, Seen* seen) const 
 void StateMap::add_work(std::size_t block, const Seen* load, Numbers& sums) const {
   const ReadingBlock& readings = model_.blocks()[block];
   const Place& place = places_[block];
-  auto sweep =
-      sweep_of<Octet>(model_.model(), readings, sums.functions_, sums.parameters_, besides_[readings.setup]);
+  auto sweep = sweep_of<Octet>(model_.model(), readings, place.has_arm, sums.functions_, sums.parameters_,
+                               besides_[readings.setup]);
   sweep.coefficients = coefficients_.data() + place.coefficients;
   sweep.components = place.components;
   const Lanes* lanes[kMostComponents * kVectors];

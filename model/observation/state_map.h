@@ -6,6 +6,9 @@
 /// that act besides. The coefficients are those of BlockModel::make_rows_of_state() and are kept; a pass over
 /// the readings serves kVectors parameter vectors at a time, each with the same sums in the same order
 /// whatever its neighbours. Equal to BlockModel::linearize() and add_work() to rounding.
+///
+/// Where a joint does not turn and only the point is seen, displacements need no coefficients and rotations
+/// share those of the arm: point += d + e x arm, three numbers in place of eighteen.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -64,12 +67,16 @@ class StateMap {
  private:
   struct Place {
     int components = 0;
-    std::size_t coefficients = 0;  ///< first of its readings x slots x components
+    std::size_t coefficients = 0;  ///< first of its readings x (arms, then slots x components)
     std::size_t constants = 0;     ///< first of its components
+    std::vector<char> has_arm;     ///< per group: d + e x arm
   };
+  /// Rows of the Jacobian of a block, one matrix after another, of every component that is seen.
+  using Rows = std::vector<std::vector<double>>;
 
   void add_block(const ReadingBlock& block, const TabulatedFunctions& zero, BlockLevers& levers);
-  void keep_rows(const ReadingBlock& block, int component, const std::vector<double>& rows);
+  bool has_arm(const ReadingBlock& block, std::size_t group, const Rows& rows) const;
+  void keep_rows(const ReadingBlock& block, const Rows& rows);
 
   const BlockModel& model_;
   std::vector<std::vector<int>> besides_;  ///< per setup: parameters besides the functions', slot by slot

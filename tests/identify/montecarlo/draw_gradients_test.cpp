@@ -129,6 +129,24 @@ TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRows) {
   for (const int count : {1, 5, kDraws}) expect_sums_of_rows(model, random_, count);
 }
 
+TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsWithoutEffects) {
+  ModelSpec spec = testing_support::rich_model(campaign_.machine);
+  spec.effects.clear();
+  const MeasurementModel model(campaign_, spec);
+  expect_sums_of_rows(model, random_, kDraws);
+}
+
+/// No joint turns and there are no effects: displacements and rotations follow from the arms.
+TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsOfThreeAxes) {
+  Machine& machine = campaign_.machine;
+  machine.structure = Structure::parse("w Y' b Z X t");
+  std::erase_if(machine.axes, [](const Axis& axis) { return is_rotary(axis.name); });
+  ModelSpec spec = testing_support::rich_model(machine);
+  spec.effects.clear();
+  const MeasurementModel model(campaign_, spec);
+  expect_sums_of_rows(model, random_, kDraws);
+}
+
 TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsWithTheSecondOrderRemainder) {
   MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
   model.set_second_order_remainder(testing_support::random_parameters(model, random_));

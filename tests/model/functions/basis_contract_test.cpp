@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -188,6 +189,26 @@ TEST(BasisContract, EndPiecesAreContinued) {
       }
       const Eigen::VectorXd row = example.basis->row(end + outside);
       EXPECT_LT((row - taylor).norm(), 1e-7 * (1.0 + row.norm())) << example.name;
+    }
+  }
+}
+
+TEST(BasisContract, DegreeIsThatOfThePolynomialsOnThePieces) {
+  for (const Example& example : examples()) {
+    const std::optional<int> degree = example.basis->degree();
+    if (!degree || *degree > 8) continue;
+    const std::vector<double> ends = example.basis->pieces();
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const double middle = 0.5 * (ends[i] + ends[i + 1]);
+      EXPECT_EQ(example.basis->row(middle, *degree + 1).norm(), 0.0) << example.name;
+      Eigen::VectorXd taylor = Eigen::VectorXd::Zero(example.basis->size());
+      const double step = 0.49 * (ends[i + 1] - ends[i]);
+      double factor = 1.0;
+      for (int order = 0; order <= *degree; ++order) {
+        taylor += factor * example.basis->row(middle, order);
+        factor *= step / (order + 1);
+      }
+      EXPECT_LT((example.basis->row(middle + step) - taylor).norm(), 1e-12) << example.name;
     }
   }
 }

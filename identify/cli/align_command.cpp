@@ -9,6 +9,7 @@
 #include "volcal/identify/cli/alignment_options.h"
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/today.h"
+#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/report/report.h"
@@ -86,6 +87,7 @@ std::map<std::string, std::string> kept_files(const std::string& folder) {
 }
 
 int run_align(const AlignArguments& arguments) {
+  require_output_folder(arguments.output, {arguments.result});
   const FitResult before = read_result(arguments.result);
   if (!arguments.alignment.any())
     throw InputError({}, "nothing is to be aligned",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -118,7 +119,11 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
 }
 
 int run_compare(const CompareArguments& arguments) {
-  if (!arguments.output.empty()) require_output_folder(arguments.output);
+  if (!arguments.output.empty()) {
+    std::vector<std::string> inputs = {arguments.campaign};
+    std::ranges::remove_copy(arguments.models, std::back_inserter(inputs), kNominal);
+    require_output_folder(arguments.output, inputs);
+  }
   const Campaign campaign = read_campaign(arguments.campaign);
   ComparisonOptions comparison;
   comparison.worst = arguments.worst;

@@ -91,7 +91,9 @@ int run_diagnose(const DiagnoseArguments& arguments) {
     throw InputError({}, "no campaign is given",
                      "volcal diagnose CAMPAIGN.toml -o DIR, --show DIR, or --list");
   }
-  if (!arguments.output.empty()) require_output_folder(arguments.output);
+  if (!arguments.output.empty()) {
+    require_output_folder(arguments.output, {arguments.campaign, arguments.model});
+  }
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model = given_model(arguments, campaign);
   DiagnoseOptions options;

@@ -1,14 +1,43 @@
 #include "volcal/identify/cli/draw_ranks.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "volcal/model/description/errors.h"
+
 #ifdef VOLCAL_HAVE_MPI
 #include <mpi.h>
 
-#include <cstdlib>
 #include <exception>
 #include <numeric>
 #endif
 
 namespace volcal::cli {
+namespace {
+
+/// Processes that mpirun or srun started together, by their marks in the environment; 1 without any.
+int started_together() {
+  int most = 1;
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
+    if (const char* count = std::getenv(name)) most = std::max(most, std::atoi(count));
+  }
+  return most;
+}
+
+/// Each of several processes that know nothing of each other would make the whole study, all of them into one
+/// folder.
+void require_known_to_each_other(std::size_t ranks, const std::string& remedy) {
+  const int processes = started_together();
+  if (processes == 1 || ranks > 1) return;
+  throw InputError(
+      {}, fmt::format("{} processes were started together but know nothing of each other", processes),
+      remedy);
+}
+
+}  // namespace
 
 #ifdef VOLCAL_HAVE_MPI
 namespace {
@@ -62,10 +91,19 @@ bool started_among_ranks() {
 }  // namespace
 
 std::unique_ptr<DrawTeam> draw_ranks() {
-  return started_among_ranks() ? std::make_unique<MpiRanks>() : nullptr;
+  auto ranks = started_among_ranks() ? std::make_unique<MpiRanks>() : nullptr;
+  require_known_to_each_other(
+      ranks ? ranks->size() : 1,
+      "start them with the mpirun of the Open MPI that volcal was built with, or with srun "
+      "--mpi=pmix");
+  return ranks;
 }
 #else
-std::unique_ptr<DrawTeam> draw_ranks() { return nullptr; }
+std::unique_ptr<DrawTeam> draw_ranks() {
+  require_known_to_each_other(1,
+                              "build volcal with -DVOLCAL_MPI=ON, or start it once, without mpirun or srun");
+  return nullptr;
+}
 #endif
 
 }  // namespace volcal::cli

@@ -7,7 +7,8 @@
 
 namespace volcal::cli {
 
-/// Nothing for a process that mpirun did not start.
+/// Nothing for a process that mpirun did not start. Throws InputError for several that do not form a team: a
+/// program without MPI under mpirun, or srun without its plugin.
 std::unique_ptr<DrawTeam> draw_ranks();
 
 }  // namespace volcal::cli

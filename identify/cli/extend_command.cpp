@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ struct ExtendArguments {
   bool accepted = false;
   std::string campaign;
   std::string output;
+  bool json = false;
+};
+
+/// What the new model has that the old one had not, in the user's words.
+struct Changes {
+  std::vector<std::string> given_back, added;
 };
 
 std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
@@ -64,23 +71,23 @@ void require_new(const EffectName& name, const std::string& label, const std::st
 }
 
 void add_named(const std::string& text, const ExtendArguments& arguments, ModelSpec& model,
-               const Campaign& campaign) {
+               const Campaign& campaign, Changes& changes) {
   const EffectSpec spec = named_effect("--effect", text, campaign);
   const auto made = find_effect(spec.kind)->make(spec, {});
   require_new(made->name(), text, "leave out --effect " + text, arguments, model);
   model.effects.push_back(spec);
-  fmt::print("added: {}\n", full_name(made->name()));
+  changes.added.push_back(full_name(made->name()));
 }
 
 /// Throws when the model has it already, or the machine cannot have it.
 void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
-               const Machine& machine) {
+               const Machine& machine, Changes& changes) {
   require_new(effect.name, effect.label,
               "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
                   " -o DIR), or choose another --rank",
               arguments, model);
   if (restore_left_out(effect.spec, model)) {
-    fmt::print("given back: {}\n", effect.label);
+    changes.given_back.push_back(effect.label);
     return;
   }
   const EffectKind* kind = find_effect(effect.spec.kind);
@@ -99,7 +106,7 @@ void add_found(const EffectFinding& effect, const ExtendArguments& arguments, Mo
   }
   if (!arguments.campaign.empty()) made->check(read_campaign(arguments.campaign), {arguments.diagnosis, 0});
   model.effects.push_back(effect.spec);
-  fmt::print("added: {}{}{}\n", effect.label, effect.shape_text.empty() ? "" : ", ", effect.shape_text);
+  changes.added.push_back(effect.label + (effect.shape_text.empty() ? "" : ", " + effect.shape_text));
 }
 
 void require_one_source(const ExtendArguments& arguments) {
@@ -138,6 +145,18 @@ std::string path_from(const std::string& from, const std::string& file) {
   return std::filesystem::proximate(std::filesystem::absolute(file), folder).generic_string();
 }
 
+void report(const Changes& changes, const std::string& output, std::size_t effects, bool as_json) {
+  if (as_json) {
+    const nlohmann::ordered_json json = {
+        {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);
+  for (const std::string& label : changes.added) fmt::print("added: {}\n", label);
+  fmt::print("written: {} ({} effect{})\n", output, effects, effects == 1 ? "" : "s");
+}
+
 int run_extend(const ExtendArguments& arguments) {
   require_one_source(arguments);
   auto [machine, model] = read_model_with_machine(arguments.model);
@@ -147,14 +166,15 @@ int run_extend(const ExtendArguments& arguments) {
   } else {
     campaign = read_campaign(arguments.campaign);
   }
-  for (const std::string& effect : arguments.effects) add_named(effect, arguments, model, campaign);
+  Changes changes;
+  for (const std::string& effect : arguments.effects) add_named(effect, arguments, model, campaign, changes);
   if (!arguments.diagnosis.empty()) {
-    for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, model, machine);
+    for (const EffectFinding& effect : chosen(arguments))
+      add_found(effect, arguments, model, machine, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
   write_text_file(output, model_toml(model, path_from(output, machine.file)));
-  fmt::print("written: {} ({} effect{})\n", output, model.effects.size(),
-             model.effects.size() == 1 ? "" : "s");
+  report(changes, output, model.effects.size(), arguments.json);
   return kDone;
 }
 
@@ -173,6 +193,7 @@ std::function<int()> define_extend(CLI::App& app) {
                  "campaign.toml, for effects of temperatures, stations, setups and tools");
   app.add_option("-o,--output", arguments->output,
                  "model file to write; default: the model's name with the next free number, model-1.toml");
+  app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
   return [arguments] { return run_extend(*arguments); };
 }
 

@@ -50,7 +50,7 @@ FitOptions fit_options(const FitArguments& arguments) {
 }
 
 int run_fit(const FitArguments& arguments) {
-  require_output_folder(arguments.output);
+  require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model =
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "volcal/identify/cli/command.h"
@@ -17,6 +18,7 @@ namespace {
 struct InitArguments {
   std::string structure;
   std::string output;
+  bool json = false;
 };
 
 std::string axis_table(AxisName axis) {
@@ -118,7 +120,14 @@ int run_init(const InitArguments& arguments) {
   folder.write("machine.toml", machine_toml(structure));
   folder.write("model.toml", kModelToml);
   folder.write("campaign.toml", campaign_toml(structure));
-  folder.commit();
+  folder.commit_to_be_edited();
+  if (arguments.json) {
+    const nlohmann::ordered_json json = {{"folder", arguments.output},
+                                         {"structure", structure.code},
+                                         {"files", {"machine.toml", "model.toml", "campaign.toml"}}};
+    fmt::print("{}\n", json.dump(2));
+    return kDone;
+  }
   fmt::print(
       "written: {0}/machine.toml, {0}/model.toml, {0}/campaign.toml\n"
       "next: enter travel and tools in machine.toml, a setup per measurement in campaign.toml, then\n"
@@ -131,7 +140,8 @@ std::function<int()> define_init(CLI::App& app) {
   auto arguments = std::make_shared<InitArguments>();
   app.add_option("STRUCTURE", arguments->structure, "structural code, workpiece to tool (ISO 10791-6)")
       ->required();
-  app.add_option("-o,--output", arguments->output, "folder")->required();
+  app.add_option("-o,--output", arguments->output, "folder, new or empty")->required();
+  app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
   return [arguments] { return run_init(*arguments); };
 }
 

@@ -1,3 +1,5 @@
+#include <glog/logging.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -90,6 +92,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
   volcal::keep_freed_memory();
   try {
     return run(argc, argv);

@@ -201,7 +201,7 @@ MonteCarloResult drawn(const MonteCarloArguments& arguments, const Campaign& cam
 int run_montecarlo(MonteCarloArguments arguments) {
   const std::unique_ptr<DrawTeam> ranks = draw_ranks();
   arguments.options.team = ranks.get();
-  require_output_folder(arguments.output);
+  require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   if (!arguments.resume) require_no_checkpoint(checkpoint_path(arguments));
   const Campaign campaign = read_campaign(arguments.campaign);
   ProgressBar bar("montecarlo");
@@ -225,13 +225,16 @@ int run_montecarlo(MonteCarloArguments arguments) {
 void define_draws(CLI::App& app, MonteCarloOptions& options) {
   app.add_option("-n,--draws", options.draws,
                  "draws; 0 = until --digits of every uncertainty are right (GUM Supplement 1, 7.9)")
+      ->check(not_negative())
       ->capture_default_str();
   app.add_option("--digits", options.digits, "significant digits of every uncertainty that shall be right")
       ->check(CLI::Range(1, 2))
       ->capture_default_str();
   app.add_option("--most-draws", options.most_draws, "of a study without --draws; exit 1 when it ends here")
+      ->check(positive())
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the random numbers; the same seed gives the same bits")
+      ->check(not_negative())
       ->capture_default_str();
   app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
   app.add_option("--refits", options.refits, "sample of draws on which the paths are held to full refits")

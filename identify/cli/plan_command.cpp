@@ -192,7 +192,9 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
 
 int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   refuse_other_options(app, arguments.settings.instrument);
-  if (!arguments.output.empty()) require_output_folder(arguments.output);
+  if (!arguments.output.empty()) {
+    require_output_folder(arguments.output, {arguments.machine, arguments.model, arguments.with});
+  }
   const std::optional<Campaign> with = given_campaign(arguments);
   PlanSettings settings = settings_of(arguments, with);
   ProgressBar bar("plan");

@@ -36,6 +36,7 @@ void compensate(const SimulateArguments& arguments, sim::Study& study) {
 }
 
 int run_simulate(const SimulateArguments& arguments) {
+  require_output_folder(arguments.output, {arguments.study, arguments.compensation});
   sim::Study study = read_study(arguments.study);
   if (arguments.seed) study.seed = *arguments.seed;
   compensate(arguments, study);

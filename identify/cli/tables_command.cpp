@@ -233,6 +233,9 @@ int list_formats(bool json) {
 }
 
 FitResult aligned_result(const TablesArguments& arguments) {
+  if (!arguments.output.empty() && !arguments.dry_run) {
+    require_output_folder(arguments.output, {arguments.result});
+  }
   FitResult result = read_result(arguments.result);
   if (!arguments.alignment.any()) return result;
   return align_result(result, alignment_of(result, arguments.alignment)).result;

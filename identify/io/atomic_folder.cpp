@@ -162,7 +162,18 @@ fs::path absolute_target(const std::string& target) {
 
 }  // namespace
 
-void require_output_folder(const std::string& target) { require_replaceable(absolute_target(target)); }
+void require_output_folder(const std::string& target, const std::vector<std::string>& inputs) {
+  const fs::path absolute = absolute_target(target);
+  require_replaceable(absolute);
+  for (const std::string& input : inputs) {
+    if (input.empty() || !fs::exists(absolute)) continue;
+    const fs::path read = absolute_target(input);
+    if (std::mismatch(absolute.begin(), absolute.end(), read.begin(), read.end()).first != absolute.end())
+      continue;
+    throw InputError({target, 0}, "the output folder holds " + input + ", which is read",
+                     "name another folder with -o: this one is replaced as a whole");
+  }
+}
 
 AtomicFolder::AtomicFolder(const std::string& target) {
   const fs::path absolute = absolute_target(target);
@@ -246,9 +257,13 @@ void AtomicFolder::exchange() const {
   fs::remove_all(backup, error);
 }
 
-void AtomicFolder::commit() {
+void AtomicFolder::commit() { put_in_place(true); }
+
+void AtomicFolder::commit_to_be_edited() { put_in_place(false); }
+
+void AtomicFolder::put_in_place(bool listed) {
   try {
-    write_list();
+    if (listed) write_list();
     carry_over_user_files();
     flush_tree(temporary_);
   } catch (const fs::filesystem_error& error) {

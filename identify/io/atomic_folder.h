@@ -34,11 +34,14 @@ class AtomicFolder {
   void write(const TableFile& file) const;
   /// Puts the folder in the place of the target. Throws InputError when the system refuses.
   void commit();
+  /// The same for files that the user is to edit: they are not listed, so that nothing replaces the folder.
+  void commit_to_be_edited();
 
  private:
   void create_temporary();
   void carry_over_user_files() const;
   void write_list() const;
+  void put_in_place(bool listed);
   void exchange() const;
 
   std::string target_;
@@ -47,8 +50,9 @@ class AtomicFolder {
   bool committed_ = false;
 };
 
-/// Throws what AtomicFolder would throw for this target, before a long computation is lost to it. Writes
-/// nothing.
-void require_output_folder(const std::string& target);
+/// Throws what AtomicFolder would throw for this target, before a long computation is lost to it, and where
+/// the folder is, or holds, one of `inputs` (files or folders; empty ones do not count), which replacing it
+/// would delete. Writes nothing.
+void require_output_folder(const std::string& target, const std::vector<std::string>& inputs = {});
 
 }  // namespace volcal

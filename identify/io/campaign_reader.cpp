@@ -96,7 +96,9 @@ class CampaignReader {
     setup.name = read_name(table);
     declared.instrument = &read_instrument(table);
     setup.instrument = declared.instrument->name;
-    setup.data = resolve_path(campaign_.file, table.required_text("data"));
+    const std::string data = table.required_text("data");
+    if (data.empty()) table.fail("data", table.path() + ".data is empty", "name the file of the readings");
+    setup.data = resolve_path(campaign_.file, data);
     declared.data_place = table.place("data");
     setup.tool = read_tool(table);
     setup.options = table.options(declared.instrument->keys);

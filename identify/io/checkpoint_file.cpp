@@ -75,8 +75,10 @@ std::string checkpoint_bytes(std::uint64_t fingerprint, const std::string& state
 
 void write_checkpoint(const std::string& path, std::uint64_t fingerprint, const std::string& state) {
   const std::string temporary = path + ".part";
-  if (!OutputDescriptor(temporary).write(checkpoint_bytes(fingerprint, state))) fail_to_write(path);
   std::error_code failure;
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder, failure);
+  if (!OutputDescriptor(temporary).write(checkpoint_bytes(fingerprint, state))) fail_to_write(path);
   std::filesystem::rename(temporary, path, failure);
   if (failure) fail_to_write(path);
 }

@@ -52,6 +52,7 @@ class ReadingsReader {
     check_mapping();
     choose_columns();
     reject_near_misses();
+    reject_scale_of_nothing();
     CsvColumns columns = table_.numbers(index_);
     line_ = std::move(columns.source_line);
     for (std::size_t i = 0; i < name_.size(); ++i) {
@@ -230,6 +231,18 @@ class ReadingsReader {
     const std::string second = instrument_.column_sets[complete[1]].front().column;
     throw InputError(table_.header_place(), "the file has both " + first + " and " + second,
                      "keep one of them; " + instrument_.name + " takes one kind of reading per setup");
+  }
+
+  /// A factor that would act on nothing must not be dropped in silence.
+  void reject_scale_of_nothing() const {
+    for (const auto& [column, factor] : mapping_.scale) {
+      if (std::ranges::find(name_, column) != name_.end()) continue;
+      throw InputError(
+          mapping_.scale_place,
+          "scale has a factor for " + printable(column) + ", but " + table_.file() + " has no such column",
+          "remove the factor, or add columns = { " + printable(column) +
+              " = \"NAME IN THE FILE\" } to the setup");
+    }
   }
 
   /// Columns that nobody reads and that look like a slip of a standard name must not be dropped in silence.
@@ -457,11 +470,6 @@ class ReadingsReader {
 
 }  // namespace
 
-std::string axis_column(AxisName axis) {
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-  return std::string(1, letter) + (is_rotary(axis) ? "_deg" : "_mm");
-}
-
 std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument) {
   std::vector<std::string> names;
   for (const Axis& axis : machine.axes) names.push_back(axis_column(axis.name));
@@ -470,23 +478,6 @@ std::vector<std::string> known_columns(const Machine& machine, const InstrumentS
   }
   for (const std::string& column : optional_columns(machine, instrument)) names.push_back(column);
   return names;
-}
-
-std::string sigma_column(const InstrumentSchema& instrument) {
-  const auto is_angle = [](const ColumnSchema& column) {
-    const std::string_view unit = unit_of_key(column.column).suffix;
-    return unit == "urad" || unit == "deg" || unit == "rad" || unit == "mrad";
-  };
-  const auto angles_only = [&](const auto& set) { return std::ranges::all_of(set, is_angle); };
-  return std::ranges::all_of(instrument.column_sets, angles_only) ? "sigma_urad" : "sigma_um";
-}
-
-std::string temperature_channel(const std::string& column) {
-  constexpr std::string_view kPrefix = "T_";
-  constexpr std::string_view kSuffix = "_degC";
-  const bool fits = column.size() > kPrefix.size() + kSuffix.size() && column.starts_with(kPrefix) &&
-                    column.ends_with(kSuffix);
-  return fits ? column.substr(kPrefix.size(), column.size() - kPrefix.size() - kSuffix.size()) : "";
 }
 
 Readings read_readings(const CsvTable& table, const ColumnMapping& mapping, const Machine& machine,

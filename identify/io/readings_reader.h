@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/io/csv_table.h"
+#include "volcal/identify/io/reading_columns.h"
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/schema.h"
@@ -20,15 +21,9 @@ struct ColumnMapping {
   SourcePlace scale_place;
 };
 
-/// Column of the commanded position of an axis: "x_mm", "a_deg".
-std::string axis_column(AxisName axis);
 /// Standard column names that a setup of this machine and instrument understands; temperatures,
 /// T_<channel>_degC, come on top.
 std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument);
-/// "sigma_um", or "sigma_urad" when every reading of the instrument is an angle.
-std::string sigma_column(const InstrumentSchema& instrument);
-/// Channel of a temperature column name T_<channel>_degC; empty for other names.
-std::string temperature_channel(const std::string& column);
 
 /// Converts the file to SI. Throws InputError: missing, repeated or ambiguous columns, positions more than 5
 /// % outside the travel, implausible readings, temperatures all outside -20 to 60 degC,

@@ -50,6 +50,7 @@ class PlanSearch {
     const std::vector<Eigen::Vector3d> from_corners =
         refined(textbook.stations_w, "stations from corners", 0.3);
     const double lattice = coarse_value(from_lattice), corners = coarse_value(from_corners);
+    if (!std::isfinite(std::min(lattice, corners))) fail_unseen();
     std::vector<Eigen::Vector3d> stations = lattice <= corners ? from_lattice : from_corners;
     const double ratio = std::sqrt(std::max(lattice, corners) / std::min(lattice, corners));
     if (ratio < 1.0 + kAsGood && furthest(from_lattice, from_corners) > 0.1) {

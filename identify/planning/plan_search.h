@@ -24,8 +24,12 @@ namespace volcal {
 /// What everybody would do. Trackers: stations at the corners of the volume's floor (with another number:
 /// evenly around it), every fourth raised to the top of the region, every tool at each, an even grid for each
 /// run. Ball-bars: places along the middle of the volume, circles in three planes with every tool, place and
-/// tool in turn as far as the budget goes. Throws InputError where nothing can be measured whole.
+/// tool in turn as far as the budget goes. Throws InputError where nothing can be measured whole, where no
+/// station sees anything, and where the budget does not hold one run at every station.
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight);
+
+/// Throws InputError: no station sees enough.
+[[noreturn]] void fail_unseen();
 
 struct SearchedPlan {
   PlanLayout layout;

@@ -40,11 +40,25 @@ void spread_over_runs(const LineOfSight& sight, std::size_t positions, PlanLayou
   }
 }
 
-/// Every tool at every station, an even grid for each.
-void lay_grids(const PlanSettings& settings, const LineOfSight& sight, PlanLayout& layout) {
-  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
-    for (const std::size_t tool : tools_of(settings)) layout.runs.push_back({i, tool, {}});
+/// Every tool at every station, or as many tools, in turn from station to station, as the budget leaves a
+/// position for; refuses a budget that does not hold one run at every station.
+void choose_runs(const PlanSettings& settings, PlanLayout& layout) {
+  const std::vector<std::size_t> tools = tools_of(settings);
+  for (std::size_t turn = 0; turn < tools.size(); ++turn) {
+    PlanLayout more = layout;
+    for (std::size_t i = 0; i < layout.stations_w.size(); ++i)
+      more.runs.push_back({i, tools[(i + turn) % tools.size()], {}});
+    if (affordable_readings(settings, more) / 2 < more.runs.size()) break;
+    layout = std::move(more);
   }
+  if (!layout.runs.empty()) return;
+  throw InputError({}, "readings or time do not suffice for one run at every station",
+                   "give more --readings or --time, fewer --stations, or a smaller --station-min");
+}
+
+/// An even grid for every run.
+void lay_grids(const PlanSettings& settings, const LineOfSight& sight, PlanLayout& layout) {
+  choose_runs(settings, layout);
   std::size_t positions = affordable_readings(settings, layout) / 2;
   spread_over_runs(sight, positions, layout);
   while (settings.budget.time && positions > layout.runs.size() &&
@@ -53,6 +67,7 @@ void lay_grids(const PlanSettings& settings, const LineOfSight& sight, PlanLayou
     spread_over_runs(sight, positions, layout);
   }
   std::erase_if(layout.runs, [](const PlanRun& run) { return run.positions.empty(); });
+  if (layout.runs.empty()) fail_unseen();
 }
 
 /// Refuses a budget that does not hold one path at every place, before anything is searched.
@@ -91,6 +106,12 @@ void lay_paths(const PlanSettings& settings, const LineOfSight& sight, PlanLayou
 }
 
 }  // namespace
+
+void fail_unseen() {
+  throw InputError(
+      {}, "no station sees the positions: range, elevation or the spindle are in the way",
+      "give a wider --range-mm or --elevation-deg, a smaller --spindle-mm or another --region-mm");
+}
 
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight) {
   PlanLayout layout;

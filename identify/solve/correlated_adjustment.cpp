@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kNoiseSample = 30000;
 constexpr double kNegligibleStep = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
 constexpr int kRenewals = 4;              // of what the model holds fixed; then it stays, and steps contract
-constexpr int kMostIterations = 12;
+constexpr int kMostIterations = 50;  // the centre across its circle, held by a prior alone, settles slowly
 
 NoiseGroupEquations sum_of(const std::vector<NoiseGroupEquations>& equations) {
   NoiseGroupEquations total = equations.front();

@@ -71,6 +71,8 @@ class Identification {
     lap("rank analysis");
     adjust();
     remove_outliers();
+    require_plausible(campaign_, result_.residuals,
+                      setup_summaries(campaign_, result_.residuals, stated_sigma_), "fitted");
     lap("adjustment");
     if (models_noise()) {
       progress("noise", 0.75);
@@ -166,7 +168,7 @@ class Identification {
   void check_plausible() const {
     const auto records =
         residual_records(index_, stated_sigma_, weights(stated_sigma_), parameters_, {}, 1e300, threads_);
-    require_plausible(campaign_, setup_summaries(campaign_, records, stated_sigma_));
+    require_plausible(campaign_, records, setup_summaries(campaign_, records, stated_sigma_), "nominal");
   }
 
   void find_rank() {

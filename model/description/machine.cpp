@@ -49,6 +49,8 @@ class StructureReader {
       seen_tool_ = true;
     } else {
       const auto axis = axis_from_letter(c);
+      if (static_cast<unsigned char>(c) >= 0x80)
+        fail("a character is not ASCII; the prime is the apostrophe '");
       if (!axis) fail(std::string("'") + c + "' is not one of w b t X Y Z A B C");
       const auto same = [&](const Joint& joint) { return joint.axis == *axis; };
       if (std::ranges::any_of(structure.joints, same)) fail(std::string("axis ") + c + " appears twice");

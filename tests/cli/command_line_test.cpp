@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "tests/support/program.h"
 
@@ -119,6 +122,86 @@ TEST(CommandLine, RefusesAnOutputBeforeTheWork) {
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_THAT(run.errors, HasSubstr("holds files that volcal did not write")) << command;
   }
+}
+
+/// Replacing the folder would delete what is read.
+TEST(CommandLine, RefusesAnOutputThatHoldsItsInput) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "measured").string();
+  const std::string machine = VOLCAL_SOURCE_DIR "/datasets/demo/machine.toml";
+  std::ofstream(scratch.path() / "study.toml")
+      << "format = \"volcal-study-1\"\nmachine = \"" << machine
+      << "\"\n[[measurements]]\nkind = \"laser-tracer\"\ngrid = [2, 2, 2]\n";
+  ASSERT_EQ(run_program("simulate " + (scratch.path() / "study.toml").string() + " -o " + folder).exit_code,
+            0);
+  for (const std::string command : {"fit CAMPAIGN", "montecarlo CAMPAIGN", "diagnose CAMPAIGN",
+                                    "compare CAMPAIGN nominal", "plan MACHINE --readings 100"}) {
+    std::string words = command;
+    for (const auto& [name, file] : {std::pair("CAMPAIGN", "/campaign.toml"), {"MACHINE", "/machine.toml"}}) {
+      if (const auto at = words.find(name); at != std::string::npos)
+        words.replace(at, std::string(name).size(), folder + file);
+    }
+    const auto run = run_program(words + " -o " + folder);
+    EXPECT_EQ(run.exit_code, 2) << command;
+    EXPECT_THAT(run.errors, HasSubstr("which is read")) << command;
+  }
+  for (const std::string command : {"tables ", "align "}) {
+    const auto run = run_program(command + folder + " -o " + folder + "/");
+    EXPECT_EQ(run.exit_code, 2) << command;
+    EXPECT_THAT(run.errors, HasSubstr("which is read")) << command;
+  }
+  EXPECT_TRUE(fs::exists(folder + "/campaign.toml"));
+}
+
+TEST(Init, LeavesEditedFilesAlone) {
+  const testing::ScratchFolder scratch;
+  const fs::path folder = scratch.path() / "machine";
+  const std::string init = "init \"w X' b Y Z t\" -o " + folder.string();
+  ASSERT_EQ(run_program(init).exit_code, 0);
+  std::ofstream(folder / "machine.toml", std::ios::app) << "# measured by hand\n";
+  const auto again = run_program(init);
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.errors, HasSubstr("name another folder"));
+  EXPECT_THAT(content(folder / "machine.toml"), HasSubstr("measured by hand"));
+}
+
+TEST(Init, PrintsJson) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "machine").string();
+  const auto run = run_program("init \"w X' b Y Z t\" --json -o " + folder);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto json = nlohmann::json::parse(run.output);
+  EXPECT_EQ(json["folder"], folder);
+  EXPECT_EQ(json["files"].size(), 3U);
+}
+
+/// The line and what to do, not only that something of the setup is far off.
+TEST(Fit, NamesTheReadingThatIsFarOff) {
+  const testing::ScratchFolder scratch;
+  const fs::path folder = scratch.path() / "campaign";
+  fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "tests/data/small", folder);
+  std::string diagonal = content(folder / "diagonal.csv");
+  diagonal.replace(diagonal.find("142.4218"), 8, "442.4218");
+  std::ofstream(folder / "diagonal.csv") << diagonal;
+  expect_refusal("fit " + (folder / "campaign.toml").string() + " -o " + (scratch.path() / "out").string(),
+                 "diagonal.csv:4: setup \"diagonal\": its readings miss the nominal machine",
+                 "leave it out with leave_out = [{ rows = [4], reason");
+}
+
+TEST(CommandLine, EveryCommandKnowsJson) {
+  for (const char* command : {"init", "simulate", "fit", "compare", "validate", "montecarlo", "plan",
+                              "diagnose", "extend", "align", "tables", "compensate"})
+    EXPECT_THAT(run_program(std::string(command) + " --help").output, HasSubstr("--json")) << command;
+}
+
+TEST(Extend, PrintsJson) {
+  const testing::ScratchFolder scratch;
+  const std::string model = (scratch.path() / "model.toml").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\nmachine = \"" VOLCAL_SOURCE_DIR
+                          "/datasets/demo/machine.toml\"\n[functions]\n";
+  const auto run = run_program("extend " + model + " --effect reversal:EXX --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_EQ(nlohmann::json::parse(run.output)["effects"], 1);
 }
 
 TEST(Init, NamesTheColumnsOfTheMachine) {

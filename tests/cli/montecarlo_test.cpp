@@ -77,6 +77,28 @@ class MonteCarloCommand : public ::testing::Test {
   std::string study_ = path("study.toml");
 };
 
+/// Each of two processes that know nothing of each other would make the whole study.
+TEST_F(MonteCarloCommand, RefusesProcessesThatAreNoTeam) {
+  ASSERT_EQ(::setenv("SLURM_STEP_NUM_TASKS", "2", 1), 0);
+  const auto run = montecarlo("-n 1000 -o " + path("study"));
+  ::unsetenv("SLURM_STEP_NUM_TASKS");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("2 processes were started together but know nothing of each other"));
+}
+
+TEST_F(MonteCarloCommand, KeepsCheckpointsBesideAFolderThatIsYetToBeMade) {
+  const auto run =
+      montecarlo("--path linear -n 1000 --refits 0 --checkpoint-every 0 -o " + path("new/study"));
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_TRUE(fs::exists(path("new/study/montecarlo.json")));
+}
+
+TEST_F(MonteCarloCommand, RefusesANegativeNumberOfDraws) {
+  const auto run = montecarlo("-n -5 -o " + path("study"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("must not be negative"));
+}
+
 TEST_F(MonteCarloCommand, WritesDistributionsOfEveryQuantity) {
   const testing::ProgramRun run = montecarlo("-n 20000 --seed 3 -o " + path("mc"));
   ASSERT_EQ(run.exit_code, 0) << run.errors;

@@ -163,6 +163,10 @@ TEST(Plan, RefusesBadInput) {
   refused(kMachine + " --readings 100 --region-mm 500,100,0,1,0,1", "above its upper one");
   refused(kMachine + " --readings 100 --region-mm 0,10,0,10,-300,-290", "nowhere");
   refused(kMachine + " --readings 3", "--readings");
+  refused(kMachine + " --time 0.01", "do not suffice for one run at every station");
+  refused(kMachine + " --readings 100 --range-mm 10,20", "no station sees the positions");
+  refused(kMachine + " --readings 100 --spindle-mm 5000", "no station sees the positions");
+  refused(kMachine + " --readings 100 --elevation-deg 84,85", "no station sees the positions");
   refused("nowhere.toml --readings 100", "nowhere.toml");
 }
 

@@ -90,6 +90,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "relative to that file"},
       {"DataMissing", "S2.csv", Remove, "", "", "campaign.toml", 20, "does not exist",
        "did you mean \"S1.csv\""},
+      {"DataNotNamed", "campaign.toml", Replace, "data = \"S2.csv\"", "data = \"\"", "campaign.toml", 20,
+       "data is empty", "name the file"},
       {"DataIsADirectory", "S2.csv", MakeDirectory, "", "", "campaign.toml", 20, "is a directory",
        "name the file inside"},
       {"DataEmpty", "S2.csv", Content, "", "", "S2.csv", 0, "the file is empty", "export it again"},
@@ -249,6 +251,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        47, "reads both x_mm and y_mm from \"Target X\"", "its own column"},
       {"MappingOfAnUnknownColumn", "campaign.toml", Replace, "{ x_mm = \"Target X\"", "{ xmm = \"Target X\"",
        "campaign.toml", 47, "unknown column xmm", "did you mean \"x_mm\""},
+      {"ScaleOfNothing", "campaign.toml", Replace, "ex_um = 1000.0", "T_air_degC = 2.0, ex_um = 1000.0",
+       "campaign.toml", 50, "scale has a factor for T_air_degC, but", "remove the factor"},
       {"ScaleZero", "campaign.toml", Replace, "ex_um = 1000.0", "ex_um = 0", "campaign.toml", 50,
        "scale.ex_um is 0", "factor"},
       // Values
@@ -299,6 +303,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
       // Machine
       {"StructureWithoutBed", "machine.toml", Replace, "w X' b Y Z t", "w X Y Z t", "machine.toml", 3,
        "b (bed) is missing", "write it workpiece to tool"},
+      {"StructureWithATypographicPrime", "machine.toml", Replace, "w X' b Y Z t", "w X\xE2\x80\x99 b Y Z t",
+       "machine.toml", 3, "not ASCII", "write it workpiece to tool"},
       {"StructureWithAnAxisTwice", "machine.toml", Replace, "w X' b Y Z t", "w X' b X Z t", "machine.toml", 3,
        "axis X appears twice", "write it workpiece to tool"},
       {"StructureWithAnUnknownAxis", "machine.toml", Replace, "w X' b Y Z t", "w X' b Y Z W t",

@@ -51,6 +51,7 @@ void choose_runs(const PlanSettings& settings, PlanLayout& layout) {
     if (affordable_readings(settings, more) / 2 < more.runs.size()) break;
     layout = std::move(more);
   }
+  std::ranges::sort(layout.runs, {}, [](const PlanRun& run) { return std::pair(run.station, run.tool); });
   if (!layout.runs.empty()) return;
   throw InputError({}, "readings or time do not suffice for one run at every station",
                    "give more --readings or --time, fewer --stations, or a smaller --station-min");

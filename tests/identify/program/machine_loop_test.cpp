@@ -130,9 +130,8 @@ TEST_P(MachineLoop, MistakesAreSeen) {
             }),
             noticeable)
       << "work offset";
-  EXPECT_GT(left_with([&](const auto&, auto q, auto d) -> Eigen::Vector3d {
-              return errors.field(Eigen::Vector3d::Zero())(q, d);
-            }),
+  const ErrorField of_no_tool = errors.field(Eigen::Vector3d::Zero());
+  EXPECT_GT(left_with([&](const auto&, auto q, auto d) -> Eigen::Vector3d { return of_no_tool(q, d); }),
             noticeable)
       << "tool length";
 }

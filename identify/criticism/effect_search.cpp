@@ -44,8 +44,10 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   all.rightCols(more.cols()) = more;
 }
 
-bool near(const FamilyTest& own, const FamilyTest& other) {
-  return own.gain - other.gain < kToldApart || own.score.lm - other.score.lm < kSameLikelihood;
+/// More resolution follows nearly anything; for the price of its columns it is no rival.
+bool near(const FamilyTest& own, const FamilyTest& other, bool of_resolution) {
+  return own.gain - other.gain < kToldApart ||
+         (!of_resolution && own.score.lm - other.score.lm < kSameLikelihood);
 }
 
 }  // namespace
@@ -403,7 +405,8 @@ bool EffectSearch::reconsider(bool may_change) {
     added_[i].rivals.clear();
     for (const FamilyTest& test : tests) {
       const bool known = is_added(test.family) || given_up_.contains(test.family);
-      if (test.score.dof > 0 && !known && near(own, test)) added_[i].rivals.push_back(test);
+      const bool of_resolution = families_[test.family].resolution.has_value();
+      if (test.score.dof > 0 && !known && near(own, test, of_resolution)) added_[i].rivals.push_back(test);
     }
     std::ranges::sort(added_[i].rivals, std::greater{}, &FamilyTest::gain);
   }

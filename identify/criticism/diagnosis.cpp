@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/units.h"
@@ -75,7 +76,7 @@ class Diagnostician {
 
   Diagnosis run() {
     search_.run();
-    diagnosis_.removed_readings = model_.removed().size();
+    list_removed();
     diagnosis_.families = families_.size();
     diagnosis_.generic_tests = search_.generic().size();
     diagnosis_.ladder = search_.ladder();
@@ -94,6 +95,17 @@ class Diagnostician {
  private:
   void progress(const std::string& stage, double done) const {
     if (options_.progress) options_.progress(stage, done);
+  }
+
+  void list_removed() {
+    std::vector<std::size_t> removed = model_.removed();
+    std::ranges::sort(removed);
+    for (const std::size_t observation : removed) {
+      const auto& [of_setup, row, channel] = model_.observations()[observation];
+      const Setup& setup = model_.campaign().setups[of_setup];
+      diagnosis_.removed_readings.push_back(
+          {setup.name, setup.readings.source_line[row], std::string(channel_column(setup, channel))});
+    }
   }
 
   void list_noise() {
@@ -395,7 +407,7 @@ class Diagnostician {
     for (const auto& [family, reason] : search_.given_up()) {
       words.push_back("Not named " + families_[family].label() + ": " + reason + ".");
     }
-    if (const std::size_t back = removed_by_fit_ - diagnosis_.removed_readings; back > 0) {
+    if (const std::size_t back = removed_by_fit_ - diagnosis_.removed_readings.size(); back > 0) {
       words.push_back(
           fmt::format("{} of {} readings that the outlier test had removed agree with the model "
                       "reached and are used again.",

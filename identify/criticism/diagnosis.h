@@ -9,6 +9,7 @@
 ///
 /// A share of the lines is held out: they never choose, and judge every step.
 
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
@@ -100,6 +101,13 @@ struct DiagnoseOptions {
   std::function<void(const std::string& stage, double done)> progress;
 };
 
+/// A reading that is in none of the tests.
+struct RemovedReading {
+  std::string setup;
+  std::int64_t line = 0;  ///< 1-based, of the file of readings
+  std::string reading;    ///< its column
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
   std::vector<std::string> words;      ///< the verdict in plain sentences
@@ -117,7 +125,7 @@ struct Diagnosis {
   Confounding confounding;
   std::vector<std::string> next_measurement;  ///< in words
   std::vector<MeasurementProposal> proposals;
-  std::size_t removed_readings = 0;
+  std::vector<RemovedReading> removed_readings;  ///< outliers of the model reached, by setup and line
   std::size_t families = 0;
   std::size_t generic_tests = 0;
   DiagnosisFigures figures;  ///< not kept in files

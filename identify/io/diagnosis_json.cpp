@@ -186,7 +186,11 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
   json["model_changes"] = list_json(diagnosis.model_changes);
   json["noise"] = noise_json(diagnosis);
-  json["removed_readings"] = diagnosis.removed_readings;
+  json["removed_readings"] = Json::array();
+  for (const RemovedReading& removed : diagnosis.removed_readings) {
+    json["removed_readings"].push_back(
+        {{"setup", removed.setup}, {"line", removed.line}, {"reading", removed.reading}});
+  }
   json["ranking"] = list_json(diagnosis.ranking);
   json["families"] = diagnosis.families;
   json["generic_tests"] = diagnosis.generic_tests;

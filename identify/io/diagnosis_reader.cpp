@@ -198,7 +198,11 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
   diagnosis.model_changes = list_from(json.at("model_changes"));
   read_noise(json.at("noise"), diagnosis);
-  diagnosis.removed_readings = json.at("removed_readings").get<std::size_t>();
+  for (const Json& each : json.at("removed_readings")) {
+    diagnosis.removed_readings.push_back({each.at("setup").get<std::string>(),
+                                          each.at("line").get<std::int64_t>(),
+                                          each.at("reading").get<std::string>()});
+  }
   diagnosis.ranking = list_from(json.at("ranking"));
   diagnosis.families = json.at("families").get<std::size_t>();
   diagnosis.generic_tests = json.at("generic_tests").get<std::size_t>();

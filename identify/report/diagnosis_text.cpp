@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "volcal/identify/report/detectable_groups.h"
@@ -161,6 +162,19 @@ std::string detectable_table(const Diagnosis& diagnosis) {
   return table.text();
 }
 
+/// "  removed: S1 lines 12 and 40 (length_mm)", a line for each setup and column.
+std::string removed_text(const Diagnosis& diagnosis) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::int64_t>> lines;
+  for (const RemovedReading& removed : diagnosis.removed_readings)
+    lines[{removed.setup, removed.reading}].push_back(removed.line);
+  std::string text;
+  for (const auto& [of, numbers] : lines) {
+    text += fmt::format("  removed: {}, {}, line{} {}\n", of.first, of.second, numbers.size() == 1 ? "" : "s",
+                        fmt::join(numbers, ", "));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
@@ -201,8 +215,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += fmt::format(
       "\n{} families and {} generic tests; {} families of which less than 2 % is visible; {} readings "
       "removed\n",
-      diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(), diagnosis.removed_readings);
-  return text;
+      diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(),
+      diagnosis.removed_readings.size());
+  return text + removed_text(diagnosis);
 }
 
 }  // namespace volcal

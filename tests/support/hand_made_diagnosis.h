@@ -102,7 +102,7 @@ inline Diagnosis hand_made_diagnosis() {
                      {0, "wander", "m or rad", 0.5e-6, 0.25e-6, 0.75e-6, 40.0, ""},
                      {1, "line", "m or rad", 0.0, 0.0, 0.0, 0.5, "off: not supported"}};
   diagnosis.noise_instruments = {"laser-tracer", "ball-bar"};
-  diagnosis.removed_readings = 3;
+  diagnosis.removed_readings = {{"S1", 12, "length_mm"}, {"S1", 40, "length_mm"}, {"S2", 7, "length_mm"}};
   diagnosis.families = 120;
   diagnosis.generic_tests = 400;
   return diagnosis;

@@ -294,7 +294,7 @@ class CampaignRun {
   void judge(const Diagnosis& diagnosis) {
     record_.verdict = to_string(diagnosis.verdict);
     record_.families = static_cast<int>(diagnosis.families);
-    record_.removed_readings = static_cast<int>(diagnosis.removed_readings);
+    record_.removed_readings = static_cast<int>(diagnosis.removed_readings.size());
     for (const EffectFinding& finding : diagnosis.effects) record_.named.push_back(answer(finding));
     for (const auto* set : sets_of_alternatives(diagnosis)) {
       auto& answers = record_.sets.emplace_back();

@@ -6,7 +6,7 @@ namespace volcal::report {
 
 Json noise_model_page(const DiagnosisInput& input) {
   return {{"rows", noise_rows(input.diagnosis.noise, input.diagnosis.noise_instruments)},
-          {"removed_readings", input.diagnosis.removed_readings}};
+          {"removed_readings", input.diagnosis.removed_readings.size()}};
 }
 
 }  // namespace volcal::report

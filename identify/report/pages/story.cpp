@@ -182,7 +182,7 @@ Json story_page(const DiagnosisInput& input) {
           {"below", below_json(diagnosis)},
           {"families", diagnosis.families},
           {"generic_tests", diagnosis.generic_tests},
-          {"removed_readings", diagnosis.removed_readings}};
+          {"removed_readings", diagnosis.removed_readings.size()}};
 }
 
 }  // namespace volcal::report

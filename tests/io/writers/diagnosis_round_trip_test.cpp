@@ -62,7 +62,10 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   }
   EXPECT_EQ(document.at("model_changes"), json::array());
   EXPECT_EQ(document.at("noise").at(1).at("instrument"), "laser-tracer");
-  EXPECT_EQ(document.at("removed_readings"), 3);
+  ASSERT_EQ(document.at("removed_readings").size(), 3U);
+  EXPECT_EQ(document.at("removed_readings").at(1).at("setup"), "S1");
+  EXPECT_EQ(document.at("removed_readings").at(1).at("line"), 40);
+  EXPECT_EQ(document.at("removed_readings").at(1).at("reading"), "length_mm");
   EXPECT_NEAR(document.at("detectable").at(1).at("volumetric_um").get<double>(), 0.375, 1e-12);
   EXPECT_TRUE(document.at("detectable").at(3).at("volumetric_um").is_null());
 }

@@ -75,8 +75,8 @@ struct NoiseEstimate {
 };
 
 /// `previous`: estimate for nearly the same problem (the same observations, a few columns more or less). The
-/// search then begins at its end, and over again when a term comes or goes; evidence that was overwhelming is
-/// kept as it was.
+/// search then begins at its end, and over again when a term comes or goes or the residuals have another
+/// size, since the likelihood has several maxima; evidence that was overwhelming is kept as it was.
 NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options = {},
                              const NoiseEstimate* previous = nullptr);
 

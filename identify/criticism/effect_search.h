@@ -1,12 +1,12 @@
 #pragma once
 /// The search for missing effects: the leading one of the catalogue is added while it stands out of the
-/// noise, as well as that is known (noise_freedom.h: names and scans alike), and no generic test does better;
-/// then every added one
-/// must stand against all others again. Several powers of one driver on one target are no name, nor is what
-/// explains less than it leaves or what varies (constancy_test.h): such are left out again, or a rival that
-/// stands takes their place. Where nothing stands out, effects are looked for that a wander has taken up, or
-/// that would stand out were the noise better known (beside_noise.h). A search for one step climbs as well,
-/// so that what it names stands beside all the rest, and then keeps the first.
+/// noise, as well as that is known (noise_freedom.h: names and scans alike), and no generic test does
+/// better; then every added one must stand against all others again. Several powers of one driver on one
+/// target are no name, nor is what explains less than it leaves or what varies (constancy_test.h): such are
+/// left out again, or a rival that stands takes their place. Where nothing stands out, effects are looked
+/// for that a wander has taken up, or that would stand out were the noise better known (beside_noise.h). A
+/// search for one step climbs as well, so that what it names stands beside all the rest, and then keeps the
+/// first.
 
 #include <functional>
 #include <map>

@@ -9,8 +9,6 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "volcal/identify/numeric/memory.h"
-
 namespace volcal::bench {
 
 double seconds(const std::function<void()>& work) {
@@ -45,7 +43,6 @@ void read_options(int count, char** values, int first, const OptionTable& table)
 }
 
 int run_program(const char* program, const std::function<void()>& work) {
-  keep_freed_memory();
   try {
     work();
     return 0;

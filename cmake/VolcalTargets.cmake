@@ -8,6 +8,13 @@ function(volcal_use_ccache)
   endif()
 endfunction()
 
+# Memory of a program by jemalloc, as identify/cli/allocator.cpp sets it.
+function(volcal_use_jemalloc target)
+  if(VOLCAL_JEMALLOC)
+    target_link_libraries(${target} PRIVATE ${JEMALLOC_LIBRARY})
+  endif()
+endfunction()
+
 function(volcal_compile_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                          -fno-math-errno -ffp-contract=off)

@@ -11,7 +11,6 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/nearest_name.h"
-#include "volcal/identify/numeric/memory.h"
 #include "volcal/model/description/errors.h"
 
 namespace {
@@ -93,7 +92,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
-  volcal::keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const volcal::InputError& error) {

@@ -144,8 +144,9 @@ std::vector<std::string> scan_variables_of(const EffectName& name) {
   for (const std::string& text : {name.target, name.driver}) {
     if (text.starts_with("tool ") || text.starts_with("station ")) words.push_back(text);
   }
-  if (name.driver == "dir") {  // the sense of a circle: directions of the axes of its plane
+  if (name.driver == "dir" || name.driver.starts_with("dir ")) {  // the sense of a circle in a plane
     for (const char letter : name.target) words.push_back(fmt::format("dir_{:c}", std::tolower(letter)));
+    if (name.driver.ends_with(" feed")) words.emplace_back("feed");
   } else if (name.driver.starts_with("run ")) {
     words.emplace_back("run");
   } else if (!name.driver.starts_with("tool")) {

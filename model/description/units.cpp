@@ -33,6 +33,7 @@ constexpr std::array kUnits = std::to_array<Unit>({
     {"mm", kMetrePerMillimetre},
     {"um", kMetrePerMicrometre},
     {"m", 1.0},
+    {"ms", 1e-3},
     {"s", 1.0},
     {"K", 1.0},
 });

@@ -202,6 +202,10 @@ SquarenessMotion motion_of_squareness(LocationSymbol location) {
           (along - about + 3) % 3 == 1 ? 1.0 : -1.0};
 }
 
+Eigen::VectorXd constant(const SetupView& view, double value) {
+  return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), value);
+}
+
 Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis) {
   return mapped(view.setup.readings.position[index_of(axis)]).array() - view.campaign.machine.axis(axis).home;
 }
@@ -217,7 +221,7 @@ Eigen::VectorXd directions(const SetupView& view, AxisName axis) {
 
 Eigen::VectorXd times(const SetupView& view, double unknown) {
   if (view.setup.readings.time.empty()) {
-    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), unknown);
+    return constant(view, unknown);
   }
   return mapped(view.setup.readings.time);
 }

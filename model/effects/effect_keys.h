@@ -71,6 +71,8 @@ struct SquarenessMotion {
 };
 SquarenessMotion motion_of_squareness(LocationSymbol location);
 
+/// The same for every reading of a setup.
+Eigen::VectorXd constant(const SetupView& view, double value);
 /// Per reading of a setup: commanded position less home, m or rad.
 Eigen::VectorXd positions_from_home(const SetupView& view, AxisName axis);
 /// Direction of approach -1, 0 (unknown), 1.

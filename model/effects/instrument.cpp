@@ -1,5 +1,4 @@
-// What the instrument does: length scale, dead path, stations that drift or are pushed, tool offsets,
-// ball-bars.
+// What the instrument does: length scale, dead path, stations that drift or are pushed, tool offsets.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,10 +15,6 @@ constexpr std::size_t kEventTimes = 24;
 bool measures_lengths(const Setup& setup) {
   static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "displacement"};
   return kinds.contains(setup.instrument);
-}
-
-Eigen::VectorXd constant(const SetupView& view, double value) {
-  return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), value);
 }
 
 /// 1 from `event` on, 0 before, rising within a second so that it has a slope.
@@ -198,93 +193,6 @@ std::vector<EffectSpec> tool_offsets(const Campaign& campaign) {
   return specs;
 }
 
-bool is_ball_bar(const Setup& setup) { return setup.instrument == "ball-bar"; }
-
-void check_ball_bar(const Campaign& campaign, const SourcePlace& place) {
-  for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup)) return;
-  }
-  throw InputError(place, "no setup is a ball-bar", "remove the effect");
-}
-
-std::unique_ptr<FormulaEffect> make_ball_bar_length(const EffectTable& table) {
-  const std::string label = "ball-bar length";
-  return std::make_unique<FormulaEffect>(
-      EffectName{"ball-bar-length", "readings", "ball-bar", "step"},
-      std::vector{reading_amplitude(table, label, "amplitude_um")},
-      [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        return constant(view, is_ball_bar(view.setup) ? 1.0 : 0.0);
-      },
-      check_ball_bar);
-}
-
-std::vector<EffectSpec> ball_bar_lengths(const Campaign& campaign) {
-  for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup)) return {effect_spec("ball-bar-length", {})};
-  }
-  return {};
-}
-
-/// Product of the signs of approach of two axes: a lag of one axis behind the other makes an ellipse at 45
-/// degrees that turns with the sense of the circle.
-std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
-  const AxisName first = table.axis("axis");
-  const AxisName second = table.axis("second_axis");
-  const std::string label = std::string("servo mismatch ") + letter_of(std::min(first, second)) +
-                            letter_of(std::max(first, second));
-  if (first == second) table.fail("its two axes are the same", "name the two axes of the circle's plane");
-  return std::make_unique<FormulaEffect>(
-      EffectName{"servo-mismatch", label.substr(label.size() - 2), "dir", "sin(2 phi)"},
-      std::vector{reading_amplitude(table, label, "amplitude_um")},
-      [first, second](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        if (!is_ball_bar(view.setup)) return constant(view, 0.0);
-        const auto centre = view.setup.options.vector("centre");
-        Eigen::VectorXd driver = constant(view, 0.0);
-        const Eigen::VectorXd dir_1 = directions(view, first), dir_2 = directions(view, second);
-        for (Eigen::Index row = 0; centre && row < driver.size(); ++row) {
-          const Eigen::Vector3d radius = view.nominal_point_w[static_cast<std::size_t>(row)] - *centre;
-          const double x = radius[direction_of(first)], y = radius[direction_of(second)];
-          // Counter-clockwise, x falls where y is positive: the sense follows from either direction.
-          const double sense = 0.5 * (dir_2[row] * (x > 0 ? 1 : -1) - dir_1[row] * (y > 0 ? 1 : -1));
-          // By the whole bar: at the poles of a circle in another plane x and y are as small as the centre's
-          // error.
-          driver[row] = sense * 2.0 * x * y / radius.squaredNorm();
-        }
-        return driver;
-      },
-      check_ball_bar);
-}
-
-/// A tenth of the travel of the others: a circle in another plane moves along an axis by its centre's error.
-bool moves_both(const Setup& setup, AxisName first, AxisName second) {
-  const auto travel = [&](AxisName axis) {
-    const auto& position = setup.readings.position[index_of(axis)];
-    if (position.empty()) return 0.0;
-    const auto [low, high] = std::ranges::minmax_element(position);
-    return *high - *low;
-  };
-  double largest = 0.0;
-  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z})
-    largest = std::max(largest, travel(axis));
-  return std::min(travel(first), travel(second)) > 0.1 * largest;
-}
-
-std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
-  std::vector<EffectSpec> specs;
-  const auto axes = linear_axes(campaign.machine);
-  for (const AxisName first : axes) {
-    for (const AxisName second : axes) {
-      const bool measured = std::ranges::any_of(campaign.setups, [&](const Setup& setup) {
-        return is_ball_bar(setup) && moves_both(setup, first, second);
-      });
-      if (first >= second || !measured) continue;
-      specs.push_back(effect_spec("servo-mismatch", {{"axis", std::string(1, letter_of(first))},
-                                                     {"second_axis", std::string(1, letter_of(second))}}));
-    }
-  }
-  return specs;
-}
-
 }  // namespace
 
 const EffectKind& length_scale_effect() {
@@ -347,28 +255,6 @@ const EffectKind& tool_offset_effect() {
        .keys = joined({{text_key("tool", "name of the tool")},
                        vector_amplitude_keys("um", "actual less stated offset, tool coordinates")})},
       make_tool_offset, tool_offsets);
-  return kind;
-}
-
-const EffectKind& ball_bar_length_effect() {
-  static const FormulaKind kind({.kind = "ball-bar-length",
-                                 .summary = "the calibrated length of the ball-bar is wrong",
-                                 .source = "ISO 230-4 (circular tests)",
-                                 .keys = {amplitude_key("amplitude_um", "reading too long by this")}},
-                                make_ball_bar_length, ball_bar_lengths);
-  return kind;
-}
-
-const EffectKind& servo_mismatch_effect() {
-  static const FormulaKind kind(
-      {.kind = "servo-mismatch",
-       .summary = "one axis follows the other late: circles become ellipses at 45 degrees whose direction "
-                  "depends on "
-                  "the sense of rotation",
-       .source = "ISO 230-4, annex; Kakino et al. (1993): servo mismatch in circular tests",
-       .keys = {axis_key("axis", "first axis of the circle"), axis_key("second_axis", "second axis"),
-                amplitude_key("amplitude_um", "amplitude of the radius, counter-clockwise")}},
-      make_servo_mismatch, servo_mismatches);
   return kind;
 }
 

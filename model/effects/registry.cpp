@@ -28,6 +28,7 @@ namespace volcal {
   EFFECT(tool_clamping_effect)        \
   EFFECT(ball_bar_length_effect)      \
   EFFECT(servo_mismatch_effect)       \
+  EFFECT(following_error_effect)      \
   EFFECT(lagged_temperature_effect)   \
   EFFECT(lagged_expansion_effect)     \
   EFFECT(foundation_tilt_effect)      \

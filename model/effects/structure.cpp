@@ -57,7 +57,7 @@ std::unique_ptr<FormulaEffect> make_tool_load(const EffectTable& table) {
       std::vector{motion_amplitude(table, label, symbol, "")},
       [tool](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const bool carried = view.campaign.machine.tools[view.setup.tool].name == tool;
-        return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), carried ? 1.0 : 0.0);
+        return constant(view, carried ? 1.0 : 0.0);
       },
       [symbol, tool, label](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, symbol.axis, label, place);

@@ -189,6 +189,10 @@ TEST(ScanVariables, OfAnEffect) {
   EXPECT_EQ(scan_variables_of({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
   EXPECT_EQ(scan_variables_of({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
   EXPECT_EQ(scan_variables_of({"servo-mismatch", "XY", "dir", "sin(2 phi)"}), (Names{"dir_x", "dir_y"}));
+  EXPECT_EQ(scan_variables_of({"servo-mismatch", "XY", "dir feed", "sin(2 phi)"}),
+            (Names{"dir_x", "dir_y", "feed"}));
+  EXPECT_EQ(scan_variables_of({"following-error", "EXX", "dir_x feed", "cos(phi)"}),
+            (Names{"dir_x", "feed"}));
   EXPECT_EQ(scan_variables_of({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
   EXPECT_EQ(scan_variables_of({"ball-bar-length", "readings", "ball-bar", "step"}), Names{});
   EXPECT_EQ(scan_variables_of({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});

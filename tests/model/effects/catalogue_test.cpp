@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -148,9 +149,73 @@ TEST_F(Catalogue, AServoMismatchActsOnCirclesOfItsPlane) {
   EXPECT_NEAR(change(spec, kLag, "B1", 2), 0.0, 1e-10);
 }
 
+/// X lags by T seconds: it is v T short of where it should be, v = 2 m/min less nothing where it crosses the
+/// Y axis; at 45 degrees the radius changes by v T / 2, as the mismatch of the plane says.
+TEST_F(Catalogue, AnAxisThatFollowsLateIsBehindByItsVelocity) {
+  constexpr double kRadius = 0.15, kFeed = 2.0 / 60.0, kLate = 1e-4;
+  volcal::Setup& bar = campaign_.setups[index("B1")];
+  const Eigen::Vector3d tool = campaign_.machine.tools[bar.tool].offset, centre(0.25, 0.25, 0.1);
+  bar.options.set("centre", centre);
+  bar.readings.feed.assign(kEffectRows, kFeed);
+  const auto place = [&](std::size_t row, double angle) {
+    const Eigen::Vector3d point = centre + kRadius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
+    for (Eigen::Index k = 0; k < 3; ++k)
+      bar.readings.position[static_cast<std::size_t>(k)][row] = (point - tool)[k];
+    bar.readings.direction[0][row] = std::sin(angle) > 0 ? -1 : 1;  // counter-clockwise
+    bar.readings.direction[1][row] = std::cos(angle) > 0 ? 1 : -1;
+  };
+  constexpr double kQuarter = 0.25 * std::numbers::pi;
+  place(0, 2.0 * kQuarter);
+  place(1, kQuarter);
+  place(2, 3.0 * kQuarter);
+  const EffectSpec lag =
+      effect_spec("following-error", {{"axis", std::string("X")}, {"by", std::string("feed")}});
+  EXPECT_NEAR(drivers(lag, "B1")(0, 0), kFeed, 1e-12) << "moves towards -, late is towards +";
+  EXPECT_NEAR(change(lag, kLate, "B1", 0), 0.0, 1e-10) << "along the circle";
+  EXPECT_NEAR(change(lag, kLate, "B1", 1), 0.5 * kFeed * kLate, 1e-10);
+  EXPECT_NEAR(change(lag, kLate, "B1", 2), -0.5 * kFeed * kLate, 1e-10);
+  const EffectSpec mismatch = effect_spec(
+      "servo-mismatch",
+      {{"axis", std::string("X")}, {"second_axis", std::string("Y")}, {"by", std::string("feed")}});
+  for (std::size_t row = 0; row < 3; ++row)
+    EXPECT_NEAR(change(mismatch, kLate, "B1", row), change(lag, kLate, "B1", row), 1e-10);
+  EXPECT_EQ(drivers(lag, "S1").norm(), 0.0) << "readings at rest";
+}
+
+TEST_F(Catalogue, AnAxisIsLateWhereCirclesMoveItInTwoPlanes) {
+  const EffectKind* kind = find_effect("following-error");
+  const auto drivers_of = [&] {
+    std::vector<std::string> names;
+    for (const EffectSpec& spec : kind->candidates(campaign_))
+      names.push_back(kind->make(spec, "model.toml")->name().driver);
+    return names;
+  };
+  EXPECT_THAT(drivers_of(), ::testing::ElementsAre("dir_x feed", "dir_y feed", "dir_z feed"));
+  auto& bar = campaign_.setups[index("B1")].readings;
+  bar.feed.clear();
+  EXPECT_THAT(drivers_of(), ::testing::ElementsAre("dir_x", "dir_y", "dir_z"));
+  for (double& position : bar.position[index_of(AxisName::Z)]) position *= 1e-3;
+  EXPECT_THAT(drivers_of(), ::testing::IsEmpty()) << "one plane: the mismatch says it";
+}
+
+TEST_F(Catalogue, AMismatchByFeedNeedsFeedsThatDiffer) {
+  const EffectKind* kind = find_effect("servo-mismatch");
+  auto& feed = campaign_.setups[index("B1")].readings.feed;
+  feed.assign(kEffectRows, 0.02);
+  feed.front() *= 1.0 + 1e-9;
+  EXPECT_EQ(kind->candidates(campaign_).size(), 3U);
+  feed.back() = 0.04;
+  EXPECT_EQ(kind->candidates(campaign_).size(), 6U);
+  const EffectSpec spec = kind->candidates(campaign_)[1];
+  feed.clear();
+  const auto effect = kind->make(spec, "model.toml");
+  EXPECT_THROW(effect->check(campaign_, {"model.toml", 1}), InputError);
+}
+
 /// A circle in XY says nothing about Z, which moves by what the table is tilted.
 TEST_F(Catalogue, AServoMismatchIsLookedForInPlanesOfCircles) {
   const EffectKind* kind = find_effect("servo-mismatch");
+  campaign_.setups[index("B1")].readings.feed.clear();
   EXPECT_EQ(kind->candidates(campaign_).size(), 3U);
   auto& z = campaign_.setups[index("B1")].readings.position[index_of(AxisName::Z)];
   for (double& position : z) position *= 1e-3;

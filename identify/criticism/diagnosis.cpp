@@ -50,6 +50,10 @@ constexpr double kNearlyAsImprobable = 0.1;  // share of log10 p
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
+constexpr const char* kHardlyFallenWords =
+    "More remains: readings that were held out are still off by more than noise, hardly less than before. "
+    "The "
+    "effect may be another one that acts in the same places.";
 constexpr const char* kKnownMore =
     "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb with "
     "--auto.";
@@ -360,7 +364,8 @@ class Diagnostician {
   void conclude_named() {
     const auto sets = sets_of_alternatives(diagnosis_);
     const bool more = !diagnosis_.unknown.empty();
-    const bool open = more || !sets.empty() || search_.more_is_known();
+    const bool hardly_fallen = error_has_hardly_fallen(diagnosis_.ladder);
+    const bool open = more || !sets.empty() || search_.more_is_known() || hardly_fallen;
     auto& words = diagnosis_.words;
     diagnosis_.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
     for (const EffectFinding& effect : diagnosis_.effects)
@@ -368,6 +373,7 @@ class Diagnostician {
     for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
     if (search_.more_is_known()) words.emplace_back(kKnownMore);
     if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
+    if (hardly_fallen) words.emplace_back(kHardlyFallenWords);
   }
 
   void conclude_unknown() {

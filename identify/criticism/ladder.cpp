@@ -12,6 +12,7 @@ namespace volcal {
 namespace {
 
 constexpr std::int32_t kStretch = 10;
+constexpr double kHardlyFallen = 0.8;         // of the systematic error before
 constexpr double kSmallestEigenvalue = 1e-9;  // of a precision with unit diagonal
 
 /// Of the prior: as many further observations.
@@ -101,6 +102,12 @@ std::vector<bool> heldout_lines(const LinearModel& model, double share) {
   for (const auto& observation : model.observations())
     heldout.push_back(rows[observation.setup][observation.row]);
   return heldout;
+}
+
+bool error_has_hardly_fallen(std::span<const LadderStep> ladder) {
+  const LadderStep& first = ladder.front();
+  const LadderStep& last = ladder.back();
+  return last.systematic_low > 0.0 && last.systematic > kHardlyFallen * first.systematic;
 }
 
 LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,

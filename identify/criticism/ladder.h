@@ -18,6 +18,10 @@ std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double sha
 /// Variance of every observation on its own, all parts of the noise; SI squared.
 std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise);
 
+/// The names explain the readings that they were chosen on, and not those that were held out: these are still
+/// off by more than noise, and by at least four fifths of what they were before.
+bool error_has_hardly_fallen(std::span<const LadderStep> ladder);
+
 /// Figures of the model that `projector` holds, with the accepted columns; `loglik` is the held-out
 /// log-likelihood of the step before, and becomes this one's.
 LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,

@@ -198,6 +198,13 @@ MonteCarloResult drawn(const MonteCarloArguments& arguments, const Campaign& cam
   return study.result();
 }
 
+/// Ends as fit does, and writes nothing.
+int tell_undetermined(const MonteCarloArguments& arguments, const FitResult& fit_result) {
+  if (is_first(arguments))
+    fmt::print("{}", arguments.json ? undetermined_json(fit_result) : undetermined_text(fit_result));
+  return kIncomplete;
+}
+
 int run_montecarlo(MonteCarloArguments arguments) {
   const std::unique_ptr<DrawTeam> ranks = draw_ranks();
   arguments.options.team = ranks.get();
@@ -206,6 +213,10 @@ int run_montecarlo(MonteCarloArguments arguments) {
   const Campaign campaign = read_campaign(arguments.campaign);
   ProgressBar bar("montecarlo");
   const FitResult fit_result = fitted(arguments, campaign, bar);
+  if (fit_result.status == FitStatus::RankDeficient) {
+    bar.finish();
+    return tell_undetermined(arguments, fit_result);
+  }
   const MonteCarloResult result = drawn(arguments, campaign, fit_result, bar);
   const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
                         (!result.adaptive || result.settled);

@@ -130,8 +130,7 @@ class CampaignReader {
   }
 
   std::string read_name(const TomlTable& table) {
-    std::string name = table.required_text("name");
-    if (name.empty()) table.fail("name", table.path() + ": name is empty", "give the setup a name");
+    std::string name = table.required_name("name");
     const auto [known, fresh] = setup_line_.emplace(name, table.place().line);
     if (!fresh) {
       table.fail("name",

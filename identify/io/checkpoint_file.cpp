@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -112,6 +113,7 @@ std::string read_checkpoint(const std::string& path, std::uint64_t fingerprint) 
     throw InputError({path, 0}, "there is no checkpoint to resume from",
                      "give the -o of the run that was interrupted, or leave --resume out to begin anew");
   }
+  require_file(path);
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   return checkpoint_state(bytes, path, fingerprint);

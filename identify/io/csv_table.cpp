@@ -122,8 +122,14 @@ class Cells {
   bool closed_ = true;
 };
 
+/// A number may have a plus sign, and has one sign at most.
+std::string_view without_plus(std::string_view cell) {
+  if (cell.starts_with('+') && !cell.starts_with("+-")) cell.remove_prefix(1);
+  return cell;
+}
+
 bool is_number_with(std::string_view cell, char decimal) {
-  if (cell.starts_with('+')) cell.remove_prefix(1);
+  cell = without_plus(cell);
   double value = 0.0;
   const fast_float::parse_options options(fast_float::chars_format::general, decimal);
   const auto end = fast_float::from_chars_advanced(cell.data(), cell.data() + cell.size(), value, options);
@@ -227,8 +233,9 @@ class CsvTable::RowReader {
   }
 
   double number(std::size_t column, std::string_view cell, std::string_view line) const {
-    const char* begin = cell.data() + (cell.starts_with('+') ? 1 : 0);
-    const char* end = cell.data() + cell.size();
+    const std::string_view digits = without_plus(cell);
+    const char* const begin = digits.data();
+    const char* const end = begin + digits.size();
     double value = 0.0;
     const auto parsed = fast_float::from_chars_advanced(
         begin, end, value,

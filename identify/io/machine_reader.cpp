@@ -170,6 +170,8 @@ class MachineReader {
     const auto tools = root_.table("tools");
     if (!tools) return;
     for (const std::string& name : tools->keys()) {
+      if (name.find_first_not_of(" \t") == std::string::npos)
+        tools->fail(name, "the name of a tool is empty", "give it a name, as in [tools.long]");
       const TomlTable table = tools->required_table(name);
       table.know("offset_mm");
       if (!table.has("offset_mm")) table.fail_missing("offset_mm");

@@ -96,6 +96,16 @@ std::string montecarlo_json(const MonteCarloResult& result) {
   return json.dump(1) + "\n";
 }
 
+std::string undetermined_json(const FitResult& fit) {
+  const MonteCarloJson json = {
+      {"format", kMonteCarloFormat},
+      {"status", std::string(to_string(fit.status))},
+      {"draws", 0},
+      {"rank",
+       {{"parameters", fit.rank.parameters}, {"rank", fit.rank.rank}, {"invisible", fit.rank.invisible}}}};
+  return json.dump(1) + "\n";
+}
+
 std::string montecarlo_csv(const MonteCarloResult& result) {
   fmt::memory_buffer text;
   auto out = std::back_inserter(text);

@@ -20,12 +20,7 @@ constexpr std::size_t kLongestLine = 1 << 16;
 }  // namespace
 
 LineFile::LineFile(const std::string& path) : path_(path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error))
-    throw InputError({path, 0}, "the file does not exist",
-                     missing_remedy(path, "give its path; it is relative to the folder you are in"));
-  if (std::filesystem::is_directory(path, error))
-    throw InputError({path, 0}, "it is a directory, a file is expected", "name the file inside it");
+  require_file(path);
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_)
     throw InputError({path, 0}, std::string("the file cannot be opened: ") + std::strerror(errno),

@@ -108,7 +108,7 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
   sim::Tracking settings;
   settings.instrument = instrument;
   for (const TomlTable& station : table.tables("stations")) {
-    settings.stations.push_back({station.required_text("name"), station.required_vector3("position_mm")});
+    settings.stations.push_back({station.required_name("name"), station.required_vector3("position_mm")});
   }
   for (const TomlTable& run : table.tables("runs")) {
     settings.runs.push_back({run.required_text("station"), run.required_text("tool"), read_points(run)});
@@ -141,7 +141,7 @@ void refuse_keys_of_circles(const TomlTable& table) {
 
 void read_ball_bar_runs(const TomlTable& table, sim::BallBarCircles& settings) {
   for (const TomlTable& run : table.tables("runs")) {
-    settings.runs.push_back({run.required_text("name"), run.required_vector3("centre_mm"),
+    settings.runs.push_back({run.required_name("name"), run.required_vector3("centre_mm"),
                              run.required_text("tool"), read_points(run), run.place()});
   }
   if (!settings.runs.empty()) refuse_keys_of_circles(table);

@@ -98,7 +98,7 @@ sim::TruthSettings read_truth(const TomlTable& table, const Machine& machine) {
 
 sim::TemperatureChannel read_channel(const TomlTable& table) {
   sim::TemperatureChannel channel;
-  channel.name = table.required_text("channel");
+  channel.name = table.required_name("channel");
   const NumberLimits any_temperature{-60.0, 300.0};
   const NumberLimits any_change{-300.0, 300.0};
   read_number(table, "start_degC", channel.start, any_temperature);

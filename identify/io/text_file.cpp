@@ -19,6 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Where an error about a file as a whole is reported.
+SourcePlace place_of(const std::string& path, const SourcePlace& named_at) {
+  return named_at.file.empty() ? SourcePlace{path, 0} : named_at;
+}
+
 std::string read_all(const std::string& path, const SourcePlace& place) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   if (!file) {
@@ -55,8 +60,8 @@ void require_text(const std::string& text, const std::string& file) {
   }
 }
 
-std::string read_text_file(const std::string& path, const SourcePlace& named_at) {
-  const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
+void require_file(const std::string& path, const SourcePlace& named_at) {
+  const SourcePlace place = place_of(path, named_at);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -70,10 +75,16 @@ std::string read_text_file(const std::string& path, const SourcePlace& named_at)
   if (fs::is_directory(status)) {
     throw InputError(place, path + " is a directory, a file is expected", "name the file inside it");
   }
-  if (!fs::is_regular_file(status) && !fs::is_fifo(status)) {
-    throw InputError(place, path + " is a device, a file is expected", "name a file");
+  if (!fs::is_regular_file(status)) {
+    const char* const kind = fs::is_fifo(status) ? "pipe" : fs::is_socket(status) ? "socket" : "device";
+    throw InputError(place, path + " is a " + kind + ", a file is expected",
+                     "save what it gives to a file first, and name that");
   }
-  std::string text = read_all(path, place);
+}
+
+std::string read_text_file(const std::string& path, const SourcePlace& named_at) {
+  require_file(path, named_at);
+  std::string text = read_all(path, place_of(path, named_at));
   require_text(text, path);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {

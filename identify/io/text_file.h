@@ -1,6 +1,6 @@
 #pragma once
-/// Whole text files, with the errors a user can mend: missing, a directory, empty, binary, UTF-16,
-/// lines that end in CR alone.
+/// Whole text files, with the errors a user can mend: missing, a directory, a pipe or device, empty, binary,
+/// UTF-16, lines that end in CR alone.
 
 #include <string>
 
@@ -12,6 +12,10 @@ namespace volcal {
 /// campaign's `data` key); errors about a missing file are reported there, or at the file itself when empty.
 /// Throws InputError.
 std::string read_text_file(const std::string& path, const SourcePlace& named_at = {});
+
+/// Throws InputError unless `path` leads to a regular file, also through links. A pipe is none, and opening
+/// one that nobody writes to would wait for ever. `named_at` as above.
+void require_file(const std::string& path, const SourcePlace& named_at = {});
 
 /// Writes under a temporary name and renames: a killed program leaves the old file or the new one. Throws
 /// InputError.

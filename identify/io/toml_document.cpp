@@ -85,6 +85,8 @@ std::string unknown_remedy(std::string_view key, const std::vector<std::string>&
   return suggest_name(key, known, "keys here");
 }
 
+bool is_blank(const std::string& text) { return text.find_first_not_of(" \t") == std::string::npos; }
+
 struct Unknown {
   const TomlNode* node = nullptr;
   std::string path;
@@ -311,6 +313,12 @@ double TomlTable::required_number(std::string_view key, NumberLimits limits) con
 
 std::string TomlTable::required_text(std::string_view key) const { return or_missing(text(key), *this, key); }
 
+std::string TomlTable::required_name(std::string_view key) const {
+  std::string given = required_text(key);
+  if (is_blank(given)) fail(key, name(key) + " is empty", "give it a name");
+  return given;
+}
+
 std::vector<double> TomlTable::required_numbers(std::string_view key, NumberLimits limits) const {
   return or_missing(numbers(key, limits), *this, key);
 }
@@ -380,9 +388,15 @@ Options TomlTable::options(const std::vector<KeySchema>& schema) const {
         read.set(stem, value);
         break;
       }
-      case KeyType::Text:
-        read.set(stem, key.choices.empty() ? *text(key.key) : *choice(key.key, key.choices));
+      case KeyType::Text: {
+        const std::string value = key.choices.empty() ? *text(key.key) : *choice(key.key, key.choices);
+        if (is_blank(value)) {
+          fail(key.key, name(key.key) + " is empty",
+               "write a text" + (key.required ? "" : ", or leave " + key.key + " out"));
+        }
+        read.set(stem, value);
         break;
+      }
       case KeyType::Boolean:
         read.set(stem, *boolean(key.key));
         break;

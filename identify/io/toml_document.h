@@ -67,6 +67,7 @@ class TomlTable {
   // The same, with an error when the key is absent.
   double required_number(std::string_view key, NumberLimits limits = {}) const;
   std::string required_text(std::string_view key) const;
+  std::string required_name(std::string_view key) const;  ///< a text that is more than blanks
   std::vector<double> required_numbers(std::string_view key, NumberLimits limits = {}) const;
   Eigen::Vector3d required_vector3(std::string_view key) const;
   TomlTable required_table(std::string_view key) const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/report/budget_text.h"
+#include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/quantity_groups.h"
 #include "volcal/identify/report/text_tables.h"
 
@@ -154,6 +155,15 @@ std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
   return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result);
+}
+
+std::string undetermined_text(const FitResult& fit) {
+  std::string text =
+      "Monte Carlo: nothing is drawn, the readings do not determine every error.\n" + rank_text(fit) + "\n";
+  for (const std::string& invisible : fit.rank.invisible) text += "! " + invisible + "\n";
+  return text +
+         "Do what is named here, or switch these errors off in the model (EAX = { basis = \"zero\" }, "
+         "EC0Y = \"zero\"), and draw again.\n";
 }
 
 }  // namespace volcal

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -119,12 +120,34 @@ double largest_sideways_offset(const Campaign& campaign, int k) {
   return largest;
 }
 
+/// The linear axis whose direction a squareness turns.
+std::optional<AxisName> turned_axis(const std::string& name) {
+  const auto location = LocationSymbol::parse(name);
+  if (!location || is_rotary(location->axis) || !is_rotation(location->component)) return std::nullopt;
+  if (direction_of(location->component) == direction_of(location->axis)) return std::nullopt;
+  return location->axis;
+}
+
+/// Name of the straightness that displaces as a squareness does: this one in proportion to the position, the
+/// straightness in any other course. Empty for other errors.
+std::string straightness_beside(const std::string& name) {
+  const auto axis = turned_axis(name);
+  if (!axis) return "";
+  const int across = 3 - direction_of(LocationSymbol::parse(name)->component) - direction_of(*axis);
+  return ErrorSymbol{kAllComponents[static_cast<std::size_t>(across)], *axis}.name();
+}
+
+/// Nothing can be told of an error motion or a squareness of an axis that stands still.
+std::optional<Explanation> explain_standing(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  const auto moving = symbol ? std::optional(symbol->axis) : turned_axis(name);
+  if (!moving || axis_moves(campaign, *moving)) return std::nullopt;
+  const std::string axis(1, letter_of(*moving));
+  return Explanation{"axis " + axis + " does not move in this campaign", "measure along axis " + axis};
+}
+
 Explanation explain_unseen(const Campaign& campaign, const std::string& name) {
   const auto symbol = ErrorSymbol::parse(name);
-  if (symbol && !axis_moves(campaign, symbol->axis)) {
-    const std::string axis(1, letter_of(symbol->axis));
-    return {"axis " + axis + " does not move in this campaign", "measure along axis " + axis};
-  }
   if (symbol && is_rotation(symbol->component)) {
     const int k = direction_of(symbol->component);
     const std::string about(1, "XYZ"[k]);
@@ -236,7 +259,9 @@ class RankAnalyser {
       if (stretch.function != nullptr) analysis_.invisible_functions.push_back(stretch.function->symbol);
       const bool unseen_alone = variance_alone * kGainOfVisible >= prior_variance;
       if (unseen_alone) figure.visible_fraction = 0.0;
-      const Explanation words = unseen_alone ? explain_alone(stretch) : explain_mixture(stretch);
+      const Explanation words =
+          explain_standing(model_.campaign(), stretch.name)
+              .value_or(unseen_alone ? explain_alone(stretch) : explain_mixture(stretch));
       figure.reason = words.reason;
       figure.remedy = words.remedy;
       analysis_.report.invisible.push_back(figure.symbol + ": not visible, " + figure.reason + "; " +
@@ -277,7 +302,40 @@ class RankAnalyser {
             "add positions along axis " + axis};
   }
 
+  /// The straightness that hides a squareness though all other errors are known: no station, tool or other
+  /// instrument tells these two apart, but positions along the axis.
+  const ErrorStretch* hiding_straightness(const ErrorStretch& squareness) const {
+    const auto found =
+        std::ranges::find(stretches_, straightness_beside(squareness.name), &ErrorStretch::name);
+    if (found == stretches_.end()) return nullptr;
+    std::vector<Eigen::Index> open = {squareness.offset};
+    const auto add = [&open](int offset, int size) {
+      for (int i = 0; i < size; ++i) open.push_back(offset + i);
+    };
+    for (const auto& block : datum_.blocks()) {
+      const std::string& name = model_.layout().blocks[block.block].name;
+      if (std::ranges::find(stretches_, name, &ErrorStretch::name) == stretches_.end())
+        add(block.offset, block.size);
+    }
+    if (is_hidden_among(open)) return nullptr;
+    add(found->offset, found->size);
+    return is_hidden_among(open) ? &*found : nullptr;
+  }
+
+  /// Is the first of these parameters not visible when all others than these are known?
+  bool is_hidden_among(const std::vector<Eigen::Index>& open) const {
+    const Eigen::MatrixXd covariance =
+        inverse(data_(open, open) + wide_.precision(open, open), "the wide prior is not positive definite");
+    return covariance(0, 0) * kGainOfVisible >= prior_covariance_(open[0], open[0]);
+  }
+
   Explanation explain_mixture(const ErrorStretch& stretch) const {
+    if (const ErrorStretch* straightness = hiding_straightness(stretch)) {
+      const std::string axis(1, letter_of(straightness->function->symbol.axis));
+      return {"the readings stand at too few positions of axis " + axis +
+                  ", or on too little of its travel, to tell it from " + straightness->name,
+              "add positions along the whole travel of axis " + axis};
+    }
     const std::vector<std::string> partners = partners_of(stretch);
     if (partners.empty()) {
       if (stretch.function != nullptr) return too_few_positions(stretch);

@@ -20,7 +20,7 @@ std::string shown(std::string_view text) {
 
 double number_in(std::string_view cell, std::string_view what, const SourcePlace& place) {
   std::string_view digits = trimmed_text(cell);
-  if (digits.starts_with('+')) digits.remove_prefix(1);
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = error == std::errc() && end == digits.data() + digits.size() && !digits.empty();

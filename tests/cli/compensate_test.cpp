@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -129,6 +130,8 @@ TEST_F(CompensatedPrograms, RefuseBadInput) {
   }
   EXPECT_THAT(compensate(out, "probe.ngc").errors, HasSubstr("probe.ngc:2: G38.2 (probing) is not followed"));
   EXPECT_THAT(compensate(out, "binary.ngc").errors, HasSubstr("the file is binary"));
+  ASSERT_EQ(::mkfifo(path("pipe.ngc").c_str(), 0600), 0);
+  EXPECT_THAT(compensate(out, "pipe.ngc").errors, HasSubstr("is a pipe, a file is expected (save"));
   EXPECT_THAT(compensate(out, "part.nc").errors, HasSubstr("did you mean \"part.ngc\"?"));
   EXPECT_FALSE(std::filesystem::exists(path("refused.ngc")));
 }

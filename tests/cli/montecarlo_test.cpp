@@ -134,6 +134,32 @@ TEST_F(MonteCarloCommand, WritesDistributionsOfEveryQuantity) {
   EXPECT_FALSE(fs::exists(path("mc.checkpoint")));
 }
 
+/// One station and one tool do not see every error: as fit, exit 1 and the same words; nothing is written.
+TEST_F(MonteCarloCommand, SaysAsFitDoesWhatIsNotDetermined) {
+  std::ofstream(study_, std::ios::app) << "stations = [{ name = \"P1\", position_mm = [-700, -500, -600] }]\n"
+                                       << "runs = [{ station = \"P1\", tool = \"short\" }]\n";
+  ASSERT_EQ(run_program("simulate " + study_ + " -o " + path("campaign")).exit_code, 0);
+  const testing::ProgramRun fit =
+      run_program("fit " + campaign() + " -m " + model_ + " --noise white --json -o " + path("fit"));
+  ASSERT_EQ(fit.exit_code, 1) << fit.errors;
+  const auto invisible = nlohmann::json::parse(fit.output).at("rank").at("invisible");
+  ASSERT_FALSE(invisible.empty());
+  const testing::ProgramRun run = montecarlo("-n 1000 -o " + path("mc"));
+  EXPECT_EQ(run.exit_code, 1) << run.errors;
+  EXPECT_EQ(run.errors, "");
+  EXPECT_THAT(run.output, HasSubstr("nothing is drawn, the readings do not determine every error"));
+  EXPECT_THAT(run.output, HasSubstr("switch these errors off in the model"));
+  for (const auto& sentence : invisible)
+    EXPECT_THAT(run.output, HasSubstr("! " + sentence.get<std::string>() + "\n"));
+  const testing::ProgramRun document = montecarlo("-n 1000 --json -o " + path("mc"));
+  EXPECT_EQ(document.exit_code, 1) << document.errors;
+  const auto json = nlohmann::json::parse(document.output);
+  EXPECT_EQ(json.at("status"), "rank_deficient");
+  EXPECT_EQ(json.at("draws"), 0);
+  EXPECT_EQ(json.at("rank").at("invisible"), invisible);
+  EXPECT_FALSE(fs::exists(path("mc")));
+}
+
 TEST_F(MonteCarloCommand, JsonIsTheFileAndNothingElse) {
   const testing::ProgramRun run = montecarlo("-n 1000 --json -o " + path("mc"));
   ASSERT_EQ(run.exit_code, 0) << run.errors;

@@ -3,6 +3,8 @@
 /// and says which file and line the message must name, what is wrong and what to do. Used against the readers
 /// (tests/io) and as text against the program (tests/cli).
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,7 +15,7 @@
 
 namespace volcal::testing {
 
-enum class Edit { Replace, Content, Prepend, Remove, MakeDirectory };
+enum class Edit { Replace, Content, Prepend, Remove, MakeDirectory, MakePipe };
 
 struct BrokenCampaign {
   std::string name;  ///< letters and digits: also the name of the test
@@ -65,6 +67,10 @@ inline void break_campaign(const BrokenCampaign& broken, const std::filesystem::
       std::filesystem::remove(path);
       std::filesystem::create_directory(path);
       return;
+    case Edit::MakePipe:  // that nobody writes to: opening it waits for ever
+      std::filesystem::remove(path);
+      if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error(broken.name + ": mkfifo failed");
+      return;
   }
 }
 
@@ -76,6 +82,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
       {"CampaignMissing", "campaign.toml", Remove, "", "", "campaign.toml", 0, "does not exist", "relative"},
       {"CampaignIsADirectory", "campaign.toml", MakeDirectory, "", "", "campaign.toml", 0, "is a directory",
        "name the file inside"},
+      {"CampaignIsAPipe", "campaign.toml", MakePipe, "", "", "campaign.toml", 0, "is a pipe",
+       "save what it gives to a file"},
       {"CampaignEmpty", "campaign.toml", Content, "", "", "campaign.toml", 0, "the file is empty",
        "name another file"},
       {"CampaignBinary", "campaign.toml", Content, "", "format\0\1\2"s, "campaign.toml", 1, "binary",
@@ -88,12 +96,18 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "key format is missing", "add format = \"volcal-campaign-1\""},
       {"MachineMissing", "machine.toml", Remove, "", "", "campaign.toml", 2, "does not exist",
        "relative to that file"},
+      {"MachineIsAPipe", "machine.toml", MakePipe, "", "", "campaign.toml", 2, "is a pipe",
+       "save what it gives to a file"},
       {"DataMissing", "S2.csv", Remove, "", "", "campaign.toml", 20, "does not exist",
        "did you mean \"S1.csv\""},
       {"DataNotNamed", "campaign.toml", Replace, "data = \"S2.csv\"", "data = \"\"", "campaign.toml", 20,
        "data is empty", "name the file"},
       {"DataIsADirectory", "S2.csv", MakeDirectory, "", "", "campaign.toml", 20, "is a directory",
        "name the file inside"},
+      {"DataIsAPipe", "S2.csv", MakePipe, "", "", "campaign.toml", 20, "is a pipe",
+       "save what it gives to a file"},
+      {"DataIsADevice", "campaign.toml", Replace, "data = \"S2.csv\"", "data = \"/dev/zero\"",
+       "campaign.toml", 20, "is a device", "save what it gives to a file"},
       {"DataEmpty", "S2.csv", Content, "", "", "S2.csv", 0, "the file is empty", "export it again"},
       {"DataBlank", "S2.csv", Content, "", "\r\n\n   \n", "S2.csv", 0, "the file is empty",
        "export it again"},
@@ -164,7 +178,10 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "data = \"./S1.csv\"\ntool = \"long\"\nstation = \"P1\"\nstation_mm = [-200.0, -150.0, -250.0]",
        "campaign.toml", 20, "as setup \"S1\" (line 7) does", "remove one of the two setups"},
       {"NamelessSetup", "campaign.toml", Replace, "name = \"S2\"", "name = \"\"", "campaign.toml", 18,
-       "name is empty", "give the setup a name"},
+       "setups[2].name is empty", "give it a name"},
+      {"NamelessStation", "campaign.toml", Replace, "station = \"P1\"\nstation_mm = [-201.0, -149.0, -251.0]",
+       "station = \" \"\nstation_mm = [-201.0, -149.0, -251.0]", "campaign.toml", 22,
+       "setups[2].station is empty", "or leave station out"},
       {"UnknownInstrument", "campaign.toml", Replace, "\"displacement\"", "\"displacment\"", "campaign.toml",
        29, "instrument \"displacment\" is not known", "did you mean \"displacement\""},
       {"UnknownTool", "campaign.toml", Replace, "tool = \"side\"", "tool = \"sied\"", "campaign.toml", 21,
@@ -229,6 +246,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "column y_mm is empty", "delete the row"},
       {"CellIsText", "diagonal.csv", Replace, "100,80,-240,", "100,80 mm,-240,", "diagonal.csv", 4,
        "column y_mm holds \"80 mm\", not a number", "without units"},
+      {"CellHasTwoSigns", "diagonal.csv", Replace, "100,80,-240,", "100,+-80,-240,", "diagonal.csv", 4,
+       "column y_mm holds \"+-80\", not a number", "plain numbers"},
       {"CellIsNaN", "diagonal.csv", Replace, "100,80,-240,", "100,NaN,-240,", "diagonal.csv", 4,
        "column y_mm holds \"NaN\"", "delete rows without a reading"},
       {"CellIsInfinite", "diagonal.csv", Replace, "100,80,-240,", "100,80,-inf,", "diagonal.csv", 4,
@@ -327,6 +346,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "both X", "two different linear axes"},
       {"DatumOfARotaryAxis", "machine.toml", Replace, "secondary = \"Y\"", "secondary = \"C\"",
        "machine.toml", 7, "is not a linear axis", "\"X\", \"Y\" or \"Z\""},
+      {"NamelessTool", "machine.toml", Replace, "[tools.none]", "[tools.\"\"]", "machine.toml", 29,
+       "the name of a tool is empty", "as in [tools.long]"},
       {"ToolOffsetMissing", "machine.toml", Replace, "offset_mm = [0, 0, 0]\n", "", "machine.toml", 29,
        "key offset_mm is missing", "in mm"},
       {"ToolOffsetInMicrometres", "machine.toml", Replace, "[0.0, 0.0, -150.0]", "[0.0, 0.0, -150000.0]",
@@ -336,6 +357,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "temperature = \"CHANNEL\""},
       // Model
       {"ModelMissing", "model.toml", Remove, "", "", "model.toml", 0, "does not exist", "relative"},
+      {"ModelIsAPipe", "model.toml", MakePipe, "", "", "model.toml", 0, "is a pipe",
+       "save what it gives to a file"},
       {"ModelBasisUnknown", "model.toml", Replace, "\"legendre\"", "\"legendrre\"", "model.toml", 9,
        "\"legendrre\" is not known", "did you mean \"legendre\""},
       {"ModelFunctionUnknown", "model.toml", Replace, "EBX = ", "EBC = ", "model.toml", 9,
@@ -358,6 +381,8 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
        "unknown key locations.EC0Y", "write EC0Y_urad"},
       {"ModelEffectUnknown", "model.toml", Replace, "\"reversal\"", "\"backlash\"", "model.toml", 15,
        "effect kind \"backlash\" is not known", "reversal"},
+      {"ModelEffectWithAnEmptySymbol", "model.toml", Replace, "symbol = \"EXX\"", "symbol = \"\"",
+       "model.toml", 16, "effects[1].symbol is empty", "write a text"},
       {"ModelEffectWithoutSymbol", "model.toml", Replace, "symbol = \"EXX\"\n", "", "model.toml", 14,
        "key symbol is missing", "add symbol"},
       {"ModelOfAnotherMachine", "model.toml", Replace, "machine = \"machine.toml\"",

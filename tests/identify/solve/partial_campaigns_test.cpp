@@ -345,5 +345,47 @@ TEST(PartialCampaign, RemediesOfTheReportLeaveNothingUnseen) {
   }
 }
 
+// A squareness and the straightness of its axis displace along the same direction: two positions of Y do not
+// tell them apart, whatever the stations and tools; five do.
+TEST(PartialCampaign, ASquarenessAtTwoPositionsAsksForPositions) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[0];
+  study.seed = 3;
+  sim::Tracking tracking;
+  tracking.jitter = 0.0;
+  const auto squareness = [&](int positions) {
+    tracking.grid = {6, positions, 5};
+    study.measurements.clear();
+    study.measurements.emplace_back().settings = tracking;
+    const FitResult result = fit_polynomials(sim::simulate(study).campaign);
+    return *std::ranges::find(result.rank.errors, "EC0Y", &Observability::symbol);
+  };
+  const Observability at_two = squareness(2);
+  EXPECT_FALSE(at_two.visible);
+  EXPECT_EQ(
+      at_two.reason,
+      "the readings stand at too few positions of axis Y, or on too little of its travel, to tell it from "
+      "EXY");
+  EXPECT_EQ(at_two.remedy, "add positions along the whole travel of axis Y");
+  EXPECT_TRUE(squareness(5).visible);
+}
+
+// Y stands beside its home, so that its errors are constant and like the offset of the line.
+TEST(PartialCampaign, AnAxisThatStandsStillHidesItsErrorsAndItsSquareness) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[0];
+  study.seed = 3;
+  sim::AxisLines lines;
+  lines.axes = {AxisName::X};
+  study.measurements.emplace_back().settings = lines;
+  const FitResult result = fit_polynomials(sim::simulate(study).campaign);
+  for (const char* name : {"EXY", "EC0Y"}) {
+    const auto error = std::ranges::find(result.rank.errors, name, &Observability::symbol);
+    EXPECT_FALSE(error->visible) << name;
+    EXPECT_EQ(error->reason, "axis Y does not move in this campaign") << name;
+    EXPECT_EQ(error->remedy, "measure along axis Y") << name;
+  }
+}
+
 }  // namespace
 }  // namespace volcal

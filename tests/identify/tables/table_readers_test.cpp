@@ -64,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm", "EXX,X,500,in", 6, "position_unit"},
         Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm,-1,", "EXX,X,500,mm,2,", 6, "direction"},
         Malformed{"csv", "compensation_tables.csv", "EXX,X,500", "EXX,X,5oo", 6, "not a number of a table"},
+        Malformed{"csv", "compensation_tables.csv", "EXX,X,500", "EXX,X,+-500", 6, "not a number of a table"},
         Malformed{"csv", "compensation_tables.csv", "compensation,unit", "value,unit", 1, "the header is"},
         Malformed{"csv", "compensation_tables.csv", "EC0Y,,", "EC0Y,Y,", 18, "neither axis nor position"},
         Malformed{"csv", "compensation_tables.csv", "EXX,X,500,mm,-1,", "EXX,X,2500,mm,-1,", 7,

@@ -84,6 +84,9 @@ TEST(CsvTable, NamesLineAndColumnOfABadCell) {
   EXPECT_THAT(refusal("a,b\n1,1e400\n"), HasSubstr("no double can hold"));
   EXPECT_THAT(refusal("a,b\n1,--2\n"), HasSubstr("not a number"));
   EXPECT_THAT(refusal("a,b\n1,+\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal("a,b\n1,+-2\n"), HasSubstr("t.csv:2: column b holds \"+-2\", not a number"));
+  EXPECT_THAT(refusal("a,b\n1,++2\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal("a;b\n1;+-2,5\n", {.delimiter = ';', .decimal = ','}), HasSubstr("not a number"));
 }
 
 /// Rows in a form that is read at once stand between others; a long tail keeps all of them away from the end.
@@ -102,7 +105,7 @@ TEST(CsvTable, RowsOfPlainNumbersAndOthersAreTheSameTable) {
     EXPECT_EQ(columns.values[1][i], -2.0) << i;
     EXPECT_EQ(columns.source_line[i], static_cast<std::int64_t>(2 + i / 2 * 4 + (i % 2) * 3)) << i;
   }
-  for (const char* bad : {"1,2\n", "1,2,3,4\n", "1,2,x\n", "1,2,3x\n", "1,2,1.2.3\n", "1,2,\n"})
+  for (const char* bad : {"1,2\n", "1,2,3,4\n", "1,2,x\n", "1,2,3x\n", "1,2,1.2.3\n", "1,2,+-3\n", "1,2,\n"})
     EXPECT_THAT(refusal("a,remark,b\n1,1,1\n" + std::string(bad) + "1,1,1\n# far behind the rows\n"),
                 HasSubstr("t.csv:3: "))
         << bad;

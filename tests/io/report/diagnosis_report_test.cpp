@@ -272,6 +272,23 @@ TEST_F(DiagnosisReport, EverySectionDrawsItself) {
   EXPECT_THAT(drawing.output, ::testing::StartsWith("10 sections, "));
 }
 
+/// Five standard deviations of noise in a bin stand out, one and a half do not.
+TEST_F(DiagnosisReport, ResidualsOpenOnWhatStandsOutAndElseOnTheFirstVariable) {
+  VariableFigure x{.name = "x", .categories = {}, .drawn = {0.1, 0.2}, .given = {}, .reached = {}};
+  x.given[0] = {{0.15}, {0.25e-6}, {0.25e-6}, {2}};
+  VariableFigure z = x;
+  z.name = "z";
+  z.given[0] = {{0.15}, {1.25e-6}, {0.25e-6}, {2}};
+  diagnosis_.figures.variables = {x, z};
+  const test::Drawing on_z = test::draw_report(report_json(diagnosis_, campaign_));
+  if (!on_z.possible) GTEST_SKIP() << "Node.js is not installed";
+  EXPECT_THAT(on_z.output, HasSubstr("opens on Position z"));
+  diagnosis_.figures.variables[1].given[0].mean = {0.375e-6};
+  const test::Drawing on_x = test::draw_report(report_json(diagnosis_, campaign_));
+  EXPECT_EQ(on_x.exit_code, 0) << on_x.output;
+  EXPECT_THAT(on_x.output, HasSubstr("opens on Position x"));
+}
+
 TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {
   if (!report_available()) GTEST_SKIP() << how_to_get_report();
   const std::string page = report_html(diagnosis_, campaign_);

@@ -16,7 +16,7 @@ namespace volcal::test {
 struct Drawing {
   bool possible = true;  ///< false: no Node here
   int exit_code = -1;
-  std::string output;  ///< "11 sections, 26 plots", or what is wrong
+  std::string output;  ///< "11 sections, 26 plots" and lines "opens on Time", or what is wrong
 };
 
 inline Drawing draw_report(const std::string& json) {

@@ -161,6 +161,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadStudy{"[[measurements]]\nkind = \"ball-bar-circles\"\nradius_mm = 400\n", 3, "leaves the travel"},
         BadStudy{kBallBarMeasurement + "planes = [\"XY\"]\n" + kRunWithoutPoints, 5, "planes of circles"},
         BadStudy{kBallBarMeasurement + kRunWithoutPoints, 5, "has no positions"},
+        BadStudy{
+            "[[measurements]]\nkind = \"laser-tracer\"\nstations = [{ name = \"\", position_mm = [0, 0, 0] "
+            "}]\n",
+            5, "stations[1].name is empty"},
+        BadStudy{"[[temperatures]]\nchannel = \" \"\n" + kOneMeasurement, 4, "channel is empty"},
         BadStudy{"[[measurements]]\nkind = \"squares\"\nplanes = [\"XX\"]\n", 3, "XX"},
         BadStudy{"[[measurements]]\nkind = \"laser-tracer\"\ngrid = [9, 7]\n", 5, "grid"},
         BadStudy{"[[measurements]]\nkind = \"axis-lines\"\naxes = [\"C\"]\n", 5, "axes"},

@@ -14,6 +14,8 @@ for (const section of drawn) {
   if (section.textContent.length < 40) throw new Error(`section ${section.id} is empty`);
 }
 
+const chosen = view.pages.querySelectorAll('option').filter((option) => option.getAttribute('selected') !== null);
+
 for (const node of view.pages.descendants()) {
   if (node.tag === 'button') node.dispatch('click');
   if (node.tag === 'input') node.dispatch('input', Object.assign(node, { value: '0.5' }));
@@ -26,3 +28,4 @@ for (const button of view.sections.querySelectorAll('button')) button.dispatch('
 for (const name of ['scroll', 'beforeprint', 'afterprint']) view.page.dispatch(name);
 await new Promise((resolve) => setTimeout(resolve, 0));
 console.log(`${drawn.length} sections, ${view.plots.length} plots`);
+for (const option of chosen) console.log(`opens on ${option.textContent}`);

@@ -7,19 +7,26 @@ const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', 
 /** Takes a few values only: a name or a direction. */
 const isDiscrete = (variable) => variable.categories.length > 0 || variable.name.startsWith('dir_');
 
-/** Mean square of the means in units of what noise gives them. */
-const deviation = (means) => (means && means.mean.length > 0
-  ? means.mean.reduce((sum, value, k) => sum + (value / Math.max(means.noise[k], 1e-12)) ** 2, 0) / means.mean.length : 0);
+/** Excess of the mean square of the means over that of noise, in the standard deviations that noise gives it. */
+const excess = (means) => {
+  const bins = means?.mean.length ?? 0;
+  const squares = (means?.mean ?? []).reduce((sum, value, k) => sum + (value / Math.max(means.noise[k], 1e-12)) ** 2, 0);
+  return bins === 0 ? 0 : (squares / bins - 1) * Math.sqrt(bins / 2);
+};
+
+/** The section opens on what stands out most; chance alone seldom gives so much, and then it opens on the first. */
+const kStandsOut = 4;
 
 class VariableView {
   constructor(data) {
     this.data = data;
     this.model = data.two_models ? 'both' : 'given';
     this.kinds = Object.keys(kKinds).filter((kind) => data.variables.some((variable) => variable[kind]));
-    let strongest = -1;
+    [this.variable, this.kind] = [data.variables[0], this.kinds[0]];
+    let strongest = kStandsOut;
     for (const variable of data.variables) {
       for (const kind of this.kinds) {
-        const strength = deviation(variable[kind]?.given);
+        const strength = excess(variable[kind]?.given);
         if (strength > strongest) [strongest, this.variable, this.kind] = [strength, variable, kind];
       }
     }

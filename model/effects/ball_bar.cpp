@@ -183,6 +183,7 @@ Eigen::VectorXd share_of_velocity(const SetupView& view, AxisName axis) {
 
 std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
   const AxisName axis = table.axis("axis");
+  if (is_rotary(axis)) table.fail("circles move no rotary axis", "name a linear axis");
   const bool feed = by_feed(table);
   const ErrorSymbol symbol{static_cast<Component>(direction_of(axis)), axis};
   const std::string label = std::string("following error ") + letter_of(axis) + (feed ? " by feed" : "");
@@ -192,7 +193,7 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
       std::vector{EffectAmplitude{.label = label,
                                   .target = {TargetKind::Motion, symbol, 0},
                                   .key = feed ? "amplitude_ms" : "amplitude_um",
-                                  .guess = table.spec.options.number("amplitude").value_or(0.0)}},
+                                  .guess = table.number("amplitude", 0.0)}},
       [axis, feed](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return -share_of_velocity(view, axis).cwiseProduct(feed_factor(view, feed));
       },

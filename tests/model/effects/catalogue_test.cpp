@@ -198,6 +198,16 @@ TEST_F(Catalogue, AnAxisIsLateWhereCirclesMoveItInTwoPlanes) {
   EXPECT_THAT(drivers_of(), ::testing::IsEmpty()) << "one plane: the mismatch says it";
 }
 
+TEST_F(Catalogue, ALateAxisIsALinearOneAndItsErrorGrowsWithTheFeedOrNot) {
+  const EffectKind* kind = find_effect("following-error");
+  const auto make = [&](const std::string& axis, const std::string& by) {
+    return kind->make(effect_spec("following-error", {{"axis", axis}, {"by", by}}), "model.toml");
+  };
+  EXPECT_EQ(make("X", "feed")->amplitudes()[0].unit(), "ms");
+  EXPECT_THROW(make("C", "feed"), InputError);
+  EXPECT_THROW(make("X", "time"), InputError);
+}
+
 TEST_F(Catalogue, AMismatchByFeedNeedsFeedsThatDiffer) {
   const EffectKind* kind = find_effect("servo-mismatch");
   auto& feed = campaign_.setups[index("B1")].readings.feed;

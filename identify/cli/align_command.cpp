@@ -104,11 +104,13 @@ int run_align(const AlignArguments& arguments) {
                                          {"alignment", aligned.result.alignment},
                                          {"frame_rotation", angles_json(frame_of(aligned))},
                                          {"squareness_before", angles_json(squareness_of(before))},
-                                         {"squareness", angles_json(squareness_of(aligned.result))}};
+                                         {"squareness", angles_json(squareness_of(aligned.result))},
+                                         {"invisible", before.rank.invisible}};
     fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);
+    for (const std::string& invisible : before.rank.invisible) fmt::print("! {}\n", invisible);
   }
   return before.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -111,6 +111,7 @@ int run_compensate(const CompensateArguments& arguments) {
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
     json["effects_not_compensated"] = effects_not_in_tables(result);
+    json["invisible"] = result.rank.invisible;
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json.dump(2));
   } else {

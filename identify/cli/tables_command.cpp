@@ -252,6 +252,7 @@ int run_tables(const TablesArguments& arguments) {
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
+    json["invisible"] = result.rank.invisible;
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
     if (made && !errors.empty())
       json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));

@@ -176,13 +176,23 @@ std::size_t tools_in_use(const Campaign& campaign) {
   return tools.size();
 }
 
-std::string remedy_for_mixture(const MeasurementModel& model, const std::vector<std::string>& partners) {
+/// The axis of an error function whose readings stand at one or two positions of it.
+std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  if (!symbol || automatic_intervals(campaign, symbol->axis) > 1) return std::nullopt;
+  return symbol->axis;
+}
+
+std::string remedy_for_mixture(const MeasurementModel& model, const std::string& error,
+                               const std::vector<std::string>& partners) {
   const auto is_nuisance = [&](const std::string& name) {
     const ParameterBlock* block = model.layout().find_block(name);
     return block != nullptr && !block->location && block->kind != ParameterKind::Effect;
   };
   const std::size_t station_count = stations(model.layout()).size();
   std::vector<std::string> remedies;
+  if (const auto axis = axis_at_few_positions(model.campaign(), error))
+    remedies.push_back(std::string("add positions along axis ") + letter_of(*axis));
   if (station_count > 0 && station_count < 3)
     remedies.emplace_back("measure from more stations (four, well apart)");
   if (tools_in_use(model.campaign()) < 2)
@@ -342,7 +352,7 @@ class RankAnalyser {
       return {"the readings that depend on it are too few or too noisy", "add readings far from its pivot"};
     }
     return {"a change of it can be exchanged with " + joined(partners) + " without changing any reading",
-            remedy_for_mixture(model_, partners)};
+            remedy_for_mixture(model_, stretch.name, partners)};
   }
 
   /// Names of what changes along with an error in the directions that hide, strongest first.

@@ -103,6 +103,31 @@ TEST_P(PartialCampaignProgram, SaysTheSameInJson) {
   EXPECT_LT(invisible, 21U);
 }
 
+// Whoever goes on with such a result is told again.
+TEST_P(PartialCampaignProgram, WhatUsesTheResultNamesWhatIsNotSeen) {
+  simulate(GetParam().second);
+  const auto fitted = fit("--json");
+  ASSERT_EQ(fitted.exit_code, 1) << fitted.errors;
+  const auto invisible = nlohmann::json::parse(fitted.output).at("rank").at("invisible");
+  {
+    std::ofstream program(path("part.nc"));
+    program << "G21 G90 G17 G54 G49\nG0 X100 Y100 Z-100\nG1 X150 F500\nM30\n";
+  }
+  const std::string result = path("result");
+  for (const std::string& command :
+       {"tables " + result + " --dry-run", "tables " + result + " --at X=100",
+        "align " + result + " --primary Y --secondary X -o " + path("aligned"),
+        "compensate " + result + " " + path("part.nc") + " --check --work-offset G54=X0,Y0,Z0"}) {
+    const auto run = run_program(command + " --json");
+    ASSERT_EQ(run.exit_code, 1) << command << run.errors;
+    EXPECT_EQ(nlohmann::json::parse(run.output).at("invisible"), invisible) << command;
+    const auto words = run_program(command);
+    EXPECT_EQ(words.exit_code, 1) << command;
+    for (const auto& sentence : invisible)
+      EXPECT_THAT(words.output, HasSubstr("! " + sentence.get<std::string>())) << command;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, PartialCampaignProgram,
                          ::testing::Values(std::pair("BallBarAndDiagonals", kCirclesAndDiagonals),
                                            std::pair("OneTracerSetup", kOneTracerSetup)),

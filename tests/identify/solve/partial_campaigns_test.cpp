@@ -370,6 +370,29 @@ TEST(PartialCampaign, ASquarenessAtTwoPositionsAsksForPositions) {
   EXPECT_TRUE(squareness(5).visible);
 }
 
+// With home between two positions a straightness may rise at both and the station with it: neither another
+// station nor another tool tells, but a third position.
+TEST(PartialCampaign, AStraightnessAtTwoPositionsAsksForPositions) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[0];
+  Axis& y = *std::ranges::find(study.machine.axes, AxisName::Y, &Axis::name);
+  y.home = 0.5 * (y.travel_min + y.travel_max);
+  study.seed = 3;
+  sim::Tracking tracking;
+  tracking.jitter = 0.0;
+  const auto straightness = [&](int positions) {
+    tracking.grid = {6, positions, 5};
+    study.measurements.clear();
+    study.measurements.emplace_back().settings = tracking;
+    const FitResult result = fit_polynomials(sim::simulate(study).campaign);
+    return *std::ranges::find(result.rank.errors, "EXY", &Observability::symbol);
+  };
+  const Observability at_two = straightness(2);
+  EXPECT_FALSE(at_two.visible);
+  EXPECT_EQ(at_two.remedy, "add positions along axis Y");
+  EXPECT_TRUE(straightness(5).visible);
+}
+
 // Y stands beside its home, so that its errors are constant and like the offset of the line.
 TEST(PartialCampaign, AnAxisThatStandsStillHidesItsErrorsAndItsSquareness) {
   sim::Study study;

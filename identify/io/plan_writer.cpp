@@ -259,7 +259,7 @@ std::string plan_json(const CampaignPlan& plan) {
 
 std::string plan_study_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
-  const auto study = std::ranges::find(kStudies, settings.instrument, &StudyOfPlan::instrument);
+  const auto* const study = std::ranges::find(kStudies, settings.instrument, &StudyOfPlan::instrument);
   if (study == kStudies.end())
     throw std::logic_error("no study is written for plans of " + settings.instrument);
   return fmt::format(

@@ -100,7 +100,7 @@ PieceVectors vectors_of(const AxisFrame& frame, const PieceErrors& errors, doubl
 }
 
 void append(const PieceVectors& vectors, int powers, std::vector<double>& coefficients) {
-  for (std::size_t power = static_cast<std::size_t>(powers); power-- > 0;) {
+  for (auto power = static_cast<std::size_t>(powers); power-- > 0;) {
     for (const std::vector<Vector3d>& vector : vectors) {
       coefficients.insert(coefficients.end(), vector[power].begin(), vector[power].end());
       coefficients.push_back(0.0);

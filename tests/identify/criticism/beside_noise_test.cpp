@@ -110,7 +110,7 @@ TEST(BesideNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   const Projector projector(problem, problem.data, noise.parameters(), 1, fitted.model.parts());
   FamilyTest test = test_families(fitted.model, servo, projector, 1).at(0);
   test_beside_noise(fitted.model, servo.at(0), problem, noise, {}, test);
-  const double readings = static_cast<double>(bar.observations);
+  const auto readings = static_cast<double>(bar.observations);
   EXPECT_GE(test.score.log10_p, log10_chi_squared_exceedance(test.score.lm, test.score.dof));
   EXPECT_LE(test.score.log10_p, log10_exceedance_of_estimated(test.score.lm, test.score.dof, 0.5 * readings));
 }

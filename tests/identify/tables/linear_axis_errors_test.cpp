@@ -45,7 +45,7 @@ FunctionSpec random_legendre(std::mt19937_64& random, int highest) {
   return spec;
 }
 
-FunctionGroup group_of(const Axis& axis, const FunctionSpec& spec, std::vector<Component> components) {
+FunctionGroup group_of(const Axis& axis, const FunctionSpec& spec, const std::vector<Component>& components) {
   FunctionGroup group;
   group.axis = axis.name;
   group.basis = find_basis(spec.basis)->make(spec, axis);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <set>
 #include <stdexcept>
@@ -43,10 +44,23 @@ Verdict verdict_from(const std::string& text) {
   throw std::invalid_argument("\"" + text + "\" is no verdict");
 }
 
+std::string UnknownFinding::dependence() const {
+  std::string text = fmt::format("{}", fmt::join(variables, " and "));
+  if (!with_one_of.empty()) text += fmt::format(" and one of {}", fmt::join(with_one_of, ", "));
+  return text;
+}
+
+std::string UnknownFinding::action() const {
+  if (!rotation.empty()) return direction + ", as " + rotation;
+  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * 1e3) : direction;
+}
+
 namespace {
 
 constexpr double kPower = 0.8;
 constexpr double kNearlyAsImprobable = 0.1;  // share of log10 p
+constexpr double kLog10NotToldApart = 1.0;
+constexpr double kShareNotToldApart = 0.05;  // of log10 p
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
@@ -289,10 +303,43 @@ class Diagnostician {
     std::set<std::vector<std::string>> seen;
     for (const GenericTest* test : order) {
       if (!seen.insert(test->variables).second || diagnosis_.unknown.size() == kMostUnknown) continue;
-      diagnosis_.unknown.push_back(
-          {test->variables, test->direction, test->rotation, test->rms, search_.family_wise_log10_p(*test)});
+      diagnosis_.unknown.push_back({test->variables,
+                                    {},
+                                    test->direction,
+                                    test->rotation,
+                                    test->rms,
+                                    search_.family_wise_log10_p(*test),
+                                    test->period});
     }
-    if (diagnosis_.unknown.empty()) collect_given_up();
+    if (diagnosis_.unknown.empty()) {
+      collect_given_up();
+    } else {
+      tell_what_is_certain();
+    }
+  }
+
+  /// Where another variable beside the same one explains nearly as much as the second of the leading finding,
+  /// the first alone is certain.
+  void tell_what_is_certain() {
+    UnknownFinding& leading = diagnosis_.unknown.front();
+    if (leading.variables.size() < 2) return;
+    const double nearly =
+        leading.log10_p + std::max(kLog10NotToldApart, -kShareNotToldApart * leading.log10_p);
+    std::vector<std::string> common = leading.variables, others = leading.variables;
+    for (const UnknownFinding& other : diagnosis_.unknown) {
+      if (other.variables.size() < 2 || other.log10_p > nearly) continue;
+      const auto is_in_other = [&other](const std::string& name) {
+        return std::ranges::find(other.variables, name) != other.variables.end();
+      };
+      std::erase_if(common, std::not_fn(is_in_other));
+      for (const std::string& name : other.variables) {
+        if (std::ranges::find(others, name) == others.end()) others.push_back(name);
+      }
+    }
+    if (common.size() != 1) return;
+    std::erase(others, common.front());
+    leading.variables = common;
+    leading.with_one_of = others;
   }
 
   /// Of those that stand out nearly as much as the most improbable one, the first of the simplest.
@@ -315,6 +362,7 @@ class Diagnostician {
       const Eigen::VectorXd moved =
           family_columns(model_, families_[family], test.shape) * test.score.amplitude;
       diagnosis_.unknown.push_back({scan_variables_of(families_[family].name()),
+                                    {},
                                     direction_of_change(moved),
                                     {},
                                     moved.norm() / std::sqrt(static_cast<double>(moved.size())),
@@ -442,9 +490,8 @@ class Diagnostician {
   }
 
   static std::string sentence(const UnknownFinding& unknown) {
-    const std::string variables = unknown.variables.empty()
-                                      ? "nothing recorded that was tried"
-                                      : fmt::format("{}", fmt::join(unknown.variables, " and "));
+    const std::string variables =
+        unknown.variables.empty() ? "nothing recorded that was tried" : unknown.dependence();
     return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings", variables,
                        unknown.action(), unknown.rms * 1e6);
   }

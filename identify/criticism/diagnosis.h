@@ -66,13 +66,17 @@ struct EffectFinding {
 /// Something moves the readings, and no effect of the catalogue explains it better.
 struct UnknownFinding {
   std::vector<std::string> variables;
-  std::string direction;  ///< of kScanDirections
-  std::string rotation;   ///< "EBX": with the arms of this error motion; empty: as a displacement
-  double rms = 0.0;       ///< SI
-  double log10_p = 0.0;   ///< family-wise
+  std::vector<std::string> with_one_of;  ///< and one of these, which the readings do not tell apart; or empty
+  std::string direction;                 ///< of kScanDirections
+  std::string rotation;  ///< "EBX": with the arms of this error motion; empty: as a displacement
+  double rms = 0.0;      ///< SI
+  double log10_p = 0.0;  ///< family-wise
+  double period = 0.0;   ///< m: it repeats; 0: not found to
 
-  /// "X", or "X, as EBX".
-  std::string action() const { return rotation.empty() ? direction : direction + ", as " + rotation; }
+  /// "x", "x and z", or "dir_x and one of T_air, T_column".
+  std::string dependence() const;
+  /// "X", "X, as EBX", or "X, every 10.02 mm".
+  std::string action() const;
 };
 
 /// One step of the ladder, all against the noise model at the last step. SI.

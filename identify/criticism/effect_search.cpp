@@ -73,6 +73,7 @@ void EffectSearch::run() {
   settle([this] { climb(); });
   give_up();
   if (!options_.climb) keep_one_step();
+  if (!something_stands_out()) find_scans_hidden_in_noise();
   restate_ladder();
 }
 
@@ -170,6 +171,7 @@ NoiseProblem EffectSearch::problem_with_added() const {
 void EffectSearch::test() {
   tests_ = refined_tests(*projector_);
   generic_ = generic_scan(model_, variables_, *projector_, options_.threads);
+  std::ranges::move(wave_tests(model_, *projector_, options_.threads), std::back_inserter(generic_));
   log10_generic_ = std::log10(static_cast<double>(std::max<std::size_t>(generic_.size(), 1)));
   find_outstanding();
 }

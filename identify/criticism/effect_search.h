@@ -107,6 +107,14 @@ class EffectSearch {
   std::vector<FamilyTest> held_by_a_wander(const NoiseProblem& problem) const;
   std::vector<FamilyTest> above_doubtful_noise() const;
   bool add_hidden_in_noise();
+  /// What a scan has seen at another noise.
+  struct ScanBesideNoise {
+    std::size_t scan;  ///< of `generic_`
+    GenericTest test;
+    Eigen::VectorXd moved;
+  };
+  std::vector<ScanBesideNoise> scans_held_by_a_wander(const NoiseProblem& problem) const;
+  void find_scans_hidden_in_noise();
   void add(const FamilyTest& test);
   bool refine_shape_of_last();
   Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;

@@ -8,6 +8,7 @@
 #include "volcal/identify/criticism/beside_noise.h"
 #include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/criticism/noise_freedom.h"
+#include "volcal/identify/criticism/score_test.h"
 #include "volcal/identify/criticism/shape_refinement.h"
 #include "volcal/identify/stats/chi_squared.h"
 
@@ -60,7 +61,7 @@ void EffectSearch::find_outstanding() {
     const FamilyTest& test = tests_[names[static_cast<std::size_t>(k)]];
     moved.col(k) = family_columns(model_, families_[test.family], test.shape) * test.score.amplitude;
   }
-  moved.rightCols(of_scans) = scanned_displacements(model_, variables_, *projector_, scans);
+  moved.rightCols(of_scans) = scanned_displacements(model_, variables_, *projector_, generic_, scans);
   const std::vector<double> freedom = noise_freedom(
       moved, *projector_, noise_with_uncertainty(),
       [this](const auto& noise) { return projector_of(without(model_.problem().data, heldout_), noise); });
@@ -72,7 +73,8 @@ void EffectSearch::find_outstanding() {
   }
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const GenericTest& test = generic_[scans[k]];
-    const double log10_p = log10_exceedance_of_estimated(test.lm, test.dof, freedom[names.size() + k]);
+    const double log10_p =
+        log10_exceedance_of_estimated(test.lm, test.dof, freedom[names.size() + k]) + test.log10_choices;
     scan_stands_out_[scans[k]] = log10_p + log10_generic_ <= kLog10GenericRisk;
   }
 }
@@ -81,7 +83,7 @@ void EffectSearch::find_outstanding() {
 /// taken it for one.
 std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& problem) const {
   std::vector<FamilyTest> tests;
-  for (const NoiseAlternative& other : noise_without_wander(problem, *noise_estimate_, options_.threads)) {
+  for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
     const auto projector = projector_of(without(problem.data, heldout_), other.noise);
     for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
       if (!may_be_added(test) || test.score.lm < other.loss - kWorthEstimating) continue;
@@ -111,12 +113,66 @@ bool EffectSearch::add_hidden_in_noise() {
   std::vector<FamilyTest> tests = held_by_a_wander(problem);
   std::ranges::move(above_doubtful_noise(), std::back_inserter(tests));
   for (FamilyTest& test : tests) {
-    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, noise_options(), test);
+    const double least = chi_squared_quantile(kLog10FamilyRisk - log10_families_, test.score.dof);
+    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, noise_options(), least,
+                      test);
   }
   const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
   if (best == tests.end() || family_wise_log10_p(*best) > kLog10FamilyRisk) return false;
   add(FamilyTest(*best));
   return true;
+}
+
+/// Scans that would stand out were there no wander, nearest to it first.
+std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
+    const NoiseProblem& problem) const {
+  struct Candidate {
+    std::size_t scan;
+    double log10_p;
+  };
+  std::vector<ScanBesideNoise> held;
+  for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
+    const auto projector = projector_of(without(problem.data, heldout_), other.noise);
+    const std::vector<GenericTest> scans = generic_scan(model_, variables_, *projector, options_.threads);
+    std::vector<Candidate> candidates;
+    for (std::size_t i = 0; i < scans.size(); ++i) {
+      const double ratio = scans[i].lm - other.loss + kWorthEstimating;
+      if (!(ratio > 0.0) || scans[i].dof == 0.0) continue;
+      const double log10_p = log10_chi_squared_exceedance(ratio, scans[i].dof) + scans[i].log10_choices;
+      if (log10_p + log10_generic_ <= kLog10GenericRisk) candidates.push_back({i, log10_p});
+    }
+    std::ranges::sort(candidates, {}, &Candidate::log10_p);
+    if (candidates.size() > kMostBesideNoise) candidates.resize(kMostBesideNoise);
+    std::vector<std::size_t> chosen;
+    for (const Candidate& each : candidates) chosen.push_back(each.scan);
+    const Eigen::MatrixXd moved = scanned_displacements(model_, variables_, *projector, scans, chosen);
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const auto column = moved.col(static_cast<Eigen::Index>(k));
+      const double size = score_test(projector->project(column), 0, 1).amplitude[0];
+      held.push_back({chosen[k], scans[chosen[k]], column * size});
+    }
+  }
+  return held;
+}
+
+/// Where nothing stands out: those that do with the noise estimated beside them stand out in the place of the
+/// tests that a wander has silenced.
+void EffectSearch::find_scans_hidden_in_noise() {
+  if (options_.progress) options_.progress("what noise may hold", 0.92);
+  const NoiseProblem problem = problem_with_added();
+  for (ScanBesideNoise& held : scans_held_by_a_wander(problem)) {
+    GenericTest& test = held.test;
+    const double least = chi_squared_quantile(kLog10GenericRisk - log10_generic_, test.dof);
+    const auto [ratio, freedom] =
+        test_beside_noise(model_, held.moved, problem, *noise_estimate_, noise_options(), least);
+    test.lm = ratio;
+    test.log10_p =
+        std::min(0.0, log10_exceedance_of_estimated(ratio, test.dof, freedom) + test.log10_choices);
+    const bool known = scan_stands_out_[held.scan] && generic_[held.scan].log10_p <= test.log10_p;
+    if (known || family_wise_log10_p(test) > kLog10GenericRisk) continue;
+    generic_[held.scan] = test;
+    scan_stands_out_[held.scan] = true;
+  }
 }
 
 }  // namespace volcal

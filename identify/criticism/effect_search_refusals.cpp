@@ -26,9 +26,11 @@ std::string shape_word(const EffectShape& shape) {
 
 }  // namespace
 
-/// Its own driver moves what an effect leaves: it has another shape, or is another effect.
+/// Its own driver moves what an effect leaves: it has another shape, or is another effect. A wave is one
+/// beside it.
 bool EffectSearch::still_moves(const std::vector<std::string>& drivers) const {
   return std::ranges::any_of(outstanding_scans(), [&](const GenericTest* test) {
+    if (test->period > 0.0) return false;
     return std::ranges::any_of(test->variables, [&](const std::string& variable) {
       return std::ranges::find(drivers, variable) != drivers.end();
     });

@@ -79,12 +79,14 @@ constexpr auto kShapes = std::to_array<EffectWord>({
 constexpr auto kScanWords = std::to_array<EffectWord>({
     {"AXIS", "position of an axis"},
     {"dir_AXIS", "direction of approach of an axis"},
+    {"speed_AXIS", "share of the feed along an axis, with its sign, of readings taken in motion"},
     {"time", "time since the first reading of the campaign"},
     {"T_CHANNEL", "temperature of a channel"},
     {"length", "length that is measured"},
     {"elevation", "angle of the beam above the horizontal, at the nominal station"},
     {"run", "number of the run"},
     {"feed", "feed rate"},
+    {"instrument INSTRUMENT", "whether the reading is of this instrument"},
     {"tool TOOL", "whether this tool is carried"},
     {"station STATION", "whether the reading was taken from this station"},
 });
@@ -99,6 +101,7 @@ std::regex expression_of(std::string_view pattern) {
       {"RUN", "-?[0-9]+"},
       {"TOOL", ".+"},
       {"STATION", ".+"},
+      {"INSTRUMENT", ".+"},
       {"SETUP", ".+"},
       {"CHANNEL", ".+"},
       {"TARGET", ".+"},
@@ -169,7 +172,7 @@ int how_far_fetched(const std::vector<std::string>& variables, const std::string
     return std::ranges::any_of(variables,
                                [&](const std::string& name) { return name.starts_with(beginning); });
   };
-  if (variables.size() < 2) return 0;
+  if (variables.size() < 2) return direction == "beam" && holds("station ") ? 1 : 0;
   if (holds("time") && holds("T_")) return 3;
   const bool far_fetched = direction == "beam" ? holds("time") : holds("station ") && holds("T_");
   return far_fetched ? 2 : 1;

@@ -41,7 +41,8 @@ const EffectWord* find_word(NamePart part, const EffectName& name);
 /// What the scans without a catalogue may see: `variables` and `direction` of an unknown effect.
 std::span<const EffectWord> scan_words();
 const EffectWord* find_scan_word(const std::string& variable);
-/// How much has to be believed of what a scan saw, 0 = least: one variable before two; time before
+/// How much has to be believed of what a scan saw, 0 = least: one variable before two, but for a station
+/// along its beam, which is a dead path and no parameter of the model where it shows; time before
 /// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
 /// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
 int how_far_fetched(const std::vector<std::string>& variables, const std::string& direction);

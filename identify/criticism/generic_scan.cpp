@@ -1,12 +1,14 @@
 #include "volcal/identify/criticism/generic_scan.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <span>
 
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/score_test.h"
+#include "volcal/identify/criticism/wave_scan.h"
 #include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
@@ -22,10 +24,12 @@ struct Features {
   Eigen::MatrixXd waves;
 };
 
-bool is_beam_geometry(const std::string& variable) { return variable == "length" || variable == "elevation"; }
+bool is_of_the_beam(const std::string& variable) {
+  return variable == "length" || variable == "elevation" || variable.starts_with("instrument ");
+}
 
 bool is_machine_state(const std::string& variable) {
-  return variable.size() == 1 || variable.starts_with("dir_");
+  return variable.size() == 1 || variable.starts_with("dir_") || variable.starts_with("speed_");
 }
 
 bool is_of_environment(const std::string& variable) {
@@ -61,11 +65,28 @@ std::vector<ScanAction> scan_actions(const LinearModel& model) {
 bool has_reason(const std::string& a, const std::string& b, ScanAction::Kind kind) {
   const auto of_either = [&](const auto& is) { return is(a) || is(b); };
   if (kind == ScanAction::Kind::Beam) return !of_either(is_machine_state);
-  if (of_either(is_beam_geometry)) return false;
+  if (of_either(is_of_the_beam)) return false;
   const auto is_station = [](const std::string& name) { return name.starts_with("station "); };
   const auto is_tool = [](const std::string& name) { return name.starts_with("tool "); };
   if (!of_either(is_station)) return true;
   return kind == ScanAction::Kind::Displacement && !of_either(is_machine_state) && !of_either(is_tool);
+}
+
+/// Of the readings in use.
+double typical_sigma(const LinearModel& model) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const double sigma : model.problem().data.sigma) {
+    if (!std::isfinite(sigma)) continue;
+    sum += sigma * sigma;
+    ++count;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
+}
+
+/// The best fit's size follows from the test: LM = |g~ a|^2 in units of the noise.
+double explained_rms(double lm, const Projector& projector, double typical_sigma) {
+  return std::sqrt(std::max(0.0, lm) / static_cast<double>(projector.observations())) * typical_sigma;
 }
 
 /// One variable, or two. Columns: polynomials of the displacements, their waves, then polynomials and waves
@@ -104,7 +125,7 @@ class GenericScanner {
         variables_(variables),
         projector_(projector),
         actions_(scan_actions(model)),
-        typical_sigma_(typical_sigma()) {
+        typical_sigma_(typical_sigma(model)) {
     for (const ScanVariable& variable : variables)
       features_.push_back({scan_powers(variable), scan_waves(variable, kSingleWaves)});
     log_count_ = std::log(static_cast<double>(projector.observations()));
@@ -116,6 +137,7 @@ class GenericScanner {
     return std::move(tests_);
   }
 
+  /// Of the tests that are no waves.
   Eigen::MatrixXd displacements(const std::vector<std::size_t>& tests) {
     const std::vector<ScanBlock> all = blocks();
     Eigen::MatrixXd moved(static_cast<Eigen::Index>(model_.size()), static_cast<Eigen::Index>(tests.size()));
@@ -302,21 +324,7 @@ class GenericScanner {
     return kScanDirections[direction_of(ErrorSymbol::parse(rotation)->component)] == direction;
   }
 
-  /// The best fit's size follows from the test: LM = |g~ a|^2 in units of the noise.
-  double explained_rms(double lm) const {
-    return std::sqrt(std::max(0.0, lm) / static_cast<double>(projector_.observations())) * typical_sigma_;
-  }
-
-  double typical_sigma() const {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const double sigma : model_.problem().data.sigma) {
-      if (!std::isfinite(sigma)) continue;
-      sum += sigma * sigma;
-      ++count;
-    }
-    return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
-  }
+  double explained_rms(double lm) const { return volcal::explained_rms(lm, projector_, typical_sigma_); }
 
   static std::string rotation_of(const ScanAction& action) {
     return action.kind == ScanAction::Kind::Rotation ? action.rotation.name() : "";
@@ -359,11 +367,48 @@ class GenericScanner {
   double log_count_ = 0.0;
 };
 
+Eigen::VectorXd wave_displacement(const LinearModel& model, const Projector& projector,
+                                  const GenericTest& test) {
+  const auto direction = std::ranges::find(kScanDirections, test.direction) - std::begin(kScanDirections);
+  const auto letter = static_cast<char>(std::toupper(test.variables.front()[0]));
+  const Eigen::MatrixXd columns =
+      wave_columns(model, *axis_from_letter(letter), static_cast<int>(direction), test.period);
+  return columns * score_test(projector.project(columns), 0, columns.cols()).amplitude;
+}
+
 }  // namespace
 
 Eigen::MatrixXd scanned_displacements(const LinearModel& model, const std::vector<ScanVariable>& variables,
-                                      const Projector& projector, const std::vector<std::size_t>& tests) {
-  return GenericScanner(model, variables, projector).displacements(tests);
+                                      const Projector& projector, const std::vector<GenericTest>& tests,
+                                      const std::vector<std::size_t>& chosen) {
+  Eigen::MatrixXd moved = GenericScanner(model, variables, projector).displacements(chosen);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    const GenericTest& test = tests[chosen[k]];
+    if (test.period > 0.0)
+      moved.col(static_cast<Eigen::Index>(k)) = wave_displacement(model, projector, test);
+  }
+  return moved;
+}
+
+std::vector<GenericTest> wave_tests(const LinearModel& model, const Projector& projector, int threads) {
+  const double log_count = std::log(static_cast<double>(projector.observations()));
+  const double sigma = typical_sigma(model);
+  std::vector<GenericTest> tests;
+  for (const WaveTest& wave : wave_scan(model, projector, threads)) {
+    // The period counts as one degree of freedom in the gain, as that of a name does.
+    tests.push_back({{std::string(1, lower_letter_of(wave.axis))},
+                     kScanDirections[wave.direction],
+                     "",
+                     false,
+                     wave.log10_p,
+                     wave.lm,
+                     static_cast<double>(wave.dof),
+                     wave.lm - (wave.dof + 1) * log_count,
+                     explained_rms(wave.projected_lm, projector, sigma),
+                     wave.period,
+                     wave.log10_choices});
+  }
+  return tests;
 }
 
 std::vector<GenericTest> generic_scan(const LinearModel& model, const std::vector<ScanVariable>& variables,

@@ -184,6 +184,18 @@ Eigen::VectorXd Projector::solution() const {
   return scale_.cwiseProduct(lower_.triangularView<Eigen::Lower>().transpose().solve(rotated_));
 }
 
+Eigen::VectorXd Projector::weighed_residual() const {
+  const Eigen::VectorXd at = solution();
+  Eigen::VectorXd whitened = Eigen::VectorXd::Zero(parts_.back());
+  for (std::size_t part = 0; part < part_count(); ++part) {
+    const Eigen::VectorXd left = whitened_[part].rightCols(1) - whitened_[part].leftCols(at.size()) * at;
+    const auto order = whitener_.order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part));
+    for (std::size_t i = 0; i < order.size(); ++i)
+      whitened[static_cast<Eigen::Index>(order[i])] = left[static_cast<Eigen::Index>(i)];
+  }
+  return whitener_.whiten_transposed(std::move(whitened));
+}
+
 Eigen::MatrixXd Projector::rotated_rows(const Eigen::MatrixXd& rows) const {
   Eigen::MatrixXd rotated = scale_.asDiagonal() * rows.transpose();
   solve_lower(lower_, rotated);

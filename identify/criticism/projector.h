@@ -63,6 +63,9 @@ class Projector {
 
   /// Correction of the model's parameters, accepted columns last, from the observations in use.
   Eigen::VectorXd solution() const;
+  /// Sigma^-1 (y - J x) at the solution x, of all observations, 0 where they are left out: its products with
+  /// columns g are g~^T r~.
+  Eigen::VectorXd weighed_residual() const;
   /// C^-1 rows^T with A = C C^T, parameters x rows (derivatives to all parameters, accepted ones last): the
   /// products of its columns are rows A^-1 rows^T.
   Eigen::MatrixXd rotated_rows(const Eigen::MatrixXd& rows) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -13,6 +14,29 @@
 
 namespace volcal {
 namespace {
+
+/// Readings of a ball-bar are taken while the axes move.
+bool is_in_motion(const Setup& setup) { return setup.instrument == "ball-bar"; }
+
+/// Share of the path that an axis moves along, with its sign, from the neighbouring readings of the run; 0 at
+/// rest.
+double share_of_path(const Setup& setup, std::size_t axis, std::size_t row) {
+  if (!is_in_motion(setup)) return 0.0;
+  const auto& readings = setup.readings;
+  const auto same_run = [&](std::size_t other) {
+    return readings.run.empty() || readings.run[other] == readings.run[row];
+  };
+  const std::size_t before = row > 0 && same_run(row - 1) ? row - 1 : row;
+  const std::size_t after = row + 1 < readings.size() && same_run(row + 1) ? row + 1 : row;
+  double squares = 0.0, own = 0.0;
+  for (std::size_t k = 0; k < readings.position.size(); ++k) {
+    if (is_rotary(static_cast<AxisName>(k)) || readings.position[k].empty()) continue;
+    const double moved = readings.position[k][after] - readings.position[k][before];
+    squares += moved * moved;
+    if (k == axis) own = moved;
+  }
+  return squares > 0.0 ? own / std::sqrt(squares) : 0.0;
+}
 
 /// Variables in the order in which they are added, without those that are constant over the observations.
 class ScanVariables {
@@ -42,6 +66,28 @@ class ScanVariables {
         const auto found = setup.readings.temperature.find(channel);
         return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
                                                          : found->second[row];
+      });
+    }
+  }
+
+  void add_motion() {
+    for (const Axis& axis : campaign_.machine.axes) {
+      if (is_rotary(axis.name)) continue;
+      add(fmt::format("speed_{:c}", lower_letter_of(axis.name)),
+          [k = index_of(axis.name)](const Setup& setup, std::size_t, std::size_t row) {
+            return share_of_path(setup, k, row);
+          });
+    }
+  }
+
+  void add_instruments() {
+    std::map<std::string, std::size_t> readings;
+    for (const Setup& setup : campaign_.setups) readings[setup.instrument] += setup.readings.size();
+    const auto most = std::ranges::max_element(readings, {}, [](const auto& each) { return each.second; });
+    for (const auto& [instrument, count] : readings) {
+      if (instrument == most->first) continue;
+      add("instrument " + instrument, [&](const Setup& setup, std::size_t, std::size_t) {
+        return setup.instrument == instrument ? 1.0 : 0.0;
       });
     }
   }
@@ -115,9 +161,11 @@ void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& 
 std::vector<ScanVariable> scan_variables(const LinearModel& model) {
   ScanVariables variables(model);
   variables.add_positions_and_directions();
+  variables.add_motion();
   variables.add_time_and_temperatures();
   variables.add_beam_geometry();
   variables.add_run_and_feed();
+  variables.add_instruments();
   variables.add_tools_and_stations();
   return variables.take();
 }
@@ -149,6 +197,8 @@ std::vector<std::string> scan_variables_of(const EffectName& name) {
     if (name.driver.ends_with(" feed")) words.emplace_back("feed");
   } else if (name.driver.starts_with("run ")) {
     words.emplace_back("run");
+  } else if (name.driver == "ball-bar") {
+    words.emplace_back("instrument ball-bar");
   } else if (!name.driver.starts_with("tool")) {
     std::istringstream drivers(name.driver);
     for (std::string word; drivers >> word;) words.push_back(word);

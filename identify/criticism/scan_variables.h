@@ -12,7 +12,7 @@ namespace volcal {
 
 /// A recorded variable over all observations, scaled to -1..1.
 struct ScanVariable {
-  std::string name;  ///< "x", "time", "T_air", "dir_x", "length", "tool side", "station P1"
+  std::string name;  ///< "x", "time", "T_air", "dir_x", "speed_x", "length", "tool side", "station P1"
   Eigen::VectorXd value;
   bool two_valued = false;  ///< powers say nothing new
   double centre = 0.0;      ///< what was recorded = centre + scale value, SI

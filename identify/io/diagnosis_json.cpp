@@ -98,8 +98,10 @@ Json detectable_json(const std::vector<DetectableEffect>& effects) {
 
 Json unknown_json(const UnknownFinding& unknown) {
   return {{"variables", unknown.variables},
+          {"with_one_of", unknown.with_one_of},
           {"direction", unknown.direction},
           {"rotation", unknown.rotation},
+          {"period_mm", unknown.period > 0.0 ? Json(unknown.period * 1e3) : Json()},
           {"rms_um", micro(unknown.rms)},
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }

@@ -174,6 +174,12 @@ void read_noise(const Json& json, Diagnosis& diagnosis) {
   }
 }
 
+/// Files written before waves were looked for have none.
+double wave_period(const Json& unknown) {
+  const auto found = unknown.find("period_mm");
+  return found == unknown.end() || found->is_null() ? 0.0 : found->get<double>() * 1e-3;
+}
+
 Diagnosis diagnosis_from(const Json& json) {
   if (const std::string format = text(json, "format"); format != kDiagnosisFormat) {
     throw std::invalid_argument("format is \"" + printable(format) + "\"");
@@ -186,8 +192,9 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
+                                 each.value("with_one_of", std::vector<std::string>{}),
                                  text(each, "direction"), each.value("rotation", ""), micro(each, "rms_um"),
-                                 number_or_nan(each, "log10_p")});
+                                 number_or_nan(each, "log10_p"), wave_period(each)});
   }
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {

@@ -347,7 +347,10 @@ Eigen::VectorXd Whitener::whiten(const Eigen::VectorXd& column) const {
 }
 
 Eigen::VectorXd Whitener::weigh(const Eigen::VectorXd& column) const {
-  Eigen::VectorXd weighted = whiten(column);
+  return whiten_transposed(whiten(column));
+}
+
+Eigen::VectorXd Whitener::whiten_transposed(Eigen::VectorXd column) const {
   Eigen::VectorXd values;
   for (const Track& track : tracks_) {
     values.resize(static_cast<Eigen::Index>(track.steps.size()));
@@ -356,14 +359,14 @@ Eigen::VectorXd Whitener::weigh(const Eigen::VectorXd& column) const {
     };
     if (track.independent) {
       for (Eigen::Index i = 0; i < values.size(); ++i)
-        weighted[place(i)] *= track.scale[static_cast<std::size_t>(i)];
+        column[place(i)] *= track.scale[static_cast<std::size_t>(i)];
       continue;
     }
-    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = weighted[place(i)];
+    for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = column[place(i)];
     filter_adjoint(track, 1, values.data());
-    for (Eigen::Index i = 0; i < values.size(); ++i) weighted[place(i)] = values[i];
+    for (Eigen::Index i = 0; i < values.size(); ++i) column[place(i)] = values[i];
   }
-  return weighted;
+  return column;
 }
 
 template <class Fill>

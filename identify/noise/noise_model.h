@@ -70,8 +70,11 @@ class Whitener {
   /// O(N) per column, the same for any number of threads. Both may be the same matrix.
   void whiten(const Eigen::MatrixXd& columns, Eigen::MatrixXd& whitened, int threads) const;
   Eigen::VectorXd whiten(const Eigen::VectorXd& column) const;
-  /// Sigma^-1 column: L^-T of what whiten() gives, by the filter's adjoint, run backwards; O(N).
+  /// Sigma^-1 column: L^-T of what whiten() gives; O(N).
   Eigen::VectorXd weigh(const Eigen::VectorXd& column) const;
+  /// L^-T column, by the filter's adjoint, run backwards; O(N). Of missing observations it is what `column`
+  /// is.
+  Eigen::VectorXd whiten_transposed(Eigen::VectorXd column) const;
   /// Rows [first, first + columns.rows()) alone, which hold whole sequences: their observations that are not
   /// missing, sequence by sequence, in the order of the filters. On the caller's thread.
   Eigen::MatrixXd whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;

@@ -135,8 +135,8 @@ std::string unknown_table(const Diagnosis& diagnosis) {
   TextTable table({{"depends on", Align::Left}, {"along", Align::Left}, {"rms [um]"}, {"log10 p"}},
                   "What the generic scans still see");
   for (const UnknownFinding& unknown : diagnosis.unknown) {
-    table.add_row({fmt::format("{}", fmt::join(unknown.variables, ", ")), unknown.action(),
-                   edge(unknown.rms, kMicro), fixed_number(unknown.log10_p, 1)});
+    table.add_row({unknown.dependence(), unknown.action(), edge(unknown.rms, kMicro),
+                   fixed_number(unknown.log10_p, 1)});
   }
   return table.text();
 }

@@ -314,6 +314,13 @@ class CampaignRun {
       }
     }
     record_.named_explain = explained_by_all(diagnosis.effects);
+    record_.told_explain = explained_by_all(with_first_of_sets(diagnosis));
+  }
+
+  static std::vector<EffectFinding> with_first_of_sets(const Diagnosis& diagnosis) {
+    std::vector<EffectFinding> told = diagnosis.effects;
+    for (const auto* set : sets_of_alternatives(diagnosis)) told.push_back(set->front());
+    return told;
   }
 
   double explained_by_all(const std::vector<EffectFinding>& findings) const {
@@ -382,6 +389,13 @@ class CampaignRun {
     record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, told));
     record_.ms_named = named.effects.empty() ? record_.ms_given
                                              : unseen_square(simulated, fitted(simulated.campaign, named));
+    record_.ms_told = record_.ms_named;
+    if (record_.sets.empty()) return;
+    ModelSpec with_sets;
+    for (const EffectFinding& finding : with_first_of_sets(diagnosis)) {
+      if (!finding.resolution) with_sets.effects.push_back(finding.spec);
+    }
+    record_.ms_told = unseen_square(simulated, fitted(simulated.campaign, with_sets));
   }
 
   std::string row_;

@@ -30,8 +30,8 @@ enum class Outcome {
 std::string to_string(Outcome outcome);
 Outcome outcome_of(const CampaignRecord& record);
 
-/// What a wrong name leaves of what is hidden, in units of the noise: below kUndetectable no test tells that
-/// the name is not the whole truth.
+/// What the names that were told, and the first of every set of them, leave of what is hidden, in units of
+/// the noise: below kUndetectable no test tells that they are not the whole truth.
 inline constexpr double kUndetectable = 4.0;
 double remainder_of(const CampaignRecord& record);
 
@@ -57,8 +57,8 @@ struct Figure {
 };
 std::vector<Figure> figures_of(const Campaigns& campaigns);
 
-/// (MS_given - MS_named) / (MS_given - MS_oracle); needs `recovery`.
-double recovered_share(const CampaignRecord& record);
+/// (MS_given - left) / (MS_given - MS_oracle); needs `recovery`. `left`: ms_named, or ms_told.
+double recovered_share(const CampaignRecord& record, double left);
 
 /// Amplitude found with 80 % power over the stated one, by a probit line through all campaigns.
 struct Detection {

@@ -24,8 +24,9 @@ class Answerer {
     name();
     drivers();
     directions();
-    answer_.companions.insert({"x", "y", "z"});
+    answer_.companions.insert({"x", "y", "z", "feed"});
     for (const Tool& tool : campaign_.machine.tools) answer_.companions.insert("tool " + tool.name);
+    either_of_two_tools();
     return std::move(answer_);
   }
 
@@ -157,8 +158,19 @@ class Answerer {
       drivers.insert("time");
     }
     if (is({"length-scale", "air-index"})) drivers.insert("length");
-    if (is({"servo-mismatch"})) drivers.insert({"dir_x", "dir_y"});
+    if (is({"servo-mismatch"})) drivers.insert({"dir_x", "dir_y", "speed_x", "speed_y"});
+    if (is({"bar-length"})) drivers.insert("instrument ball-bar");
     if (is({"tool-clamping", "dead-path-air"})) add_setups();
+  }
+
+  /// Of two tools in use each says whether it is the other.
+  void either_of_two_tools() {
+    std::set<std::string> in_use;
+    for (const Setup& setup : campaign_.setups)
+      in_use.insert("tool " + campaign_.machine.tools[setup.tool].name);
+    const bool is_driver =
+        std::ranges::any_of(in_use, [&](const std::string& tool) { return answer_.drivers.contains(tool); });
+    if (in_use.size() == 2 && is_driver) answer_.drivers.insert(in_use.begin(), in_use.end());
   }
 
   /// A setup shows as its station and tool.

@@ -72,9 +72,11 @@ struct CampaignRecord {
   int families = 0;
   int removed_readings = 0;
   double named_explain = 0.0;  ///< cos^2 of everything hidden with everything named
-  bool recovery = false;       ///< the next three were computed
+  double told_explain = 0.0;   ///< the same with the first of every set of alternatives
+  bool recovery = false;       ///< the next four were computed
   double ms_given = 0.0;       ///< um^2: noise-free prediction error at unseen positions, the given model
   double ms_named = 0.0;       ///< with the named effects, fitted again
+  double ms_told = 0.0;        ///< the same with the first of every set of alternatives
   double ms_oracle = 0.0;      ///< with the hidden effects' kind and shape, fitted again
 };
 

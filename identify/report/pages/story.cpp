@@ -129,10 +129,10 @@ Json after_json(const Diagnosis& diagnosis) {
                     micrometres(last.rms_heldout), micrometres(last.noise_floor)));
   }
   for (const UnknownFinding& unknown : diagnosis.unknown) {
-    lines.push_back(fmt::format(
-        "Still seen by the scan without a catalogue: something that depends on {}, along {}, "
-        "about {} RMS (log10 p {:.1f}).",
-        fmt::join(unknown.variables, " and "), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
+    lines.push_back(
+        fmt::format("Still seen by the scan without a catalogue: something that depends on {}, along {}, "
+                    "about {} RMS (log10 p {:.1f}).",
+                    unknown.dependence(), unknown.action(), micrometres(unknown.rms), unknown.log10_p));
     if (lines.size() == 5) break;
   }
   return lines;

@@ -194,7 +194,8 @@ TEST(ScanVariables, OfAnEffect) {
   EXPECT_EQ(scan_variables_of({"following-error", "EXX", "dir_x feed", "cos(phi)"}),
             (Names{"dir_x", "feed"}));
   EXPECT_EQ(scan_variables_of({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
-  EXPECT_EQ(scan_variables_of({"ball-bar-length", "readings", "ball-bar", "step"}), Names{});
+  EXPECT_EQ(scan_variables_of({"ball-bar-length", "readings", "ball-bar", "step"}),
+            Names{"instrument ball-bar"});
   EXPECT_EQ(scan_variables_of({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
 }
 

@@ -69,6 +69,8 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
 /// What scans see nearly alike is told in this order.
 TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
   EXPECT_EQ(how_far_fetched({"station P1"}, "X"), 0);
+  EXPECT_EQ(how_far_fetched({"instrument ball-bar"}, "beam"), 0);
+  EXPECT_EQ(how_far_fetched({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
   EXPECT_EQ(how_far_fetched({"x", "dir_x"}, "Y"), 1);
   EXPECT_EQ(how_far_fetched({"station P1", "time"}, "X"), 1) << "a station drifts in time";
   EXPECT_EQ(how_far_fetched({"station P1", "T_air"}, "X"), 2);

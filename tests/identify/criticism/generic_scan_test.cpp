@@ -152,7 +152,7 @@ TEST(GenericScan, TellsWhatATestWouldExplain) {
   }
   ASSERT_GE(chosen.size(), 4U) << "polynomials and kernels, along Y, several directions, rotations";
   const Eigen::MatrixXd explained =
-      scanned_displacements(model, variables_of_nothing_hidden(), projector, chosen);
+      scanned_displacements(model, variables_of_nothing_hidden(), projector, tests, chosen);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     const GenericTest& test = tests[chosen[k]];
     const auto column = static_cast<Eigen::Index>(k);

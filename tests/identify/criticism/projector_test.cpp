@@ -218,6 +218,23 @@ TEST(Projector, PartsAndGroupsChangeNothing) {
   EXPECT_LT((found.gram(3, 2) - expected.gram(3, 2)).norm(), 1e-11);
 }
 
+/// Products with it are scores, also where observations are left out and columns were accepted.
+TEST(Projector, WeighedResidualGivesEveryScore) {
+  std::mt19937_64 random(7);
+  NoiseProblem problem = random_problem(random);
+  const Eigen::Index half = kObservations / 2;
+  cut_in_two(problem.data, half);
+  problem.data.sigma[7] = std::numeric_limits<double>::infinity();
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 4);
+  Projector projector(problem, problem.data, {&kNoise, 1}, 1, {0, half, kObservations});
+  for (const bool accepted : {false, true}) {
+    if (accepted) projector.accept(random_matrix(random, kObservations, 2));
+    const Eigen::VectorXd weighed = projector.weighed_residual();
+    EXPECT_EQ(weighed[7], 0.0);
+    EXPECT_LT((columns.transpose() * weighed - projector.project(columns).score).norm(), 1e-10);
+  }
+}
+
 /// Taken into the model, columns get the amplitudes that the test had estimated, and nothing of them is left.
 TEST(Projector, AcceptedColumnsAreExplained) {
   std::mt19937_64 random(5);

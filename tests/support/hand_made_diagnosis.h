@@ -48,7 +48,9 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.further_one_of = {{third, other}};
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
-  diagnosis.unknown = {{{"x", "time"}, "Z", "EBX", 0.3e-6, -6.5}};
+  diagnosis.unknown = {{{"x", "time"}, {}, "Z", "EBX", 0.3e-6, -6.5},
+                       {{"dir_y"}, {"T_air", "T_column"}, "Y", "", 0.2e-6, -5.0},
+                       {{"y"}, {}, "Y", "", 0.1e-6, -4.0, 10.02e-3}};
   MeasurementProposal visit;
   visit.action = "revisit";
   visit.setup = "P1_short";

@@ -192,6 +192,10 @@ class Answerer {
         if (std::abs((*direction)[k]) >= kNotable * direction->cwiseAbs().maxCoeff()) add(k);
       }
     }
+    if (is({"servo-mismatch"})) {  // in one plane the other axis may as well be early
+      add(0);
+      add(1);
+    }
     for (const char* stem : {"axis", "about"}) {
       const std::string axis = lower(text(stem));
       if (axis.size() == 1) add_motion(stem == std::string("about"), axis[0] - 'x');

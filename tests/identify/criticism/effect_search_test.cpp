@@ -6,7 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/diagnosis.h"
@@ -26,9 +29,10 @@ sim::HiddenEffect hidden(const std::string& kind, const std::string& symbol, dou
   return effect;
 }
 
-Diagnosis diagnosed(const FittedStudy& study, bool climb) {
+Diagnosis diagnosed(const FittedStudy& study, bool climb, std::vector<std::string> leave_out = {}) {
   DiagnoseOptions options;
   options.climb = climb;
+  options.leave_out = std::move(leave_out);
   options.figures = false;
   options.compare = false;
   return diagnose(study.simulated.campaign, study.result, options);
@@ -142,6 +146,70 @@ TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
   EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
 }
 
+/// A screw that no name of the catalogue stands for is told by its period.
+TEST(EffectSearch, AWaveWithoutANameIsToldByItsPeriod) {
+  sim::HiddenEffect lead = hidden("screw-lead", "EXX", 0.6e-6);
+  lead.options.set("period", 10.3e-3);
+  const FittedStudy study(hiding({lead}, kGrid));
+  const Diagnosis diagnosis = diagnosed(study, true, {"lead-error", "encoder-subdivision"});
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::ElementsAre("x"));
+  EXPECT_EQ(diagnosis.unknown[0].direction, "X");
+  EXPECT_NEAR(diagnosis.unknown[0].period, 10.3e-3, 0.1e-3);
+  EXPECT_NEAR(diagnosis.unknown[0].rms, 0.6e-6, 0.3e-6) << "in units of the stated noise";
+}
+
+sim::BallBarCircles circles_in_xy() {
+  sim::BallBarCircles circles;
+  circles.planes = {"XY"};
+  circles.records_feed = true;
+  return circles;
+}
+
+const ScanVariable& variable(const std::vector<ScanVariable>& variables, const std::string& name) {
+  const auto found = std::ranges::find(variables, name, &ScanVariable::name);
+  if (found == variables.end()) throw std::out_of_range(name);
+  return *found;
+}
+
+/// On a circle the share along X is that of the radius along Y; a tracker's readings are taken at rest.
+void expect_shares_of_motion(const LinearModel& model) {
+  const std::vector<ScanVariable> variables = scan_variables(model);
+  const ScanVariable& along_x = variable(variables, "speed_x");
+  const ScanVariable& instrument = variable(variables, "instrument ball-bar");
+  EXPECT_TRUE(instrument.two_valued);
+  for (Eigen::Index i = 0; i < along_x.value.size(); ++i) {
+    const auto& [of, row, channel] = model.observations()[static_cast<std::size_t>(i)];
+    const Setup& setup = model.campaign().setups[of];
+    const double share = along_x.centre + along_x.scale * along_x.value[i];
+    const double of_ball_bar = instrument.centre + instrument.scale * instrument.value[i];
+    EXPECT_NEAR(of_ball_bar, setup.instrument == "ball-bar" ? 1.0 : 0.0, 1e-9);
+    if (setup.instrument != "ball-bar") {
+      EXPECT_NEAR(share, 0.0, 1e-9);
+      continue;
+    }
+    const Eigen::Vector3d radius = model.views()[of].nominal_point_w[row] - *setup.options.vector("centre");
+    EXPECT_NEAR(std::abs(share), std::abs(radius.y()) / radius.norm(), 0.1);
+    EXPECT_GE(share * setup.readings.direction[index_of(AxisName::X)][row], -0.1);
+  }
+}
+
+/// What moves along circles is seen where the catalogue has no name for it.
+TEST(EffectSearch, WhatCirclesShowIsSeenWithoutAName) {
+  sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 1e-6};
+  servo.options.set("axis", "X");
+  sim::Study study = hiding({servo}, kGrid);
+  study.measurements.emplace_back().settings = circles_in_xy();
+  const FittedStudy fitted(study);
+  expect_shares_of_motion(fitted.model);
+  const Diagnosis diagnosis = diagnosed(fitted, true, {"servo-mismatch", "following-error"});
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables,
+              ::testing::Contains(::testing::AnyOf("speed_x", "speed_y", "dir_x", "dir_y")));
+}
+
 /// The shortest lag that is looked for explains nearly all of what follows a temperature at once.
 TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
   sim::HiddenEffect tilt = hidden("thermal-tilt", "EAZ", 5e-6);
@@ -167,10 +235,7 @@ TEST(EffectSearch, FindsWhatTheNoiseHasTakenUp) {
   sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
   servo.options.set("axis", "X");
   sim::Study study = hiding({servo}, kGrid);
-  sim::BallBarCircles circles;
-  circles.planes = {"XY"};
-  circles.records_feed = true;
-  study.measurements.emplace_back().settings = circles;
+  study.measurements.emplace_back().settings = circles_in_xy();
   const FittedStudy fitted(study);
   const NoiseEstimate noise = estimate_noise(fitted.model.problem());
   const auto ball_bar = std::ranges::find(fitted.model.noise_groups(), "ball-bar");

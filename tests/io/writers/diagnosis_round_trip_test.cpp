@@ -42,6 +42,10 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(unknown.at("direction"), "Z");
   EXPECT_EQ(unknown.at("rotation"), "EBX");
   EXPECT_NEAR(unknown.at("rms_um").get<double>(), 0.3, 1e-12);
+  EXPECT_TRUE(unknown.at("period_mm").is_null());
+  EXPECT_TRUE(unknown.at("with_one_of").empty());
+  EXPECT_EQ(document.at("unknown").at(1).at("with_one_of"), (json{"T_air", "T_column"}));
+  EXPECT_NEAR(document.at("unknown").at(2).at("period_mm").get<double>(), 10.02, 1e-12);
   EXPECT_TRUE(document.at("not_visible").at(0).at("mdb").is_null());
   EXPECT_EQ(document.at("next_measurement").size(), 1U);
   EXPECT_EQ(document.at("next_measurement").at(0).at("separation_reached"), 7.5);
@@ -100,12 +104,24 @@ TEST(DiagnosisJson, RoundTrips) {
 }
 
 /// Diagnoses that were written before scans saw rotations.
-TEST(DiagnosisJson, ARotationMayBeMissing) {
+TEST(DiagnosisJson, WhatOlderFilesLackMayBeMissing) {
   json document = written();
-  document.at("unknown").at(0).erase("rotation");
+  for (const char* key : {"rotation", "with_one_of", "period_mm"}) document.at("unknown").at(0).erase(key);
   const Diagnosis again = diagnosis_from_json(document.dump(), "old.json");
   EXPECT_EQ(again.unknown.at(0).rotation, "");
+  EXPECT_TRUE(again.unknown.at(0).with_one_of.empty());
+  EXPECT_EQ(again.unknown.at(0).period, 0.0);
   EXPECT_EQ(again.unknown.at(0).direction, "Z");
+}
+
+TEST(DiagnosisJson, UnknownEffectsComeBackInWords) {
+  const Diagnosis again = diagnosis_from_json(written().dump(), "diagnosis.json");
+  ASSERT_EQ(again.unknown.size(), 3U);
+  EXPECT_EQ(again.unknown[0].dependence(), "x and time");
+  EXPECT_EQ(again.unknown[0].action(), "Z, as EBX");
+  EXPECT_EQ(again.unknown[1].dependence(), "dir_y and one of T_air, T_column");
+  EXPECT_EQ(again.unknown[1].action(), "Y");
+  EXPECT_EQ(again.unknown[2].action(), "Y, every 10.02 mm");
 }
 
 TEST(DiagnosisJson, UnitsWithDenominatorsComeBack) {

@@ -3,7 +3,7 @@
 ///
 ///   1. the noise model by restricted likelihood,
 ///   2. score tests of every named family, after projection off the model,
-///   3. two generic scans, because the catalogue is never complete,
+///   3. generic scans, because the catalogue is never complete,
 ///   4. a verdict in the user's words; effects are added one by one until nothing is left, and told all with
 ///      `climb`, else the first.
 ///

@@ -79,8 +79,8 @@ void EffectSearch::find_outstanding() {
   }
 }
 
-/// Effects that would stand out were there no wander: noise that was estimated without an effect can have
-/// taken it for one.
+/// Effects that would stand out were there hardly a wander: noise that was estimated without an effect can
+/// have taken it for one.
 std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& problem) const {
   std::vector<FamilyTest> tests;
   for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
@@ -123,7 +123,7 @@ bool EffectSearch::add_hidden_in_noise() {
   return true;
 }
 
-/// Scans that would stand out were there no wander, nearest to it first.
+/// Scans that would stand out were there hardly a wander, the most improbable of each instrument's.
 std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
     const NoiseProblem& problem) const {
   struct Candidate {
@@ -138,7 +138,7 @@ std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
     for (std::size_t i = 0; i < scans.size(); ++i) {
       const double ratio = scans[i].lm - other.loss + kWorthEstimating;
       if (!(ratio > 0.0) || scans[i].dof == 0.0) continue;
-      const double log10_p = log10_chi_squared_exceedance(ratio, scans[i].dof) + scans[i].log10_choices;
+      const double log10_p = log10_chi_squared_exceedance(ratio, scans[i].dof);
       if (log10_p + log10_generic_ <= kLog10GenericRisk) candidates.push_back({i, log10_p});
     }
     std::ranges::sort(candidates, {}, &Candidate::log10_p);
@@ -166,8 +166,7 @@ void EffectSearch::find_scans_hidden_in_noise() {
     const auto [ratio, freedom] =
         test_beside_noise(model_, held.moved, problem, *noise_estimate_, noise_options(), least);
     test.lm = ratio;
-    test.log10_p =
-        std::min(0.0, log10_exceedance_of_estimated(ratio, test.dof, freedom) + test.log10_choices);
+    test.log10_p = std::min(0.0, log10_exceedance_of_estimated(ratio, test.dof, freedom));
     const bool known = scan_stands_out_[held.scan] && generic_[held.scan].log10_p <= test.log10_p;
     if (known || family_wise_log10_p(test) > kLog10GenericRisk) continue;
     generic_[held.scan] = test;

@@ -197,20 +197,27 @@ TEST(Projector, LocalColumnsChangeNothing) {
 }
 
 /// Parts and groups are a matter of memory.
+constexpr Eigen::Index kHalf = kObservations / 2;
+
+/// Cut at kHalf, observation 7 left out.
+NoiseProblem problem_in_two_parts(std::mt19937_64& random) {
+  NoiseProblem problem = random_problem(random);
+  cut_in_two(problem.data, kHalf);
+  problem.data.sigma[7] = std::numeric_limits<double>::infinity();
+  return problem;
+}
+
 TEST(Projector, PartsAndGroupsChangeNothing) {
   std::mt19937_64 random(4);
-  NoiseProblem problem = random_problem(random);
-  const Eigen::Index half = kObservations / 2;
-  cut_in_two(problem.data, half);
-  problem.data.sigma[7] = std::numeric_limits<double>::infinity();
+  const NoiseProblem problem = problem_in_two_parts(random);
 
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 5);
   const Projector whole(problem, problem.data, {&kNoise, 1}, 1);
-  const Projector parted(problem, problem.data, {&kNoise, 1}, 2, {0, half, kObservations});
+  const Projector parted(problem, problem.data, {&kNoise, 1}, 2, {0, kHalf, kObservations});
   const ProjectedColumns expected = whole.project(columns);
   const ProjectedColumns found =
       parted.project({5, {2, 3}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
-                        rows = columns.middleRows(static_cast<Eigen::Index>(part) * half, half);
+                        rows = columns.middleRows(static_cast<Eigen::Index>(part) * kHalf, kHalf);
                       }});
   EXPECT_LT((found.score - expected.score).norm(), 1e-11);
   EXPECT_LT((found.norm - expected.norm).norm(), 1e-11);
@@ -221,12 +228,9 @@ TEST(Projector, PartsAndGroupsChangeNothing) {
 /// Products with it are scores, also where observations are left out and columns were accepted.
 TEST(Projector, WeighedResidualGivesEveryScore) {
   std::mt19937_64 random(7);
-  NoiseProblem problem = random_problem(random);
-  const Eigen::Index half = kObservations / 2;
-  cut_in_two(problem.data, half);
-  problem.data.sigma[7] = std::numeric_limits<double>::infinity();
+  const NoiseProblem problem = problem_in_two_parts(random);
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 4);
-  Projector projector(problem, problem.data, {&kNoise, 1}, 1, {0, half, kObservations});
+  Projector projector(problem, problem.data, {&kNoise, 1}, 1, {0, kHalf, kObservations});
   for (const bool accepted : {false, true}) {
     if (accepted) projector.accept(random_matrix(random, kObservations, 2));
     const Eigen::VectorXd weighed = projector.weighed_residual();

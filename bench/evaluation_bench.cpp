@@ -25,16 +25,16 @@
 #include "chains.h"
 #include "measure.h"
 #include "reference_problem.h"
+#include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/linear_axis_errors.h"
 #include "volcal/identify/io/plain_number.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/tables/csv_tables.h"
-#include "volcal/identify/tables/error_field.h"
-#include "volcal/identify/tables/error_grid.h"
-#include "volcal/identify/tables/error_tables.h"
-#include "volcal/identify/tables/linear_axis_errors.h"
 #include "volcal/model/instruments/registry.h"
 #include "volcal/sim/random.h"
 #if defined(__SSE2__)
@@ -219,12 +219,14 @@ Json points_part(const Arguments& arguments) {
     for (const Axis& axis : machine.result.machine.axes)
       position[index_of(axis.name)] = random.uniform(axis.travel_min, axis.travel_max);
   }
-  const auto many = LinearAxisErrors::make(machine.result, machine.tool().offset);
-  const ErrorField one = identified_error_field(machine.result, machine.tool().offset);
-  const ErrorField plain = plain_error_field(machine.result, machine.tool().offset);
+  const Conditions conditions = default_conditions(machine.result);
+  const auto many = LinearAxisErrors::make(machine.result, machine.tool().offset,
+                                           MachineEffects(machine.result, machine.tool(), conditions));
+  const DisplacementField one = displacement_field(machine.result, machine.tool(), conditions);
+  const DisplacementField plain = plain_displacement_field(machine.result, machine.tool(), conditions);
   const ApproachDirection mean{};
   std::vector<Eigen::Vector3d> errors(kPoints), same(kPoints);
-  const auto one_by_one = [&](const ErrorField& field) {
+  const auto one_by_one = [&](const DisplacementField& field) {
     for (std::size_t i = 0; i < kPoints; ++i) same[i] = field(positions[i], mean);
   };
   Rounds rounds;
@@ -315,8 +317,8 @@ void write_bytes(const std::string& path, std::size_t bytes) {
 Json grid_file_part(const Arguments& arguments) {
   const Identified machine(arguments.threads);
   const std::string path = arguments.folder + "/volumetric_grid.csv";
-  const TableFile grid =
-      spatial_grid_file("volumetric_grid.csv", machine.result, kFileNodes, TableContent::Errors);
+  const TableFile grid = spatial_grid_file("volumetric_grid.csv", machine.result, kFileNodes,
+                                           default_conditions(machine.result), TableContent::Errors);
   std::size_t bytes = 0;
   Rounds rounds;
   rounds.add("own", [&] {

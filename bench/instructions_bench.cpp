@@ -17,11 +17,11 @@
 #include "reference_problem.h"
 #include "volcal/identify/criticism/linear_model.h"
 #include "volcal/identify/criticism/projector.h"
+#include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/montecarlo/draw_projection.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/tables/error_grid.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace {

@@ -1,7 +1,8 @@
 #pragma once
 /// The compensation of a simulated control: tables as their file holds them, and what they add to the
 /// commands. Interpolation, directions and signs are the simulator's own and share nothing with the exporters
-/// (identify/tables), so that a mistake there cannot cancel. m and rad; types of ISO/TR 16907:2015, 8.2.
+/// (identify/compensation), so that a mistake there cannot cancel. m and rad; types of ISO/TR
+/// 16907:2015, 8.2.
 
 #include <Eigen/Core>
 #include <array>

@@ -7,11 +7,13 @@
 #include <string>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/conditions_options.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/program_setup.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/report/field_text.h"
 #include "volcal/identify/report/program_text.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -29,6 +31,7 @@ struct CompensateArguments {
   double tolerance_um = 0.5;
   double arc_tolerance_um = 0.5;
   int decimals = 4;
+  ConditionsArguments conditions;
   bool check = false;
   bool json = false;
 };
@@ -68,6 +71,7 @@ NcRewriteOptions rewrite_options(const CompensateArguments& arguments) {
   options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
   options.arc_tolerance = arguments.arc_tolerance_um * kMetrePerMicrometre;
   options.decimals_mm = arguments.decimals;
+  options.within_readings = arguments.conditions.no_extrapolation;
   options.header = header(arguments);
   return options;
 }
@@ -75,7 +79,8 @@ NcRewriteOptions rewrite_options(const CompensateArguments& arguments) {
 RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arguments) {
   const NcSetup setup = program_setup(arguments.setup, result.machine);
   const FunctionalPoint point = functional_point(result.machine, arguments.tool, arguments.lengths_from);
-  const ProgramErrors errors = program_errors(result);
+  const ProgramErrors errors =
+      program_errors(result, arguments.tool, conditions_of(result, arguments.conditions));
   NcRewriter rewriter(errors, setup, point, rewrite_options(arguments), arguments.program);
   std::optional<NcCheck> check;
   if (arguments.check) check.emplace(errors, setup, point);
@@ -98,8 +103,8 @@ RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arg
 void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments) {
   fmt::print("{}", program_summary_text(done.summary));
   if (done.check) fmt::print("{}", program_check_text(*done.check));
-  for (const std::string& effect : effects_not_in_tables(result))
-    fmt::print("! {} was identified and is not compensated\n", effect);
+  fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
+  for (const std::string& sentence : errors_in_no_table(result)) fmt::print("! {}\n", sentence);
   for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
@@ -110,7 +115,8 @@ int run_compensate(const CompensateArguments& arguments) {
   const RewrittenProgram done = rewrite(result, arguments);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
-    json["effects_not_compensated"] = effects_not_in_tables(result);
+    json["effects_not_compensated"] = errors_in_no_table(result);
+    json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     json["invisible"] = result.rank.invisible;
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json.dump(2));
@@ -161,6 +167,7 @@ std::function<int()> define_compensate(CLI::App& app) {
       ->check(positive());
   app.add_option("--decimals", arguments->decimals, "of coordinates in mm, inches have one more; default 4")
       ->check(CLI::Range(4, 7));
+  add_conditions_options(app, arguments->conditions);
   app.add_flag(
       "--check", arguments->check,
       "interpret both programs and print the error of the tool point along the path, before and after");

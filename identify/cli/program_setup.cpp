@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/compensation/table_format.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 

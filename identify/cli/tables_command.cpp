@@ -8,15 +8,17 @@
 #include "volcal/identify/cli/alignment_options.h"
 #include "volcal/identify/cli/axis_position.h"
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/conditions_options.h"
 #include "volcal/identify/cli/number_checks.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/compensation_text.h"
 #include "volcal/identify/report/correction_text.h"
+#include "volcal/identify/report/field_text.h"
 #include "volcal/identify/report/volumetric_text.h"
-#include "volcal/identify/tables/table_format.h"
-#include "volcal/identify/tables/volume_check.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -41,6 +43,8 @@ struct TablesArguments {
   std::vector<std::string> settings;
   std::vector<std::string> records;
   AlignmentArguments alignment;
+  ConditionsArguments conditions;
+  std::string approach;
   std::string superimpose;
   bool dry_run = false;
   bool list = false;
@@ -91,11 +95,34 @@ std::vector<AxisPosition> points_of(const FitResult& result, const TablesArgumen
   return points;
 }
 
+/// X+,Y-: axes that are not named are approached from both sides.
+ApproachDirection approach_of(const Machine& machine, const std::string& text) {
+  ApproachDirection direction{};
+  for (std::size_t i = 0; i < text.size(); i += 3) {
+    const auto axis = axis_from_letter(text[i]);
+    const bool complete = i + 1 < text.size() && (text[i + 1] == '+' || text[i + 1] == '-') &&
+                          (i + 2 == text.size() || text[i + 2] == ',');
+    if (!axis || !machine.has_axis(*axis) || !complete)
+      throw InputError({}, "--approach " + text + " names no direction of the machine's axes",
+                       "write the axes and the direction they move in, as X+,Y-");
+    direction[index_of(*axis)] = text[i + 1] == '+' ? 1 : -1;
+  }
+  return direction;
+}
+
 std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
   std::vector<VolumetricError> errors;
-  const std::vector<Tool> tools = chosen_tools(result.machine, arguments.tool);
-  for (const AxisPosition& position : points_of(result, arguments)) {
-    for (const Tool& tool : tools) errors.push_back(volumetric_error(result, position, tool));
+  const Conditions conditions = conditions_of(result, arguments.conditions);
+  const ApproachDirection direction = approach_of(result.machine, arguments.approach);
+  for (const Tool& tool : chosen_tools(result.machine, arguments.tool)) {
+    const ErrorField field(result, tool, conditions);
+    for (const AxisPosition& position : points_of(result, arguments)) {
+      require_identified_rotary_axes(result, position);
+      errors.push_back(volumetric_error(result, field, position, tool, direction));
+      if (arguments.conditions.no_extrapolation && errors.back().extrapolated)
+        throw InputError({}, "--no-extrapolation: a point of --at lies beyond the measured positions",
+                         "name a point within them, or leave the option out");
+    }
   }
   return errors;
 }
@@ -108,20 +135,6 @@ void require_something_to_do(const TablesArguments& arguments) {
   if (arguments.at.empty() && !makes_tables(arguments))
     throw InputError({}, "neither a folder nor a point is given",
                      "give -o FOLDER, --dry-run, or --at X=100,Y=50");
-}
-
-/// NAME=VALUE of an option that may be repeated.
-std::map<std::string, std::string> named_values(const std::string& option,
-                                                const std::vector<std::string>& given) {
-  std::map<std::string, std::string> values;
-  for (const std::string& text : given) {
-    const auto equals = text.find('=');
-    if (equals == std::string::npos || equals == 0)
-      throw InputError({}, option + " " + text, "write NAME=VALUE");
-    if (!values.emplace(text.substr(0, equals), text.substr(equals + 1)).second)
-      throw InputError({}, option + " " + text.substr(0, equals) + " is given twice", "give it once");
-  }
-  return values;
 }
 
 /// Tables that were active, by the rules of their controller.
@@ -141,6 +154,7 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
   options.step = arguments.step_mm * kMetrePerMillimetre;
   if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
   options.settings = named_values("--set", arguments.settings);
+  options.conditions = conditions_of(result, arguments.conditions);
   options.record = {arguments.result, named_values("--record", arguments.records)};
   if (!arguments.superimpose.empty()) options.active = tables_in(arguments.superimpose);
   return options;
@@ -162,7 +176,7 @@ MadeTables make_tables(const FitResult& result, const TablesArguments& arguments
   made.files = write_tables(*made.format, result, made.options);
   made.read_back = made.format->read(made.files);
   made.check = check_in_volume(result, made.options, made.read_back);
-  made.effects_left_out = effects_not_in_tables(result);
+  made.effects_left_out = errors_in_no_table(result);
   return made;
 }
 
@@ -186,9 +200,11 @@ std::string step_text(const MadeTables& made) {
   return text;
 }
 
-void print_tables(const MadeTables& made, const TablesArguments& arguments, const Machine& machine) {
+void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
+  const Machine& machine = result.machine;
   fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
              tool_of(machine, made.options).name, step_text(made));
+  fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
   fmt::print("Verified: {}.\n", made.format->verified);
   if (made.tolerance > 0.0 && !made.step.reached)
@@ -197,8 +213,8 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
                arguments.superimpose);
-  for (const std::string& effect : made.effects_left_out)
-    fmt::print("! {} was identified and is in no table\n", effect);
+  for (const std::string& effect : made.effects_left_out) fmt::print("! {}\n", effect);
+  for (const std::string& sentence : unmeasured_travel(result)) fmt::print("! {}\n", sentence);
   fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
              fmt::join(file_names(made), ", "));
 }
@@ -245,6 +261,7 @@ int run_tables(const TablesArguments& arguments) {
   if (arguments.list) return list_formats(arguments.json);
   require_something_to_do(arguments);
   const FitResult result = aligned_result(arguments);
+  if (arguments.conditions.no_extrapolation && makes_tables(arguments)) require_measured_travel(result);
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
   std::optional<MadeTables> made;
   if (makes_tables(arguments)) made = make_tables(result, arguments);
@@ -253,15 +270,18 @@ int run_tables(const TablesArguments& arguments) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
     json["invisible"] = result.rank.invisible;
+    json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
+    json["beyond_readings"] = unmeasured_travel(result);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
     if (made && !errors.empty())
       json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
     fmt::print("{}\n", json.dump(2));
   } else {
+    if (!made) fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
     fmt::print("{}", volumetric_text(result, errors));
     if (made) {
       fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
-      print_tables(*made, arguments, result.machine);
+      print_tables(*made, arguments, result);
     }
     for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
   }
@@ -319,6 +339,9 @@ std::function<int()> define_tables(CLI::App& app) {
       "--at", arguments->at,
       "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home, and with "
       "-o or --dry-run what the tables add to the command there; may be given several times");
+  app.add_option("--approach", arguments->approach,
+                 "X+,Y-: direction in which --at is approached; axes not named: mean of both");
+  add_conditions_options(app, arguments->conditions);
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_tables(*arguments); };
 }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/tables/table_text.h"
+#include "volcal/identify/compensation/table_text.h"
 
 namespace volcal {
 

@@ -7,10 +7,10 @@
 #include <set>
 #include <sstream>
 
+#include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/io/control_words.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/typed_control_tables.h"
-#include "volcal/identify/tables/csv_tables.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/compensation/table_format.h"
 #include "volcal/sim/control.h"
 
 namespace volcal {

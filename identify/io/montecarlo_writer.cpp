@@ -6,7 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "volcal/identify/tables/csv_cell.h"
+#include "volcal/identify/compensation/csv_cell.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

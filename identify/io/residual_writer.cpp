@@ -6,7 +6,7 @@
 #include <iterator>
 #include <memory>
 
-#include "volcal/identify/tables/csv_cell.h"
+#include "volcal/identify/compensation/csv_cell.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"

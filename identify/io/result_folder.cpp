@@ -2,12 +2,12 @@
 
 #include <filesystem>
 
+#include "volcal/identify/compensation/csv_tables.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/residual_writer.h"
 #include "volcal/identify/io/result_json.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
-#include "volcal/identify/tables/csv_tables.h"
 
 namespace volcal {
 namespace {

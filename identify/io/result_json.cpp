@@ -114,6 +114,32 @@ Json locations_json(const FitResult& result) {
   return all;
 }
 
+Json range_json(const RecordedRange& range) {
+  return {{"min", number(range.min)}, {"mean", number(range.mean)}, {"max", number(range.max)}};
+}
+
+RecordedRange range_from(const Json& json) {
+  return {number(json.at("min")), number(json.at("mean")), number(json.at("max"))};
+}
+
+Json conditions_json(const RecordedConditions& conditions) {
+  Json temperatures = Json::object();
+  for (const auto& [channel, range] : conditions.temperature_degC) temperatures[channel] = range_json(range);
+  Json json = {{"temperature_degC", temperatures}};
+  if (conditions.time) json["time_s"] = range_json(*conditions.time);
+  if (conditions.feed) json["feed_m_per_s"] = range_json(*conditions.feed);
+  return json;
+}
+
+RecordedConditions conditions_from(const Json& json) {
+  RecordedConditions conditions;
+  for (const auto& [channel, range] : json.at("temperature_degC").items())
+    conditions.temperature_degC[channel] = range_from(range);
+  if (json.contains("time_s")) conditions.time = range_from(json.at("time_s"));
+  if (json.contains("feed_m_per_s")) conditions.feed = range_from(json.at("feed_m_per_s"));
+  return conditions;
+}
+
 Json head_json(const FitResult& result) {
   return {{"format", kResultFormat},
           {"units", "m, rad, s, K; an error is actual minus nominal, tool relative to workpiece"},
@@ -130,6 +156,7 @@ Json head_json(const FitResult& result) {
           {"outlier_critical_value", number(result.outlier_critical_value)},
           {"reference_temperature_degC", number(result.reference_temperature_degC)},
           {"temperature_is_campaign_mean", result.temperature_is_campaign_mean},
+          {"conditions", conditions_json(result.conditions)},
           {"active_compensations", result.active_compensations},
           {"alignment", result.alignment},
           {"straightness_reference_line", "least squares, continuous over the travel"},
@@ -193,6 +220,7 @@ void read_head(const Json& json, FitResult& result) {
   result.outlier_critical_value = number(json.at("outlier_critical_value"));
   result.reference_temperature_degC = number(json.at("reference_temperature_degC"));
   result.temperature_is_campaign_mean = json.at("temperature_is_campaign_mean").get<bool>();
+  if (json.contains("conditions")) result.conditions = conditions_from(json.at("conditions"));
   result.active_compensations = json.value("active_compensations", std::string());
   result.alignment = json.value("alignment", std::string());
   for (const Json& setup : json.at("setups")) {

@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "volcal/identify/tables/table_text.h"
+#include "volcal/identify/compensation/table_text.h"
 #include "volcal/sim/control.h"
 
 namespace volcal {

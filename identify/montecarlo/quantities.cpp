@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -114,13 +114,14 @@ QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per
   QuantitySet::Volume volume{
       .tool = tool.name,
       .rows = Eigen::MatrixXd(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size),
-      .error = {}};
+      .error = Eigen::VectorXd(3 * static_cast<Eigen::Index>(positions.size()))};
+  const ErrorField field(result, tool);
   Eigen::Index row = 0;
   for (const AxisPosition& position : positions) {
-    volume.rows.middleRows<3>(row) = volumetric_error_rows(result, position, tool).topRows<3>();
+    volume.rows.middleRows<3>(row) = field.rows(position).topRows<3>();
+    volume.error.segment<3>(row) = field.at(position).head<3>();
     row += 3;
   }
-  volume.error = volume.rows * result.parameters;
   return volume;
 }
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/planning/expected_effects.h"
 #include "volcal/identify/planning/plan_options.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/planning/plan_problem.h"
 #include "volcal/identify/solve/adjustment.h"
@@ -15,7 +16,6 @@
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/identify/tables/error_grid.h"
 
 namespace volcal {
 namespace {

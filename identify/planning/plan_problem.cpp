@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/solve/campaign_noise.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/solve/stated_sigma.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/functions/registry.h"
 
@@ -206,7 +206,7 @@ Eigen::MatrixXd PlanProblem::volume_functionals(const Linearised& at) const {
   for (const AxisPosition& position : grid_positions(settings_.machine, kVolumePerAxis)) {
     for (const Tool& tool : own_tools(settings_)) {
       parts.emplace_back(at.datum.reduce_rows(
-          pose_error_rows(at.model.chain(), at.model.layout(), position, tool.offset).topRows(3)));
+          pose_error_rows(at.model.chain(), at.model.layout(), position, tool.offset, position).topRows(3)));
     }
   }
   Eigen::MatrixXd all(3 * static_cast<Eigen::Index>(parts.size()), at.datum.size());

@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<double, 4> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417, 1.0};
 constexpr std::array<double, 4> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0, 0.0};
 
-Eigen::Vector3d value_of(const ErrorField& field, const Eigen::Vector3d& at,
+Eigen::Vector3d value_of(const DisplacementField& field, const Eigen::Vector3d& at,
                          const ApproachDirection& directions) {
   return field({at.x(), at.y(), at.z(), 0.0, 0.0, 0.0}, directions);
 }

@@ -48,7 +48,7 @@ class NcCheck {
   FunctionalPoint functional_point_;
   NcInterpreter original_;
   NcInterpreter written_;
-  ErrorField field_;
+  DisplacementField field_;
   std::optional<Eigen::Vector3d> field_point_;  ///< that field_ is for
   ApproachDirection directions_{};
   Sum before_;

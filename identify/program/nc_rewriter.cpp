@@ -128,6 +128,18 @@ void NcRewriter::correct_arc(const NcArc& arc, double at) {
   }
 }
 
+/// Where the program leaves the measured positions.
+void NcRewriter::note_place(const NcMotion& motion) {
+  const Eigen::Vector3d& to = motion.to;
+  const std::int64_t line = summary_.lines_read + 1;
+  if (!errors_.measured.is_beyond({to.x(), to.y(), to.z(), 0.0, 0.0, 0.0})) return;
+  if (options_.within_readings)
+    interpreter_.place().refuse("the motion ends beyond the positions that were measured",
+                                "measure there, or leave --no-extrapolation out: the last measured error is "
+                                "then held");
+  if (summary_.beyond_readings++ == 0) summary_.first_beyond = line;
+}
+
 void NcRewriter::correct_motions(const NcStep& step, const std::array<bool, 3>& known_before) {
   targets_.clear();
   use_functional_point();
@@ -143,6 +155,7 @@ void NcRewriter::correct_motions(const NcStep& step, const std::array<bool, 3>& 
       continue;
     }
     ++summary_.motions;
+    note_place(motion);
     if (motion.kind == NcMotionKind::Rapid) {
       correct_rapid(motion, at, known_before);
     } else if (motion.kind == NcMotionKind::Arc) {

@@ -26,6 +26,7 @@ struct NcRewriteOptions {
   double tolerance = 0.5e-6;      ///< of the corrected path, m
   double arc_tolerance = 0.5e-6;  ///< of chords in place of arcs, m
   int decimals_mm = 4;            ///< of coordinates in mm; inches get one more
+  bool within_readings = false;   ///< refuse motions beyond the measured positions
   std::string header;             ///< comment that is written above the program; empty = none
 };
 
@@ -39,7 +40,9 @@ struct NcRewriteSummary {
   std::int64_t arcs = 0;
   std::int64_t split_lines = 0;  ///< lines that became more than one
   std::int64_t clamped = 0;      ///< rapids whose corrected end would leave the travel: they end at its limit
-  double largest_correction = 0.0;                 ///< m
+  std::int64_t beyond_readings = 0;  ///< motions that leave the measured positions: errors are held there
+  std::int64_t first_beyond = 0;     ///< line of the first of them
+  double largest_correction = 0.0;   ///< m
   std::vector<Eigen::Vector3d> functional_points;  ///< that the program used, m from the spindle reference
 };
 
@@ -58,6 +61,7 @@ class NcRewriter {
 
  private:
   void use_functional_point();
+  void note_place(const NcMotion& motion);
   void write_header(std::string_view line);
   void correct_motions(const NcStep& step, const std::array<bool, 3>& known_before);
   void correct_rapid(const NcMotion& motion, double at, const std::array<bool, 3>& known_before);

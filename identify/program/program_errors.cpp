@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "volcal/identify/tables/compensation.h"
+#include "volcal/identify/compensation/compensation.h"
 
 namespace volcal {
 namespace {
@@ -29,20 +29,113 @@ AxisPosition axis_position_of(const Eigen::Vector3d& position) {
   return {position.x(), position.y(), position.z(), 0.0, 0.0, 0.0};
 }
 
+/// Intervals of an axis on which the drivers of effects follow a polynomial of degree 4; finer ones than
+/// kShortestInterval are not made.
+class EffectIntervals {
+ public:
+  EffectIntervals(const MachineEffects& effects, const Machine& machine)
+      : effects_(effects), machine_(machine) {}
+
+  void refine(AxisName axis, std::vector<double>& ends) const {
+    const bool depends = [&] {
+      for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
+        if (effects_.reach(e).position[index_of(axis)]) return true;
+      }
+      return false;
+    }();
+    if (!depends) return;
+    const Axis& of_machine = machine_.axis(axis);
+    ends.push_back(of_machine.travel_min);
+    ends.push_back(of_machine.travel_max);
+    std::ranges::sort(ends);
+    std::vector<double> added;
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) split(axis, ends[i], ends[i + 1], added);
+    ends.insert(ends.end(), added.begin(), added.end());
+  }
+
+ private:
+  void split(AxisName axis, double begin, double end, std::vector<double>& added) const {
+    constexpr double kShortestInterval = 2e-4;  // m
+    if (end - begin < kShortestInterval || added.size() > kMostIntervals || is_smooth(axis, begin, end))
+      return;
+    const double middle = 0.5 * (begin + end);
+    added.push_back(middle);
+    split(axis, begin, middle, added);
+    split(axis, middle, end, added);
+  }
+
+  /// Compares with the polynomial through five points at three others, the other axes at several places.
+  bool is_smooth(AxisName axis, double begin, double end) const {
+    constexpr std::array<double, 5> kFit = {0.0, 0.25, 0.5, 0.75, 1.0};
+    constexpr std::array<double, 3> kCheck = {0.1, 0.4, 0.9};
+    constexpr double kSame = 1e-3;  // of the largest driver: effects are micrometres, splitting is to 0.1 um
+    double largest = 0.0, deviation = 0.0;
+    for (const double share : {0.2, 0.7}) {
+      std::vector<AxisPosition> positions;
+      const auto add = [&](double of_interval) {
+        AxisPosition position{};
+        for (const Axis& other : machine_.axes) {
+          if (!is_rotary(other.name))
+            position[index_of(other.name)] = other.travel_min + share * other.travel();
+        }
+        position[index_of(axis)] = begin + of_interval * (end - begin);
+        positions.push_back(position);
+      };
+      for (const double node : kFit) add(node);
+      for (const double node : kCheck) add(node);
+      const Eigen::MatrixXd drivers = effects_.drivers(positions, {&kTowardsPlus, 1});
+      largest = std::max(largest, drivers.cwiseAbs().maxCoeff());
+      for (std::size_t c = 0; c < kCheck.size(); ++c) {
+        Eigen::RowVectorXd through = Eigen::RowVectorXd::Zero(drivers.cols());
+        for (std::size_t i = 0; i < kFit.size(); ++i) {
+          double weight = 1.0;
+          for (std::size_t k = 0; k < kFit.size(); ++k) {
+            if (k != i) weight *= (kCheck[c] - kFit[k]) / (kFit[i] - kFit[k]);
+          }
+          through += weight * drivers.row(static_cast<Eigen::Index>(i));
+        }
+        deviation = std::max(
+            deviation,
+            (drivers.row(static_cast<Eigen::Index>(kFit.size() + c)) - through).cwiseAbs().maxCoeff());
+      }
+    }
+    return deviation <= kSame * largest;
+  }
+
+  static constexpr std::size_t kMostIntervals = 20000;
+  const MachineEffects& effects_;
+  const Machine& machine_;
+};
+
 }  // namespace
 
-ProgramErrors program_errors(const FitResult& result) {
-  ProgramErrors errors;
-  errors.machine = result.machine;
-  auto identified = std::make_shared<FitResult>();  // what a field needs, without covariance and residuals
-  identified->machine = result.machine;
-  identified->layout = result.layout;
-  identified->parameters = result.parameters;
-  errors.field = [identified](const Eigen::Vector3d& tool_offset) {
-    return identified_error_field(*identified, tool_offset);
-  };
+ProgramErrors program_errors(const FitResult& result, const std::string& tool_name,
+                             const Conditions& conditions) {
+  auto identified = std::make_shared<FitResult>(result);  // what a field needs
+  identified->covariance = {};
+  identified->residuals.clear();
+  identified->adjustment = nullptr;
+  Tool tool;
+  if (const auto index = result.machine.tool_index(tool_name)) tool = result.machine.tools[*index];
+  ProgramErrors errors{.machine = result.machine,
+                       .field =
+                           [identified, tool, conditions](const Eigen::Vector3d& tool_offset) {
+                             Tool at = tool;
+                             at.offset = tool_offset;
+                             return displacement_field(*identified, at, conditions);
+                           },
+                       .measured = MeasuredTravel(result),
+                       .pieces = {}};
   for (const FunctionGroup& group : result.layout.groups) {
     if (!is_rotary(group.axis)) add_pieces(*group.basis, errors.pieces[index_of(group.axis)]);
+  }
+  const MachineEffects effects(result, tool, conditions);
+  for (const AxisName axis : linear_axes_of(result.machine)) {
+    auto& ends = errors.pieces[index_of(axis)];
+    for (const double end : {errors.measured.min[index_of(axis)], errors.measured.max[index_of(axis)]}) {
+      if (std::isfinite(end)) ends.push_back(end);
+    }
+    EffectIntervals(effects, result.machine).refine(axis, ends);
   }
   for (auto& ends : errors.pieces) {
     std::ranges::sort(ends);
@@ -59,7 +152,7 @@ void turn_directions(const Eigen::Vector3d& motion, ApproachDirection& direction
   }
 }
 
-CommandSolver::CommandSolver(const Machine& machine, ErrorField errors)
+CommandSolver::CommandSolver(const Machine& machine, DisplacementField errors)
     : errors_(std::move(errors)), movable_(movable_directions(machine)) {}
 
 Eigen::Vector3d CommandSolver::error(const Eigen::Vector3d& position,

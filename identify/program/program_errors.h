@@ -8,22 +8,24 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/program/nc_state.h"
-#include "volcal/identify/tables/error_field.h"
 
 namespace volcal {
 
 struct ProgramErrors {
   Machine machine;
   /// Field of a functional point, m from the spindle reference.
-  std::function<ErrorField(const Eigen::Vector3d& tool_offset)> field;
+  std::function<DisplacementField(const Eigen::Vector3d& tool_offset)> field;
+  MeasuredTravel measured;  ///< beyond it errors are held
   /// Ends of the intervals of each axis on which the errors are smooth and a polynomial of degree 4 follows
   /// them; ascending.
   std::array<std::vector<double>, 3> pieces;
 };
 
-/// Of a result: error motions, squareness and reversal of the linear axes; rotary axes stand at 0.
-ProgramErrors program_errors(const FitResult& result);
+/// Of a result at stated conditions, effects of the machine included; rotary axes stand at 0. `tool`: for
+/// effects that belong to one tool; the machine's by this name, or none.
+ProgramErrors program_errors(const FitResult& result, const std::string& tool, const Conditions& conditions);
 
 /// Where the functional point is.
 struct FunctionalPoint {
@@ -44,7 +46,7 @@ void turn_directions(const Eigen::Vector3d& motion, ApproachDirection& direction
 class CommandSolver {
  public:
   /// Corrections along axes that the machine lacks are left out.
-  CommandSolver(const Machine& machine, ErrorField errors);
+  CommandSolver(const Machine& machine, DisplacementField errors);
 
   Eigen::Vector3d error(const Eigen::Vector3d& position, const ApproachDirection& directions) const;
   /// `steepness`: bound of the change of the error per m of motion, L. Iteration then ends at a step of
@@ -55,7 +57,7 @@ class CommandSolver {
   Eigen::Vector3d command(const Eigen::Vector3d& position, const ApproachDirection& directions);
 
  private:
-  ErrorField errors_;
+  DisplacementField errors_;
   Eigen::Vector3d movable_;
   Eigen::Vector3d last_correction_ = Eigen::Vector3d::Zero();
   double last_step_ = 1e-9;  ///< m

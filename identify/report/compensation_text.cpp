@@ -37,6 +37,8 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
   volume.add_row(figures("before", check.before));
   volume.add_row(figures("ideal " + type.name(), check.ideal));
   volume.add_row(figures("tables read back", check.exported));
+  if (check.over_conditions)
+    volume.add_row(figures("tables, ends of the campaign's conditions", *check.over_conditions));
   TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});
   for (const PartLeft& part : check.parts) {
     parts.add_row({CompensationType(part.part).name(), fixed_number(part.before.rms / kMicro, 2),
@@ -49,6 +51,7 @@ nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
   nlohmann::ordered_json json = {{"before", left_json(check.before)},
                                  {"ideal", left_json(check.ideal)},
                                  {"tables", left_json(check.exported)}};
+  if (check.over_conditions) json["tables_over_conditions"] = left_json(*check.over_conditions);
   for (const PartLeft& part : check.parts) {
     json["by_type"][CompensationType(part.part).name()] = {{"before", left_json(part.before)},
                                                            {"tables", left_json(part.exported)}};

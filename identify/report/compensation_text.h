@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "volcal/identify/tables/volume_check.h"
+#include "volcal/identify/compensation/volume_check.h"
 
 namespace volcal {
 

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/report/text_tables.h"
-#include "volcal/identify/tables/compensation.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

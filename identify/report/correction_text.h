@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/tables/compensation_tables.h"
+#include "volcal/identify/compensation/compensation_tables.h"
 
 namespace volcal {
 

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/residual_sample.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/stats/channels.h"
-#include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
 namespace {

@@ -47,6 +47,11 @@ std::string program_summary_text(const NcRewriteSummary& summary) {
   if (summary.clamped > 0)
     text += fmt::format("! {} rapids end at the limit of the travel: their correction would leave it\n",
                         count_number(summary.clamped));
+  if (summary.beyond_readings > 0)
+    text += fmt::format(
+        "! {} motions, the first in line {}, end beyond the measured positions: the last measured error is "
+        "held\n",
+        count_number(summary.beyond_readings), count_number(summary.first_beyond));
   return text;
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/stats/remaining_error.h"
 #include "volcal/identify/stats/volumetric.h"
-#include "volcal/identify/tables/error_tables.h"
 
 namespace volcal::report {
 namespace {
@@ -45,18 +45,17 @@ std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   std::vector<ToolVolume> volumes;
   for (const Tool& tool : result.machine.tools) {
+    const ErrorField field(result, tool);
     ToolVolume& volume = volumes.emplace_back();
     volume.tool = tool.name;
     Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(positions.size()), result.layout.size);
     std::vector<Eigen::Vector3d> errors;
     for (const AxisPosition& position : positions) {
       const Eigen::Vector3d point_w = chain.nominal_point_w(position, tool.offset);
-      rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) =
-          volumetric_error_rows(result, position, tool).topRows<3>();
-      errors.emplace_back(rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) *
-                          result.parameters);
+      rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) = field.rows(position).topRows<3>();
+      errors.emplace_back(field.at(position).head<3>());
       volume.point_w.push_back(point_w);
-      volume.extrapolated.push_back(is_extrapolated(result, position));
+      volume.extrapolated.push_back(field.measured().is_beyond(position));
       if (is_corner(result.machine, position)) volume.corner_w.push_back(point_w);
     }
     volume.error_w = without_rigid_motion(volume.point_w, errors);

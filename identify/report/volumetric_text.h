@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/errors/error_tables.h"
 
 namespace volcal {
 

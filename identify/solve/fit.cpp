@@ -367,6 +367,7 @@ class Identification {
     complete_observability(campaign_, result_);
     result_.identified = identified_model(spec_, model_.layout(), parameters_);
     summarise_temperature(campaign_, result_);
+    result_.conditions = recorded_conditions(campaign_);
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
       result_.messages.emplace_back(
           "robust loss: readings are taken as independent; wander and offsets of lines were not looked for");

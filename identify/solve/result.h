@@ -104,6 +104,20 @@ struct FunctionSummary {
   double measured_max = 0.0;
 };
 
+/// Range and mean of what was recorded beside the readings.
+struct RecordedRange {
+  double min = 0.0;
+  double mean = 0.0;
+  double max = 0.0;
+};
+
+/// Conditions under which the campaign was measured, as far as its files record them.
+struct RecordedConditions {
+  std::map<std::string, RecordedRange> temperature_degC;  ///< by channel
+  std::optional<RecordedRange> time;                      ///< s, campaign clock
+  std::optional<RecordedRange> feed;                      ///< m/s
+};
+
 struct Timing {
   std::string stage;
   double seconds = 0.0;
@@ -122,6 +136,7 @@ struct FitResult {
   Eigen::MatrixXd covariance;  ///< of `parameters`, SI; singular by the datum
   double reference_temperature_degC = 20.0;
   bool temperature_is_campaign_mean = false;
+  RecordedConditions conditions;
   std::string active_compensations;  ///< while the campaign was measured, in words; empty = not stated
   std::string alignment;             ///< frame that it was turned to (alignment.h); empty = the fit's own
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/description/units.h"
@@ -97,10 +98,57 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
   return identified;
 }
 
+namespace {
+
+/// Range and mean of values that come column by column.
+class RangeOfColumns {
+ public:
+  void add(const std::vector<double>& column) {
+    for (const double value : column) {
+      min_ = std::min(min_, value);
+      max_ = std::max(max_, value);
+      sum_ += value;
+    }
+    count_ += column.size();
+  }
+  std::optional<RecordedRange> range() const {
+    if (count_ == 0) return std::nullopt;
+    return RecordedRange{min_, sum_ / static_cast<double>(count_), max_};
+  }
+
+ private:
+  double min_ = std::numeric_limits<double>::infinity();
+  double max_ = -std::numeric_limits<double>::infinity();
+  double sum_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+RecordedConditions recorded_conditions(const Campaign& campaign) {
+  RangeOfColumns time, feed;
+  std::map<std::string, RangeOfColumns> temperature;
+  for (const Setup& setup : campaign.setups) {
+    time.add(setup.readings.time);
+    feed.add(setup.readings.feed);
+    for (const auto& [channel, values] : setup.readings.temperature) temperature[channel].add(values);
+  }
+  RecordedConditions conditions;
+  conditions.time = time.range();
+  conditions.feed = feed.range();
+  for (const auto& [channel, columns] : temperature) {
+    if (const auto range = columns.range()) conditions.temperature_degC[channel] = *range;
+  }
+  return conditions;
+}
+
 void summarise_temperature(const Campaign& campaign, FitResult& result) {
   const bool expands =
       std::ranges::any_of(campaign.machine.axes, [](const Axis& a) { return a.expansion.has_value(); });
-  if (expands) return;
+  const bool expands_by_effect = std::ranges::any_of(result.identified.effects, [](const EffectSpec& effect) {
+    return effect.options.text("axis").has_value() && effect.options.text("temperature").has_value();
+  });
+  if (expands || expands_by_effect) return;
   double sum = 0.0;
   std::size_t count = 0;
   for (const Setup& setup : campaign.setups) {

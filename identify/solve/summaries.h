@@ -28,6 +28,9 @@ void complete_observability(const Campaign& campaign, FitResult& result);
 ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
                            const Eigen::VectorXd& parameters);
 
+/// Ranges of temperatures, time and feed that the readings were recorded with.
+RecordedConditions recorded_conditions(const Campaign& campaign);
+
 /// Sets the temperature that the result's functions hold for.
 void summarise_temperature(const Campaign& campaign, FitResult& result);
 

@@ -157,7 +157,7 @@ std::optional<Eigen::VectorXd> recorded(const SetupView& view, const std::string
   }
   if (name == "t") {
     if (readings.time.empty()) return std::nullopt;
-    return times(view).array() - time_span(view.campaign).first;
+    return times(view).array() - clock_start(view);
   }
   if (name == "feed") {
     if (readings.feed.empty()) return std::nullopt;
@@ -229,7 +229,9 @@ class CustomFormula {
   /// Throws InputError where the expression is not finite.
   Eigen::VectorXd values(const SetupView& view, const Eigen::VectorXd& shape) const {
     const auto rows = static_cast<Eigen::Index>(view.rows());
-    if (!acts_on(view.campaign, view.setup) || !all_recorded(view.setup)) return Eigen::VectorXd::Zero(rows);
+    const bool measured = view.length.size() == rows || !expression_.uses("length");
+    if (!acts_on(view.campaign, view.setup) || !all_recorded(view.setup) || !measured)
+      return Eigen::VectorXd::Zero(rows);
     const auto& names = expression_.variables();
     Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(names.size()));
     for (std::size_t k = 0; k < names.size(); ++k) {

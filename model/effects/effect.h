@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,10 @@ struct SetupView {
   const Campaign& campaign;
   const Setup& setup;
   std::vector<Eigen::Vector3d> nominal_point_w;  ///< per row, m
-  Eigen::VectorXd length;                        ///< per row, m: length that scales the noise of channel 0
+  Eigen::VectorXd
+      length;  ///< per row, m: length that scales the noise of channel 0; empty: nothing is measured
+  /// s, time of the first reading, from which growth and drift count; absent: of `campaign`.
+  std::optional<double> clock_start = {};
 
   std::size_t rows() const { return setup.readings.size(); }
 };

@@ -151,6 +151,10 @@ bool has_time(const Campaign& campaign) {
   return last > first;
 }
 
+double clock_start(const SetupView& view) {
+  return view.clock_start ? *view.clock_start : time_span(view.campaign).first;
+}
+
 void check_axis(const Campaign& campaign, AxisName axis, const std::string& what, const SourcePlace& place) {
   if (campaign.machine.has_axis(axis)) return;
   throw InputError(

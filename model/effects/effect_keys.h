@@ -56,6 +56,9 @@ bool has_time(const Campaign& campaign);
 /// First and last time, s; 0, 0 without times.
 std::pair<double, double> time_span(const Campaign& campaign);
 
+/// s, from which growth and drift of a setup's readings count.
+double clock_start(const SetupView& view);
+
 void check_axis(const Campaign& campaign, AxisName axis, const std::string& what, const SourcePlace& place);
 void check_channel(const Campaign& campaign, const std::string& channel, const SourcePlace& place);
 void check_time(const Campaign& campaign, const std::string& what, const SourcePlace& place);

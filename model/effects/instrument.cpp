@@ -98,7 +98,7 @@ std::unique_ptr<FormulaEffect> make_station_drift(const EffectTable& table) {
       vector_amplitudes(table, label, TargetKind::Station, "um_per_h"),
       [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         if (station_of(view.setup) != station) return constant(view, 0.0).replicate(1, 3);
-        const double start = time_span(view.campaign).first;
+        const double start = clock_start(view);
         return (times(view, start).array() - start).matrix().replicate(1, 3);
       },
       [station, label](const Campaign& campaign, const SourcePlace& place) {

@@ -17,7 +17,7 @@ std::string linear_axis_text(AxisName axis) { return std::string(1, letter_of(ax
 
 /// 1 - exp(-(t - start)/tau) from the campaign's first reading on.
 Eigen::ArrayXd growth(const SetupView& view, double time_constant) {
-  const double start = time_span(view.campaign).first;
+  const double start = clock_start(view);
   return 1.0 - (-(times(view, start).array() - start) / time_constant).exp();
 }
 
@@ -182,7 +182,7 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
                                     .guess = table.number("amplitude", 0.0)}},
       [axis, sign = motion.sign, channel](const SetupView& view,
                                           const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        const double start = time_span(view.campaign).first;
+        const double start = clock_start(view);
         const Eigen::ArrayXd driver = channel.empty() ? Eigen::ArrayXd(times(view, start).array() - start)
                                                       : temperature_excess(view, channel).array();
         const Eigen::Map<const Eigen::ArrayXd> position(view.setup.readings.position[index_of(axis)].data(),

@@ -114,9 +114,12 @@ PoseErrors<double> pose_errors(const ParameterLayout& layout, const AxisPosition
 
 /// First-order error of the functional point at a commanded position and tool, by parameters: linear map with
 /// one row per component (ex, ey, ez in m, ea, eb, ec in rad) and one column per parameter of `layout`.
+/// `measured`: where the error functions are taken; other than `position` where they are held beyond the
+/// readings.
 Eigen::Matrix<double, 6, Eigen::Dynamic> pose_error_rows(const KinematicChain& chain,
                                                          const ParameterLayout& layout,
                                                          const AxisPosition& position,
-                                                         const Eigen::Vector3d& tool_offset);
+                                                         const Eigen::Vector3d& tool_offset,
+                                                         const AxisPosition& measured);
 
 }  // namespace volcal

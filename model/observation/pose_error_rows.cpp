@@ -39,7 +39,8 @@ PoseErrors<double> pose_errors(const ParameterLayout& layout, const AxisPosition
 Eigen::Matrix<double, 6, Eigen::Dynamic> pose_error_rows(const KinematicChain& chain,
                                                          const ParameterLayout& layout,
                                                          const AxisPosition& position,
-                                                         const Eigen::Vector3d& tool_offset) {
+                                                         const Eigen::Vector3d& tool_offset,
+                                                         const AxisPosition& measured) {
   Eigen::Matrix<double, 6, Eigen::Dynamic> rows =
       Eigen::Matrix<double, 6, Eigen::Dynamic>::Zero(6, layout.size);
   JointLever levers[kAxisCount];
@@ -47,7 +48,7 @@ Eigen::Matrix<double, 6, Eigen::Dynamic> pose_error_rows(const KinematicChain& c
   double values[kMaxBasisSupport];
   for (const FunctionGroup& group : layout.groups) {
     const JointLever& lever = lever_of(levers, chain.joint_count(), group.axis);
-    const int start = group.basis->evaluate(position[index_of(group.axis)], values);
+    const int start = group.basis->evaluate(measured[index_of(group.axis)], values);
     for (int slot = 0; slot < group.count(); ++slot) {
       const Component component = group.symbols[static_cast<std::size_t>(slot)].component;
       Eigen::Matrix<double, 6, 1> column;

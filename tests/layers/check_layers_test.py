@@ -95,9 +95,9 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',
                              "numeric may not include noise")
 
-    def test_tables_in_criticism(self):
-        self.assert_rejected("identify/criticism/a.h", '#include "volcal/identify/tables/error_tables.h"',
-                             "criticism may not include tables")
+    def test_errors_in_criticism(self):
+        self.assert_rejected("identify/criticism/a.h", '#include "volcal/identify/errors/error_tables.h"',
+                             "criticism may not include errors")
 
     def test_sim_in_identify(self):
         self.assert_rejected("identify/stats/a.cpp", '#include "volcal/sim/study.h"', "stats may not include sim")

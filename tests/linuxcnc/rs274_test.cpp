@@ -276,7 +276,7 @@ TEST_P(Rs274, SeesTheSameMotionsWhenRewritten) {
   point.without_length = machine.tools[0].offset;
   NcRewriteOptions coarse;
   coarse.arc_tolerance = 5e-6;
-  const auto rewritten = testing::rewritten(text(), program_errors(result), offsets(), coarse, point);
+  const auto rewritten = testing::rewritten(text(), program_errors(result, {}, {}), offsets(), coarse, point);
   const MachineRun theirs = rs274_run(rewritten.text, offsets());
   expect_same(own_run(rewritten.text, offsets()), theirs, unit_mm());
   const MachineRun original = rs274_run(text(), offsets());

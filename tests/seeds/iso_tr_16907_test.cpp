@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/machines.h"
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/kinematics/chain.h"
 

@@ -51,8 +51,13 @@ inline FitResult result_with(const Machine& machine, const GivenErrors& given, i
     parameters.push_back(value);
   };
   for (const auto& [name, value] : given.locations) add_block(ParameterKind::Location, name, value);
-  for (const auto& [name, value] : given.reversals)
+  for (const auto& [name, value] : given.reversals) {
     add_block(ParameterKind::Effect, "reversal " + name, value);
+    EffectSpec reversal;
+    reversal.kind = "reversal";
+    reversal.options.set("symbol", name);
+    result.identified.effects.push_back(reversal);
+  }
   result.layout.size = offset();
   result.parameters = Eigen::Map<Eigen::VectorXd>(parameters.data(), offset());
   result.covariance = Eigen::MatrixXd::Zero(offset(), offset());

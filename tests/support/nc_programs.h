@@ -57,7 +57,8 @@ std::string refusal(Work work) {
 }
 
 /// A machine of 1 m travel about 0 with this error field, smooth between the ends of `pieces` (m).
-inline ProgramErrors errors_with(ErrorField field, const std::array<std::vector<double>, 3>& pieces = {}) {
+inline ProgramErrors errors_with(DisplacementField field,
+                                 const std::array<std::vector<double>, 3>& pieces = {}) {
   ProgramErrors errors;
   errors.machine = testing_support::machine_of("w X' b Y Z t");
   for (Axis& axis : errors.machine.axes) axis.travel_min = -1.0;

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "tests/support/schema_samples.h"
+#include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/io/campaign_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
@@ -24,8 +26,6 @@
 #include "volcal/identify/io/study_reader.h"
 #include "volcal/identify/montecarlo/draw_sums.h"
 #include "volcal/identify/montecarlo/state_bytes.h"
-#include "volcal/identify/tables/csv_tables.h"
-#include "volcal/identify/tables/table_format.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::testing {

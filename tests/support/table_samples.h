@@ -8,7 +8,7 @@
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
-#include "volcal/identify/tables/table_format.h"
+#include "volcal/identify/compensation/table_format.h"
 
 namespace volcal::testing {
 

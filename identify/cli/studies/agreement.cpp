@@ -4,11 +4,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
 

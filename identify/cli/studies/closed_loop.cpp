@@ -6,11 +6,11 @@
 #include <mutex>
 #include <numeric>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/datum.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"

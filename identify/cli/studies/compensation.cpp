@@ -5,12 +5,12 @@
 #include <limits>
 #include <mutex>
 
+#include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/threads.h"
-#include "volcal/identify/tables/volume_check.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/paths.h"
 #include "volcal/sim/random.h"

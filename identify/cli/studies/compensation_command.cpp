@@ -9,8 +9,8 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/compensation.h"
 #include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/report/text_tables.h"
-#include "volcal/identify/tables/table_format.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::cli {

@@ -4,8 +4,8 @@
 
 #include <map>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/numbers.h"
-#include "volcal/identify/tables/error_tables.h"
 
 namespace volcal::report {
 namespace {

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "tests/support/montecarlo_studies.h"
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
 

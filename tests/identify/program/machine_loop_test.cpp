@@ -87,7 +87,7 @@ TEST_P(MachineLoop, ErrorFallsByTwentyAndTimeStays) {
   for (const bool reversal : {false, true}) {
     const Machining job = machining(GetParam(), reversal);
     const FitResult result = testing::result_of(job.truth, 200);
-    const Loop loop = run(job, rewrite(job, program_errors(result)), kPart, real_tool(job));
+    const Loop loop = run(job, rewrite(job, program_errors(result, {}, {})), kPart, real_tool(job));
     RecordProperty("before_um", std::to_string(loop.before * 1e6));
     RecordProperty("after_um", std::to_string(loop.after * 1e6));
     EXPECT_GT(loop.before, 5e-6);
@@ -100,18 +100,18 @@ TEST_P(MachineLoop, ErrorFallsByTwentyAndTimeStays) {
 /// Each mistake must be seen: it leaves several times what the right rewriting leaves.
 TEST_P(MachineLoop, MistakesAreSeen) {
   const Machining job = machining(GetParam(), true);
-  const ProgramErrors errors = program_errors(testing::result_of(job.truth, 200));
+  const ProgramErrors errors = program_errors(testing::result_of(job.truth, 200), {}, {});
   const double right = run(job, rewrite(job, errors), kPart, real_tool(job)).after;
-  const auto left_with =
-      [&](const std::function<Eigen::Vector3d(const ErrorField&, AxisPosition, ApproachDirection)>& wrong) {
-        ProgramErrors mistaken = errors;
-        mistaken.field = [&, wrong](const Eigen::Vector3d& tool) {
-          return [field = errors.field(tool), wrong](const AxisPosition& q, const ApproachDirection& d) {
-            return wrong(field, q, d);
-          };
-        };
-        return run(job, rewrite(job, mistaken), kPart, real_tool(job)).after;
+  const auto left_with = [&](const std::function<Eigen::Vector3d(const DisplacementField&, AxisPosition,
+                                                                 ApproachDirection)>& wrong) {
+    ProgramErrors mistaken = errors;
+    mistaken.field = [&, wrong](const Eigen::Vector3d& tool) {
+      return [field = errors.field(tool), wrong](const AxisPosition& q, const ApproachDirection& d) {
+        return wrong(field, q, d);
       };
+    };
+    return run(job, rewrite(job, mistaken), kPart, real_tool(job)).after;
+  };
   const double noticeable = 3.0 * right;
   EXPECT_GT(left_with([](const auto& e, auto q, auto d) -> Eigen::Vector3d { return -e(q, d); }), noticeable)
       << "sign";
@@ -130,7 +130,7 @@ TEST_P(MachineLoop, MistakesAreSeen) {
             }),
             noticeable)
       << "work offset";
-  const ErrorField of_no_tool = errors.field(Eigen::Vector3d::Zero());
+  const DisplacementField of_no_tool = errors.field(Eigen::Vector3d::Zero());
   EXPECT_GT(left_with([&](const auto&, auto q, auto d) -> Eigen::Vector3d { return of_no_tool(q, d); }),
             noticeable)
       << "tool length";
@@ -153,7 +153,7 @@ TEST(SeedExperiment, FeaturesOf30And60Millimetres) {
   truth.set_error(*ErrorSymbol::parse("EXX"), [](double x) {
     return x < 0.03 ? -282.3e-6 * x / 0.03 : -282.3e-6 + 351.3e-6 * (x - 0.03) / 0.03;
   });
-  const ProgramErrors errors = program_errors(testing::result_of(truth, 30));
+  const ProgramErrors errors = program_errors(testing::result_of(truth, 30), {}, {});
   const std::string part = "G21 G90 F300\nG1 X30\nX60\n";
   const auto rewritten = testing::rewritten(part, errors);
   // p' = p - e(p'): beyond 30 mm the slope is 0.01171, so that p' = 30.2790 mm where p' + e(p') = 30.

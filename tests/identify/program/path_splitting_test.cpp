@@ -103,7 +103,7 @@ TEST(PathSplitting, HoldsOnRandomMachinesForRandomLines) {
         sim::random_truth(sim::reference_machines()[structure], 70 + structure, {});
     const FitResult result = testing::result_of(truth);
     const Eigen::Vector3d tool = truth.machine().tools[1].offset;
-    PathSplitter splitter(program_errors(result), tool, kTolerance);
+    PathSplitter splitter(program_errors(result, {}, {}), tool, kTolerance);
     std::size_t segments = 0;
     for (int i = 0; i < 40; ++i) {
       Eigen::Vector3d ends[2];

@@ -10,7 +10,7 @@
 
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
-#include "volcal/identify/tables/error_tables.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/transforms.h"
 

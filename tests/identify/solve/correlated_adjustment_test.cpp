@@ -10,9 +10,9 @@
 
 #include "tests/support/campaigns.h"
 #include "tests/support/noise_campaigns.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/datum.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/tables/error_tables.h"
 #include "volcal/sim/reference_machines.h"
 
 namespace volcal {

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+/// Errors of the linear axes as a program reads them: linear between rows, then the kinematic model.
+class FunctionTables {
+ public:
+  FunctionTables(const std::vector<ErrorTableRow>& rows, const TableFile& file) {
+    for (const ErrorTableRow& row : rows) {
+      const auto motion = ErrorSymbol::parse(row.symbol);
+      const auto location = LocationSymbol::parse(row.symbol);
+      if (motion && !is_rotary(motion->axis)) add(*motion, row);
+      if (location && !is_rotary(location->axis)) locations_[*location] = row.value;
+    }
+    for (auto& [symbol, table] : tables_) complete(symbol, table, file);
+  }
+
+  PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const {
+    PoseErrors<double> errors;
+    for (const auto& [symbol, table] : tables_)
+      errors.motion[index_of(symbol.axis)][index_of(symbol.component)] = table.value(position, direction);
+    for (const auto& [symbol, value] : locations_)
+      errors.location[index_of(symbol.axis)][index_of(symbol.component)] = value;
+    return errors;
+  }
+
+ private:
+  void add(ErrorSymbol symbol, const ErrorTableRow& row) {
+    AxisTable& table = tables_[symbol];
+    table.input = symbol.axis;
+    if (row.direction >= 0) {
+      table.position.push_back(row.position);
+      table.forward.push_back(row.value);
+    }
+    if (row.direction <= 0) table.backward.push_back(row.value);
+  }
+
+  static void complete(ErrorSymbol symbol, const AxisTable& table, const TableFile& file) {
+    if (table.forward.size() == table.backward.size()) return;
+    throw InputError({file.name, 0}, symbol.name() + " has not as many rows for direction 1 as for -1",
+                     "give both directions at the same positions, or direction 0 alone");
+  }
+
+  std::map<ErrorSymbol, AxisTable> tables_;
+  std::map<LocationSymbol, double> locations_;
+};
+
+std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptions& given) {
+  TableFormatOptions options = given;
+  options.functions.step = given.step;
+  std::vector<TableFile> files = result_tables(result, options);
+  files.push_back(
+      {"compensation_tables.csv", function_table_csv(error_table(result, function_options(result, options)),
+                                                     TableContent::Compensations)});
+  files.push_back(spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis,
+                                    conditions_of(result, options), TableContent::Compensations));
+  files.push_back({"metadata.csv", table_metadata_csv(result, options)});
+  return files;
+}
+
+/// From compensation_tables.csv and metadata.csv, for the tool that the latter names; zero at home approached
+/// towards +.
+CompensationTables read_csv(std::span<const TableFile> files) {
+  const TableMetadata metadata = read_table_metadata(file_named(files, "metadata.csv"));
+  const TableFile& file = file_named(files, "compensation_tables.csv");
+  const auto rows = read_function_table(file, TableContent::Compensations);
+  for (const ErrorTableRow& row : rows) {
+    if (row.axis && !metadata.machine.has_axis(*row.axis))
+      throw InputError({file.name, 0}, row.symbol + " belongs to an axis that the machine lacks",
+                       "take metadata.csv of the same run");
+  }
+  const auto tables = std::make_shared<const FunctionTables>(rows, file);
+  const KinematicChain chain(metadata.machine);
+  const Eigen::Vector3d tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
+  const Eigen::Vector3d movable = movable_directions(metadata.machine);
+  const auto error = [=](const AxisPosition& position, const ApproachDirection& direction) {
+    const AxisPosition linear = without_rotary_axes(position);
+    const ToolTwist twist = chain.first_order(linear, tool, tables->at(linear, direction));
+    return Eigen::Vector3d(twist.displacement_w.cwiseProduct(movable));
+  };
+  const Eigen::Vector3d at_home = error(home_of(metadata.machine), kTowardsPlus);
+  CompensationTables result;
+  result.terms.emplace_back(
+      [error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
+        return Eigen::Vector3d(at_home - error(position, direction));
+      });
+  return result;
+}
+
+}  // namespace
+
+const TableFormat& csv_table_format() {
+  static const TableFormat format = {
+      .name = "csv",
+      .summary =
+          "errors and compensations of every function and squareness in both directions, and on a "
+          "grid of the volume, with uncertainty and the conditions of the run; mm, um, urad",
+      .source = "volcal's own; symbols, signs and layout of ISO 230-1 and ISO/TR 16907:2015, 9.1 to 9.3",
+      .verified = "read back and evaluated by volcal with its kinematic model",
+      .supported = CompensationType::volumetric(),
+      .indivisible = true,
+      .positions_of_own = true,
+      .refusal = "its tables per error are the whole model",
+      .limits = {.both_directions = true},
+      .settings = {},
+      .write = write_csv,
+      .read = read_csv};
+  return format;
+}
+
+}  // namespace volcal

@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "volcal/identify/compensation/csv_cell.h"
+#include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::string_view kMetadataFormat = "volcal-tables-1";
+constexpr std::string_view kNotRecorded = "not recorded";
+constexpr std::array<char, 3> kCoordinates = {'x', 'y', 'z'};
+
+class MetadataWriter {
+ public:
+  void add(std::string_view key, std::string_view value) {
+    fmt::format_to(std::back_inserter(text_), "{},{}\n", csv_cell(std::string(key)),
+                   csv_cell(std::string(value)));
+  }
+  void add_number(const std::string& key, double value) {
+    add(key, std::isfinite(value) ? fmt::format("{:.12g}", value) : std::string("not available"));
+  }
+  void add_point_mm(const std::string& key, const Eigen::Vector3d& point) {
+    for (std::size_t i = 0; i < 3; ++i)
+      add_number(fmt::format("{}.{}_mm", key, kCoordinates[i]),
+                 point[static_cast<Eigen::Index>(i)] / kMetrePerMillimetre);
+  }
+  std::string text() const { return fmt::to_string(text_); }
+
+ private:
+  fmt::memory_buffer text_;
+};
+
+void add_machine(MetadataWriter& out, const Machine& machine) {
+  out.add("machine", machine.name);
+  out.add("structure", machine.structure.code);
+  out.add("datum.primary", std::string(1, letter_of(machine.datum.primary)));
+  out.add("datum.secondary", std::string(1, letter_of(machine.datum.secondary)));
+  for (const Axis& axis : machine.axes) {
+    const std::string key = fmt::format("axis.{}", letter_of(axis.name));
+    const double factor = is_rotary(axis.name) ? kRadianPerDegree : kMetrePerMillimetre;
+    const char* unit = is_rotary(axis.name) ? "deg" : "mm";
+    out.add_number(fmt::format("{}.travel_min_{}", key, unit), axis.travel_min / factor);
+    out.add_number(fmt::format("{}.travel_max_{}", key, unit), axis.travel_max / factor);
+    out.add_number(fmt::format("{}.home_{}", key, unit), axis.home / factor);
+    if (is_rotary(axis.name)) {
+      out.add_point_mm(key + ".centre", axis.centre);
+    } else {
+      out.add_point_mm(key + ".reference_point", axis.reference_point);
+    }
+  }
+  for (const Tool& tool : machine.tools) out.add_point_mm("tools." + tool.name + ".offset", tool.offset);
+}
+
+void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
+  out.add("alignment", result.alignment.empty() ? "as identified" : result.alignment);
+  std::size_t readings = 0;
+  std::string setups;
+  for (const SetupSummary& setup : result.setups) {
+    readings += setup.observations;
+    setups += fmt::format("{}{} ({}, tool {})", setups.empty() ? "" : "; ", setup.name, setup.instrument,
+                          setup.tool);
+  }
+  out.add("identification.result", options.record.run.empty() ? kNotRecorded : options.record.run);
+  out.add("identification.status", to_string(result.status));
+  out.add_number("identification.sigma0", result.sigma0);
+  out.add("identification.readings", std::to_string(readings));
+  out.add("identification.setups", setups);
+  out.add_number("coverage_factor", result.coverage_factor);
+  const Conditions conditions = conditions_of(result, options);
+  out.add_number("reference_temperature_degC", stated_reference_temperature(result, conditions));
+  out.add("reference_temperature_is",
+          result.temperature_is_campaign_mean ? "mean of the campaign" : "reduced by scale expansions");
+  for (const StatedCondition& condition : list_conditions(result, conditions)) {
+    out.add_number("conditions." + condition.name, condition.value);
+    out.add("conditions." + condition.name + ".is", condition.origin);
+  }
+}
+
+class MetadataReader {
+ public:
+  explicit MetadataReader(const TableFile& file) : file_(file) {
+    for (const CsvRow& row : csv_rows(file, "key,value")) {
+      if (!rows_.emplace(row.cells[0], row).second)
+        throw InputError(row.place, "key " + row.cells[0].substr(0, 40) + " is given twice", "delete one");
+    }
+  }
+
+  TableMetadata read() const {
+    if (text("format") != kMetadataFormat)
+      fail("format", fmt::format("write the tables again: this reader knows {}", kMetadataFormat));
+    TableMetadata metadata;
+    metadata.machine = machine();
+    metadata.tool = text("tool");
+    if (!metadata.machine.tool_index(metadata.tool)) fail("tool", "name one of the tools listed below it");
+    for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
+    return metadata;
+  }
+
+ private:
+  const CsvRow& row(const std::string& key) const {
+    const auto found = rows_.find(key);
+    if (found == rows_.end())
+      throw InputError({file_.name, 0}, "key " + key + " is missing", "write the tables again");
+    return found->second;
+  }
+  const std::string& text(const std::string& key) const { return row(key).cells[1]; }
+  double number(const std::string& key) const { return csv_number(row(key), 1, key); }
+  [[noreturn]] void fail(const std::string& key, const std::string& remedy) const {
+    throw InputError(row(key).place, key + " is \"" + text(key).substr(0, 40) + "\"", remedy);
+  }
+
+  Eigen::Vector3d point(const std::string& key) const {
+    Eigen::Vector3d result;
+    for (std::size_t i = 0; i < 3; ++i)
+      result[static_cast<Eigen::Index>(i)] =
+          number(fmt::format("{}.{}_mm", key, kCoordinates[i])) * kMetrePerMillimetre;
+    return result;
+  }
+
+  AxisName linear_axis(const std::string& key) const {
+    const std::string& letter = text(key);
+    const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
+    if (!axis || is_rotary(*axis)) fail(key, "write X, Y or Z");
+    return *axis;
+  }
+
+  Axis axis(AxisName name) const {
+    Axis axis;
+    axis.name = name;
+    const std::string key = fmt::format("axis.{}", letter_of(name));
+    const double factor = is_rotary(name) ? kRadianPerDegree : kMetrePerMillimetre;
+    const char* unit = is_rotary(name) ? "deg" : "mm";
+    const std::string travel_max = fmt::format("{}.travel_max_{}", key, unit);
+    axis.travel_min = number(fmt::format("{}.travel_min_{}", key, unit)) * factor;
+    axis.travel_max = number(travel_max) * factor;
+    axis.home = number(fmt::format("{}.home_{}", key, unit)) * factor;
+    if (axis.travel_max <= axis.travel_min) fail(travel_max, "the travel must end beyond its start");
+    (is_rotary(name) ? axis.centre : axis.reference_point) =
+        point(key + (is_rotary(name) ? ".centre" : ".reference_point"));
+    return axis;
+  }
+
+  Machine machine() const {
+    Machine machine;
+    machine.name = text("machine");
+    machine.structure = Structure::parse(text("structure"), file_.name, row("structure").place.line);
+    machine.datum = {linear_axis("datum.primary"), linear_axis("datum.secondary")};
+    if (machine.datum.primary == machine.datum.secondary)
+      fail("datum.secondary", "primary and secondary axis differ");
+    for (const Joint& joint : machine.structure.joints) machine.axes.push_back(axis(joint.axis));
+    for (const auto& [key, row] : rows_) {
+      constexpr std::string_view kPrefix = "tools.", kSuffix = ".offset.x_mm";
+      if (!key.starts_with(kPrefix) || !key.ends_with(kSuffix)) continue;
+      if (key.size() < kPrefix.size() + kSuffix.size()) continue;
+      Tool tool;
+      tool.name = key.substr(kPrefix.size(), key.size() - kPrefix.size() - kSuffix.size());
+      tool.offset = point("tools." + tool.name + ".offset");
+      machine.tools.push_back(tool);
+    }
+    return machine;
+  }
+
+  const TableFile& file_;
+  std::map<std::string, CsvRow> rows_;
+};
+
+}  // namespace
+
+std::string table_metadata_csv(const FitResult& result, const TableFormatOptions& options) {
+  MetadataWriter out;
+  out.add("key", "value");
+  out.add("format", kMetadataFormat);
+  out.add("errors", "actual minus nominal, tool relative to workpiece (ISO/TR 16907)");
+  out.add("compensations", "minus the errors, added to the command; absolute values");
+  out.add("signs", "ISO 841 and ISO 230-1");
+  out.add("compensation_type", options.type.name());
+  out.add("tool", tool_of(result.machine, options).name);
+  out.add("zero", options.functions.zero_plus ? "home approached towards +"
+                                              : "home, mean of both directions of approach");
+  const AxisPosition lines = lines_of(result.machine, options);
+  out.add_point_mm("specific_lines", {lines[0], lines[1], lines[2]});
+  add_machine(out, result.machine);
+  add_run(out, result, options);
+  for (const std::string_view key : recordable_conditions()) {
+    const auto recorded = options.record.conditions.find(std::string(key));
+    const bool known = key == "active_compensations" && !result.active_compensations.empty();
+    const std::string_view otherwise = known ? std::string_view(result.active_compensations) : kNotRecorded;
+    out.add(key, recorded == options.record.conditions.end() ? otherwise : recorded->second);
+  }
+  return out.text();
+}
+
+TableMetadata read_table_metadata(const TableFile& file) { return MetadataReader(file).read(); }
+
+}  // namespace volcal

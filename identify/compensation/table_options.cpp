@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::array<std::string_view, 6> kConditions = {
+    "machine_state", "load", "feed", "ambient_temperature", "component_temperatures", "active_compensations"};
+
+constexpr int kSuperimposedCells = 5;
+constexpr double kLostBySuperimposing = 0.2e-6;  // m
+
+template <class Names>
+std::string listed(const Names& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+const TableSetting* find_setting(std::span<const TableSetting> settings, std::string_view name) {
+  const auto found = std::ranges::find(settings, name, &TableSetting::name);
+  return found == settings.end() ? nullptr : &*found;
+}
+
+void check_settings(const TableFormat& format, const TableFormatOptions& options) {
+  for (const auto& [name, value] : options.settings) {
+    if (find_setting(format.settings, name) != nullptr) continue;
+    std::vector<std::string_view> known;
+    for (const TableSetting& setting : format.settings) known.push_back(setting.name);
+    throw InputError({}, "--set " + name + ": format " + std::string(format.name) + " has no such setting",
+                     known.empty() ? "it has none; leave --set out" : "its settings are " + listed(known));
+  }
+  for (const auto& [name, value] : options.record.conditions) {
+    if (std::ranges::find(kConditions, name) == kConditions.end())
+      throw InputError({}, "--record " + name + ": no such condition",
+                       "record one of " + listed(kConditions));
+  }
+}
+
+/// What the active tables correct must be something that the new ones hold.
+void check_active_tables(const TableFormat& format, const FitResult& result,
+                         const TableFormatOptions& options) {
+  if (!options.active) return;
+  if (format.indivisible)
+    throw InputError({},
+                     std::string(format.name) + " cannot be superimposed: its tables are one identification",
+                     "superimpose in neutral-csv or in the controller's format");
+  const CompensationTables& active = *options.active;
+  const Machine& machine = result.machine;
+  const Compensation same(machine, lines_of(machine, options), options.type,
+                          [&active](const AxisPosition& position, const ApproachDirection& direction) {
+                            return Eigen::Vector3d(-active.correction(position, direction));
+                          });
+  const Eigen::Vector3d at_home = active.correction(home_of(machine), kTowardsPlus);
+  double lost = 0.0;
+  for (const AxisPosition& position : grid_positions(machine, kSuperimposedCells)) {
+    for (const std::int8_t sign : {-1, 1}) {
+      ApproachDirection direction{};
+      direction.fill(sign);
+      lost = std::max(
+          lost, (same.correction(position, direction) - active.correction(position, direction) + at_home)
+                    .cwiseAbs()
+                    .maxCoeff());
+    }
+  }
+  if (lost > kLostBySuperimposing)
+    throw InputError({},
+                     "the active tables correct up to " + std::to_string(lost * 1e6) + " um that " +
+                         options.type.name() + " does not hold",
+                     "give --type with all that is active, L-VOL holds everything");
+}
+
+}  // namespace
+
+std::span<const std::string_view> recordable_conditions() { return kConditions; }
+
+void check_table_options(const TableFormat& format, const FitResult& result,
+                         const TableFormatOptions& options) {
+  const bool part = format.indivisible && options.type != format.supported;
+  if (part || !format.supported.contains(options.type)) {
+    throw InputError({},
+                     std::string(format.name) + " cannot compensate " + options.type.name() + ": " +
+                         std::string(format.refusal),
+                     "it can do " + format.supported.name() + "; give --type, or another --format");
+  }
+  if (linear_axes_of(result.machine).empty())
+    throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
+  check_settings(format, options);
+  tool_of(result.machine, options);
+  check_active_tables(format, result, options);
+}
+
+std::vector<TableFile> write_tables(const TableFormat& format, const FitResult& result,
+                                    const TableFormatOptions& options) {
+  check_table_options(format, result, options);
+  return format.write(result, options);
+}
+
+std::string table_setting(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                          std::string_view name) {
+  const auto given = options.settings.find(std::string(name));
+  if (given != options.settings.end()) return given->second;
+  const TableSetting* declared = find_setting(settings, name);
+  return declared == nullptr ? "" : std::string(declared->otherwise);
+}
+
+double table_setting_number(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                            std::string_view name) {
+  const TableFile option{"--set " + std::string(name), table_setting(settings, options, name)};
+  TableLines line(option);
+  line.advance();
+  return line.number(option.content, "the setting");
+}
+
+bool is_first_word(std::span<const TableSetting> settings, const TableFormatOptions& options,
+                   std::string_view name, std::string_view first, std::string_view second) {
+  const std::string given = table_setting(settings, options, name);
+  if (given == first || given == second) return given == first;
+  const std::string set = "--set " + std::string(name);
+  const std::string words = set + "=" + std::string(first) + " or " + set + "=" + std::string(second);
+  if (given.empty())
+    throw InputError({}, std::string(name) + " is not confirmed publicly and must be given",
+                     "find it out on the machine (--list says how), then give " + words);
+  throw InputError({}, set + "=" + given.substr(0, 40), "give " + words);
+}
+
+const Tool& tool_of(const Machine& machine, const TableFormatOptions& options) {
+  static const Tool kNoTool;
+  if (options.tool.empty()) return machine.tools.empty() ? kNoTool : machine.tools.front();
+  if (const auto index = machine.tool_index(options.tool)) return machine.tools[*index];
+  std::vector<std::string> names;
+  for (const Tool& tool : machine.tools) names.push_back(tool.name);
+  throw InputError({}, "--tool " + options.tool + ": the machine has no such tool",
+                   "its tools are " + listed(names));
+}
+
+Conditions conditions_of(const FitResult& result, const TableFormatOptions& options) {
+  return options.conditions ? *options.conditions : default_conditions(result);
+}
+
+namespace {
+
+Eigen::Vector3d active_correction(const TableFormatOptions& options, const AxisPosition& position,
+                                  const ApproachDirection& direction) {
+  return options.active ? options.active->correction(position, direction) : Eigen::Vector3d(0.0, 0.0, 0.0);
+}
+
+LinearDisplacements identified_displacements(const FitResult& result, const TableFormatOptions& options) {
+  return {result, tool_of(result.machine, options), conditions_of(result, options)};
+}
+
+RigidCompromise compromise_of(const FitResult& result, const TableFormatOptions& options) {
+  return {result, tool_of(result.machine, options), conditions_of(result, options)};
+}
+
+/// Of effects that couple axes the mean over the other axes stands on the specific lines, unless the user has
+/// said where these are.
+Compensation::LineField line_field(const FitResult& result, const TableFormatOptions& options) {
+  const LinearDisplacements identified = identified_displacements(result, options);
+  if (!identified.has_coupled() || options.lines) return {};
+  return [identified, options, compromise = compromise_of(result, options),
+          lines = lines_of(result.machine, options)](AxisName axis, double q, int direction) {
+    AxisPosition position = lines;
+    position[index_of(axis)] = q;
+    ApproachDirection approach{};
+    approach[index_of(axis)] = static_cast<std::int8_t>(direction);
+    return Eigen::Vector3d(identified.rigid(position, approach) + compromise.along(axis, q, direction) -
+                           active_correction(options, position, approach));
+  };
+}
+
+}  // namespace
+
+DisplacementField errors_to_correct(const FitResult& result, const TableFormatOptions& options) {
+  DisplacementField identified =
+      displacement_field(result, tool_of(result.machine, options), conditions_of(result, options));
+  if (!options.active) return identified;
+  return [identified, active = *options.active](const AxisPosition& position,
+                                                const ApproachDirection& direction) {
+    return Eigen::Vector3d(identified(position, direction) - active.correction(position, direction));
+  };
+}
+
+AxisPosition lines_of(const Machine& machine, const TableFormatOptions& options) {
+  return options.lines.value_or(middle_of_travel(machine));
+}
+
+Compensation ideal_compensation(const FitResult& result, const TableFormatOptions& options) {
+  return {result.machine, lines_of(result.machine, options), options.type, errors_to_correct(result, options),
+          line_field(result, options)};
+}
+
+Compensation sampled_compensation(const TableFormat& format, const FitResult& result,
+                                  const TableFormatOptions& options) {
+  const LinearDisplacements identified = identified_displacements(result, options);
+  if (!format.rigid || !identified.has_coupled()) return ideal_compensation(result, options);
+  const DisplacementField rigid = [identified, options, compromise = compromise_of(result, options)](
+                                      const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(identified.rigid(position, direction) + compromise.at(position, direction) -
+                           active_correction(options, position, direction));
+  };
+  return {result.machine, lines_of(result.machine, options), options.type, rigid};
+}
+
+bool is_of_two_axes(const FitResult& result, const TableFormatOptions& options) {
+  return !options.active && identified_displacements(result, options).is_of_two_axes();
+}
+
+void require_points(const TableFormat& format, const Axis& axis, std::size_t points) {
+  const auto limit = static_cast<std::size_t>(format.limits.points_per_table);
+  if (limit == 0 || points <= limit) return;
+  throw InputError({},
+                   std::string(format.name) + ": axis " + letter_of(axis.name) + " would need " +
+                       std::to_string(points) + " positions, a table holds " + std::to_string(limit),
+                   "give a larger --step");
+}
+
+}  // namespace volcal

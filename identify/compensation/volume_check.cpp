@@ -1,0 +1,237 @@
+#include "volcal/identify/compensation/volume_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kStepCells = 11;                                   // per axis, when a step is chosen
+constexpr double kCoarsestDecade = 10.0, kFinestStep = 0.99e-4;  // m
+constexpr std::size_t kMostBytes = 30'000'000;
+
+/// The error that is left where a compensation acts.
+DisplacementField corrected(const DisplacementField& errors, const CompensationTables& tables) {
+  return [errors, &tables](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(errors(position, direction) + tables.correction(position, direction));
+  };
+}
+
+DisplacementField corrected(const DisplacementField& errors, const Compensation& ideal) {
+  return [errors, &ideal](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(errors(position, direction) + ideal.correction(position, direction));
+  };
+}
+
+/// The part of a field that a type would correct.
+DisplacementField part_of(const Compensation& type) {
+  return [&type](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(-type.correction(position, direction));
+  };
+}
+
+/// Middles of `cells` equal parts of every linear axis' travel, on request with its ends.
+std::vector<AxisPosition> cell_middles(const Machine& machine, int cells, bool with_ends) {
+  std::vector<AxisPosition> positions = {AxisPosition{}};
+  for (const AxisName name : linear_axes_of(machine)) {
+    const Axis& axis = machine.axis(name);
+    std::vector<double> places;
+    if (with_ends) places = {axis.travel_min, axis.travel_max};
+    for (int i = 0; i < cells; ++i) places.push_back(axis.travel_min + axis.travel() * (i + 0.5) / cells);
+    std::vector<AxisPosition> extended;
+    for (const AxisPosition& position : positions) {
+      for (const double place : places) {
+        AxisPosition next = position;
+        next[index_of(name)] = place;
+        extended.push_back(next);
+      }
+    }
+    positions = std::move(extended);
+  }
+  return positions;
+}
+
+/// 5, 2 and 1 x 10^n up to `longest`, coarse to fine, m.
+std::vector<double> round_steps(double longest) {
+  std::vector<double> steps;
+  for (double decade = kCoarsestDecade; decade >= kFinestStep; decade /= 10.0) {
+    for (const double factor : {5.0, 2.0, 1.0}) {
+      if (factor * decade <= longest) steps.push_back(factor * decade);
+    }
+  }
+  return steps;
+}
+
+/// Largest difference of a component; home approached towards + is the zero of both.
+double largest_deviation(const Machine& machine, const Compensation& ideal, const CompensationTables& tables,
+                         bool both_directions) {
+  const auto difference = [&](const AxisPosition& position, const ApproachDirection& direction) {
+    return Eigen::Vector3d(tables.correction(position, direction) - ideal.correction(position, direction));
+  };
+  const std::vector<ApproachDirection> directions =
+      both_directions ? std::vector<ApproachDirection>{{1, 1, 1, 0, 0, 0}, {-1, -1, -1, 0, 0, 0}}
+                      : std::vector<ApproachDirection>{{}};
+  const Eigen::Vector3d zero = difference(home_of(machine), directions.front());
+  double largest = 0.0;
+  for (const AxisPosition& position : cell_middles(machine, kStepCells, false)) {
+    for (const ApproachDirection& direction : directions)
+      largest = std::max(largest, (difference(position, direction) - zero).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+std::size_t bytes_of(const std::vector<TableFile>& files) {
+  std::size_t bytes = 0;
+  for (const TableFile& file : files) bytes += file.content.size();
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis) {
+  std::vector<VolumePoint> points;
+  for (const AxisPosition& position : cell_middles(machine, cells_per_axis, true)) {
+    for (unsigned signs = 0; signs < 8; ++signs) {
+      VolumePoint point{position, {}};
+      for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
+                     const DisplacementField& errors) {
+  const Eigen::Vector3d movable = movable_directions(machine);
+  std::vector<Eigen::Vector3d> places, vectors;
+  for (const VolumePoint& point : points) {
+    places.emplace_back(point.position[0], point.position[1], point.position[2]);
+    vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
+  }
+  const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, vectors));
+  return {figures.rms, figures.max};
+}
+
+namespace {
+
+/// The stated conditions with every one that the effects depend on at its least and at its greatest.
+std::vector<Conditions> ends_of_conditions(const FitResult& result, const MachineEffects& effects,
+                                           const Conditions& stated) {
+  std::vector<Conditions> all = {stated};
+  const auto vary = [&all](const RecordedRange& range, auto&& set) {
+    if (!(range.max > range.min)) return;
+    std::vector<Conditions> more;
+    for (const Conditions& conditions : all) {
+      for (const double value : {range.min, range.max}) {
+        more.push_back(conditions);
+        set(more.back(), value);
+      }
+    }
+    all = std::move(more);
+  };
+  std::set<std::string> channels;
+  bool time = false, feed = false;
+  for (std::size_t e = 0; e < effects.effect_count(); ++e) {
+    channels.insert(effects.reach(e).temperature.begin(), effects.reach(e).temperature.end());
+    time |= effects.reach(e).time;
+    feed |= effects.reach(e).feed;
+  }
+  for (const Axis& axis : result.machine.axes) {
+    if (axis.expansion) channels.insert(axis.expansion->channel);
+  }
+  constexpr std::size_t kMostEnds = 64;
+  for (const std::string& channel : channels) {
+    const auto range = result.conditions.temperature_degC.find(channel);
+    if (range == result.conditions.temperature_degC.end() || all.size() >= kMostEnds) continue;
+    vary(range->second,
+         [&](Conditions& conditions, double value) { conditions.temperature_degC[channel] = value; });
+  }
+  if (time && result.conditions.time)
+    vary(*result.conditions.time, [](Conditions& conditions, double value) { conditions.time = value; });
+  if (feed && result.conditions.feed)
+    vary(*result.conditions.feed, [](Conditions& conditions, double value) { conditions.feed = value; });
+  return all;
+}
+
+std::optional<ErrorLeft> left_over_conditions(const FitResult& result, const TableFormatOptions& options,
+                                              const CompensationTables& tables,
+                                              const std::vector<VolumePoint>& points) {
+  const Conditions stated = conditions_of(result, options);
+  const Tool& tool = tool_of(result.machine, options);
+  const std::vector<Conditions> ends =
+      ends_of_conditions(result, MachineEffects(result, tool, stated), stated);
+  if (ends.size() < 2) return std::nullopt;
+  ErrorLeft over{0.0, 0.0};
+  for (const Conditions& conditions : ends) {
+    TableFormatOptions there = options;
+    there.conditions = conditions;
+    const ErrorLeft left =
+        error_left(result.machine, points, corrected(errors_to_correct(result, there), tables));
+    over.rms += left.rms * left.rms / static_cast<double>(ends.size());
+    over.max = std::max(over.max, left.max);
+  }
+  over.rms = std::sqrt(over.rms);
+  return over;
+}
+
+}  // namespace
+
+VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
+                            const CompensationTables& tables) {
+  const Machine& machine = result.machine;
+  const DisplacementField errors = errors_to_correct(result, options);
+  const DisplacementField measured =
+      displacement_field(result, tool_of(machine, options), conditions_of(result, options));
+  const AxisPosition lines = lines_of(machine, options);
+  const Compensation ideal(machine, lines, options.type, errors);
+  const DisplacementField exported = corrected(errors, tables);
+  const std::vector<VolumePoint> points = volume_points(machine, kVolumeCells);
+
+  VolumeCheck check;
+  check.before = error_left(machine, points, measured);
+  check.ideal = error_left(machine, points, corrected(errors, ideal));
+  check.exported = error_left(machine, points, exported);
+  for (const CompensationPart part : kCompensationParts) {
+    const Compensation of_before(machine, lines, part, measured), of_exported(machine, lines, part, exported);
+    check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
+                           error_left(machine, points, part_of(of_exported))});
+  }
+  check.over_conditions = left_over_conditions(result, options, tables, points);
+  return check;
+}
+
+StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
+                       double tolerance) {
+  if (!format.limits.sampled) return {0.0, 0.0, true};
+  const Compensation ideal = ideal_compensation(result, options);
+  double longest = 0.0;
+  for (const AxisName axis : linear_axes_of(result.machine))
+    longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());
+  StepChoice best{0.0, std::numeric_limits<double>::infinity(), false};
+  std::optional<InputError> refused;
+  for (const double step : round_steps(longest)) {
+    options.step = step;
+    try {
+      const std::vector<TableFile> files = write_tables(format, result, options);
+      if (bytes_of(files) > kMostBytes) break;
+      const double deviation =
+          largest_deviation(result.machine, ideal, format.read(files), format.limits.both_directions);
+      if (deviation < best.deviation) best = {step, deviation, false};
+      best.reached = best.deviation <= tolerance + 0.5 * format.limits.resolution;
+    } catch (const InputError& error) {  // too many points, or values out of range where it is too coarse
+      if (!refused) refused = error;
+    }
+    if (best.reached) break;
+  }
+  if (best.step == 0.0 && refused) throw InputError(*refused);
+  return best;
+}
+
+}  // namespace volcal

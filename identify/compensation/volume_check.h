@@ -1,0 +1,72 @@
+#pragma once
+/// What a compensation leaves in the volume: the machine as it is, with the ideal compensation of the type,
+/// and with the tables as written and read back by the rules of the controller.
+
+#include <optional>
+#include <vector>
+
+#include "volcal/identify/compensation/compensation.h"
+#include "volcal/identify/compensation/compensation_tables.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/stats/volumetric.h"
+
+namespace volcal {
+
+/// Cells per axis of the volume in whose middles, and at the ends of travel, errors are judged, by all
+/// approaches from + and from -.
+inline constexpr int kVolumeCells = 7;
+
+/// Errors of the functional point, m, after their best rigid motion, which a frame's alignment takes up.
+struct ErrorLeft {
+  double rms = 0.0;  ///< sqrt(mean |e|^2)
+  double max = 0.0;
+};
+
+struct PartLeft {
+  CompensationPart part = CompensationPart::Positioning;
+  ErrorLeft before;
+  ErrorLeft exported;
+};
+
+struct VolumeCheck {
+  ErrorLeft before;
+  ErrorLeft ideal;     ///< ideal compensation of the type
+  ErrorLeft exported;  ///< the tables
+  std::vector<PartLeft> parts;
+  /// The tables at the ends of the temperatures, times and feeds that the campaign recorded and the errors
+  /// depend on; none where they depend on none.
+  std::optional<ErrorLeft> over_conditions;
+};
+
+/// Middles of cells, which lie between the nodes of any table, and the ends of travel, each approached from +
+/// and - in all combinations.
+struct VolumePoint {
+  AxisPosition position{};
+  ApproachDirection direction{};
+};
+std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axis);
+
+/// Figures of a field at these points.
+ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
+                     const DisplacementField& errors);
+
+/// Errors as identified (error_field.h) in the volume of the options' tool. Where tables were active,
+/// `before` is the machine with them, as it was measured, and the new ones replace them.
+VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
+                            const CompensationTables& tables);
+
+/// Step of a table and how far its reader then is from the ideal compensation.
+struct StepChoice {
+  double step = 0.0;       ///< m
+  double deviation = 0.0;  ///< largest difference of a component in the volume, m
+  bool reached = false;    ///< deviation within the tolerance
+};
+
+/// The largest step of 1, 2 or 5 x 10^n mm whose tables, read back, follow the ideal compensation within
+/// `tolerance` (m) plus half the format's resolution, which rounding takes; where the controller's limits
+/// forbid that, the best one that they allow. A format that tells no directions apart is judged by their
+/// mean. Throws InputError when no step is allowed.
+StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
+                       double tolerance);
+
+}  // namespace volcal

@@ -1,0 +1,119 @@
+#include "volcal/identify/errors/conditions.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/observation/campaign_binding.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::string_view kAsStated = "as stated", kMeanOfCampaign = "mean of the campaign",
+                           kReferenceTemperature = "reference temperature";
+
+/// Whether the model reduces the scale of an axis by this channel: a key of the machine file, or an effect
+/// that names an axis and a temperature.
+bool knows_expansion(const FitResult& result, const std::string& channel) {
+  const auto by_machine = [&](const Axis& axis) {
+    return axis.expansion.has_value() && axis.expansion->channel == channel;
+  };
+  const auto by_effect = [&](const EffectSpec& effect) {
+    return effect.options.text("axis").has_value() && effect.options.text("temperature") == channel;
+  };
+  return std::ranges::any_of(result.machine.axes, by_machine) ||
+         std::ranges::any_of(result.identified.effects, by_effect);
+}
+
+double number_of(const std::string& name, const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw InputError({}, "--conditions " + name + "=" + text + " is no number", "write " + name + "=23.3");
+  return value;
+}
+
+std::string recorded_names(const FitResult& result) {
+  std::string names;
+  const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+  for (const auto& [channel, range] : result.conditions.temperature_degC) add("T_" + channel);
+  if (result.conditions.time) add("time_s");
+  if (result.conditions.feed) add("feed_mm_min");
+  return names.empty() ? "its campaign recorded none" : "its campaign recorded " + names;
+}
+
+void require_plausible(const std::string& name, double value, double least, double most) {
+  if (value >= least && value <= most) return;
+  throw InputError({}, "--conditions " + name + " is not plausible",
+                   "give a value between " + std::to_string(static_cast<long>(least)) + " and " +
+                       std::to_string(static_cast<long>(most)));
+}
+
+std::string channel_named(const FitResult& result, const std::string& name) {
+  std::string channel = name.substr(2);
+  if (channel.ends_with("_degC")) channel.resize(channel.size() - 5);
+  return result.conditions.temperature_degC.contains(channel) ? channel : std::string();
+}
+
+}  // namespace
+
+Conditions default_conditions(const FitResult& result) {
+  Conditions conditions;
+  for (const auto& [channel, range] : result.conditions.temperature_degC)
+    conditions.temperature_degC[channel] =
+        knows_expansion(result, channel) ? kReferenceTemperature_degC : range.mean;
+  if (result.conditions.time) conditions.time = result.conditions.time->mean;
+  if (result.conditions.feed) conditions.feed = result.conditions.feed->mean;
+  return conditions;
+}
+
+Conditions stated_conditions(const FitResult& result, const std::map<std::string, std::string>& given) {
+  Conditions conditions = default_conditions(result);
+  for (const auto& [name, text] : given) {
+    const double value = number_of(name, text);
+    if (name.starts_with("T_") && !channel_named(result, name).empty()) {
+      require_plausible(name, value, -80.0, 200.0);
+      conditions.temperature_degC[channel_named(result, name)] = value;
+    } else if (name == "time_s" && conditions.time) {
+      require_plausible(name, value, -1e9, 1e9);
+      conditions.time = value;
+    } else if (name == "feed_mm_min" && conditions.feed) {
+      require_plausible(name, value, 0.0, 1e6);
+      conditions.feed = value * unit_of_key("feed_mm_min").si_per_unit;
+    } else {
+      throw InputError({}, "--conditions " + name + ": the result does not know this condition",
+                       recorded_names(result));
+    }
+  }
+  return conditions;
+}
+
+double stated_reference_temperature(const FitResult& result, const Conditions& conditions) {
+  for (const auto& [channel, value] : conditions.temperature_degC) {
+    if (knows_expansion(result, channel)) return value;
+  }
+  return result.reference_temperature_degC;
+}
+
+std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions) {
+  const Conditions usual = default_conditions(result);
+  std::vector<StatedCondition> list;
+  for (const auto& [channel, value] : conditions.temperature_degC) {
+    const auto otherwise = usual.temperature_degC.find(channel);
+    const bool stated = otherwise == usual.temperature_degC.end() || otherwise->second != value;
+    list.push_back({"T_" + channel + "_degC", value,
+                    stated                             ? kAsStated
+                    : knows_expansion(result, channel) ? kReferenceTemperature
+                                                       : kMeanOfCampaign});
+  }
+  if (conditions.time)
+    list.push_back({"time_s", *conditions.time, conditions.time == usual.time ? kMeanOfCampaign : kAsStated});
+  if (conditions.feed)
+    list.push_back({"feed_mm_min", *conditions.feed / unit_of_key("feed_mm_min").si_per_unit,
+                    conditions.feed == usual.feed ? kMeanOfCampaign : kAsStated});
+  return list;
+}
+
+}  // namespace volcal

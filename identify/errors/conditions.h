@@ -1,0 +1,41 @@
+#pragma once
+/// Conditions for which the error of a machine is stated: temperatures, time and feed, as far as its model
+/// depends on them.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+
+struct Conditions {
+  std::map<std::string, double> temperature_degC;  ///< by channel
+  std::optional<double> time;                      ///< s, campaign clock
+  std::optional<double> feed;                      ///< m/s
+};
+
+/// 20 degC for every channel whose expansion of a scale the model knows, the campaign's mean for every other;
+/// the campaign's mean time and feed where they were recorded.
+Conditions default_conditions(const FitResult& result);
+
+/// The default with NAME=VALUE of the user in place: T_<channel> (degC), time_s, feed_mm_min. Throws
+/// InputError for a name that the result's campaign did not record, and for a value that is no number.
+Conditions stated_conditions(const FitResult& result, const std::map<std::string, std::string>& given);
+
+/// The temperature that the values hold for: that of the channel by which the model knows an expansion, else
+/// the result's.
+double stated_reference_temperature(const FitResult& result, const Conditions& conditions);
+
+/// One condition as headers and JSON state it.
+struct StatedCondition {
+  std::string name;  ///< "T_column_degC", "time_s", "feed_mm_min"
+  double value = 0.0;
+  std::string_view origin;  ///< "reference temperature", "mean of the campaign", "as stated"
+};
+std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions);
+
+}  // namespace volcal

@@ -1,0 +1,476 @@
+#include "volcal/identify/errors/error_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "volcal/identify/errors/linear_axis_errors.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kEdgeOfMeasured = 1e-6;  // m or rad
+
+const JointLever& joint_lever(const JointLever* levers, std::size_t count, AxisName axis) {
+  return *std::find_if(levers, levers + count,
+                       [axis](const JointLever& lever) { return lever.axis == axis; });
+}
+
+/// Displacement and rotation of the tool per unit of an error motion.
+PoseErrorVector motion_column(const JointLever& lever, Component component) {
+  PoseErrorVector column;
+  column << KinematicChain::motion_lever_w(lever, component),
+      KinematicChain::motion_rotation_w(lever, component);
+  return column;
+}
+
+Component positioning_of(AxisName axis) { return kAllComponents[index_of(axis)]; }
+
+double temperature_excess_at(const Conditions& conditions, const std::string& channel) {
+  const auto stated = conditions.temperature_degC.find(channel);
+  return stated == conditions.temperature_degC.end() ? 0.0 : stated->second - kReferenceTemperature_degC;
+}
+
+std::string joined_words(const std::string& first, const std::string& second) {
+  return first.empty() || second.empty() ? first + second : first + " " + second;
+}
+
+}  // namespace
+
+MeasuredTravel::MeasuredTravel() {
+  min.fill(-std::numeric_limits<double>::infinity());
+  max.fill(std::numeric_limits<double>::infinity());
+}
+
+MeasuredTravel::MeasuredTravel(const FitResult& result) : MeasuredTravel() {
+  std::array<bool, kAxisCount> known{};
+  for (const FunctionSummary& function : result.functions) {
+    if (!(function.measured_min <= function.measured_max)) continue;
+    const std::size_t a = index_of(function.symbol.axis);
+    min[a] = known[a] ? std::min(min[a], function.measured_min) : function.measured_min;
+    max[a] = known[a] ? std::max(max[a], function.measured_max) : function.measured_max;
+    known[a] = true;
+  }
+}
+
+AxisPosition MeasuredTravel::held(const AxisPosition& position) const {
+  AxisPosition nearest = position;
+  for (std::size_t a = 0; a < kAxisCount; ++a) nearest[a] = std::clamp(position[a], min[a], max[a]);
+  return nearest;
+}
+
+bool MeasuredTravel::is_beyond(const AxisPosition& position) const {
+  for (std::size_t a = 0; a < kAxisCount; ++a) {
+    if (position[a] < min[a] - kEdgeOfMeasured || position[a] > max[a] + kEdgeOfMeasured) return true;
+  }
+  return false;
+}
+
+ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditions& conditions)
+    : chain_(result.machine),
+      tool_(tool),
+      layout_(result.layout),
+      parameters_(result.parameters),
+      measured_(result),
+      effects_(result, tool, conditions) {
+  for (const Axis& axis : result.machine.axes) {
+    if (!axis.expansion) continue;
+    Expansion expansion{axis.name, 0.0, temperature_excess_at(conditions, axis.expansion->channel), -1};
+    expansion.strain = axis.expansion->per_kelvin * expansion.excess;
+    const std::string name = std::string("expansion ") + letter_of(axis.name);
+    if (const ParameterBlock* block = layout_.find_block(name)) expansion.parameter = block->offset;
+    expansions_.push_back(expansion);
+  }
+  for (const Expansion& expansion : expansions_) {
+    if (expansion.parameter >= 0) condition_parameters_.push_back(expansion.parameter);
+  }
+  for (const EffectColumn& column : effects_.columns()) {
+    if (std::ranges::find(condition_parameters_, column.parameter) == condition_parameters_.end())
+      condition_parameters_.push_back(column.parameter);
+  }
+  if (const ParameterBlock* block = layout_.find_block("tool " + tool.name)) {
+    tool_parameter_ = block->offset;
+  } else {
+    stated_tool_variance_ = tool.offset_sigma * tool.offset_sigma;
+  }
+}
+
+PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirection& direction) const {
+  const AxisPosition held = measured_.held(position);
+  PoseErrors<double> errors = pose_errors(layout_, held, parameters_);
+  Vector3d offset_t = Vector3d::Zero();
+  if (tool_parameter_ >= 0) offset_t = parameters_.segment<3>(tool_parameter_);
+  for (const Expansion& expansion : expansions_) {
+    const double deviation =
+        expansion.parameter < 0 ? 0.0 : parameters_[expansion.parameter] * expansion.excess;
+    errors.motion[index_of(expansion.axis)][index_of(positioning_of(expansion.axis))] +=
+        (expansion.strain + deviation) * position[index_of(expansion.axis)];
+  }
+  if (!effects_.empty()) {
+    const Eigen::MatrixXd drivers = effects_.drivers({&held, 1}, {&direction, 1});
+    for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+      const EffectColumn& column = effects_.columns()[c];
+      const double value = parameters_[column.parameter] * drivers(0, static_cast<Eigen::Index>(c));
+      if (column.target.kind == TargetKind::ToolOffset) {
+        offset_t[column.target.component] += value;
+      } else if (column.target.kind == TargetKind::Motion) {
+        errors.motion[index_of(column.target.symbol.axis)][index_of(column.target.symbol.component)] += value;
+      }
+    }
+  }
+  const ToolTwist twist = chain_.first_order(position, tool_.offset, errors);
+  PoseErrorVector error;
+  error << twist.displacement_w, twist.rotation_tool_side_w + twist.rotation_workpiece_side_w;
+  if (!offset_t.isZero(0.0)) error.head<3>() += chain_.nominal_rotation_wt(position) * offset_t;
+  return error;
+}
+
+Eigen::Index ErrorField::place_of(int parameter) const {
+  return std::ranges::find(condition_parameters_, parameter) - condition_parameters_.begin();
+}
+
+void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition& position,
+                                    PoseErrorRows& rows) const {
+  for (const Expansion& expansion : expansions_) {
+    if (expansion.parameter < 0) continue;
+    const JointLever& lever = joint_lever(levers, chain_.joint_count(), expansion.axis);
+    rows.col(place_of(expansion.parameter)) = motion_column(lever, positioning_of(expansion.axis)) *
+                                              (expansion.excess * position[index_of(expansion.axis)]);
+  }
+}
+
+void ErrorField::add_effect_rows(const JointLever* levers, const AxisPosition& position,
+                                 const ApproachDirection& direction, PoseErrorRows& rows) const {
+  if (effects_.empty()) return;
+  const AxisPosition held = measured_.held(position);
+  const Eigen::MatrixXd drivers = effects_.drivers_and_slopes({&held, 1}, {&direction, 1});
+  const Eigen::Matrix3d rotation_wt = chain_.nominal_rotation_wt(position);
+  for (std::size_t c = 0; c < effects_.columns().size(); ++c) {
+    const EffectColumn& column = effects_.columns()[c];
+    double driver = drivers(0, static_cast<Eigen::Index>(c));
+    if (column.shape >= 0) driver *= parameters_[column.amplitude_parameter];
+    if (column.target.kind == TargetKind::ToolOffset) {
+      rows.col(place_of(column.parameter)).head<3>() += driver * rotation_wt.col(column.target.component);
+    } else if (column.target.kind == TargetKind::Motion) {
+      const JointLever& lever = joint_lever(levers, chain_.joint_count(), column.target.symbol.axis);
+      rows.col(place_of(column.parameter)) += driver * motion_column(lever, column.target.symbol.component);
+    }
+  }
+}
+
+PoseErrorRows ErrorField::condition_rows(const AxisPosition& position,
+                                         const ApproachDirection& direction) const {
+  PoseErrorRows rows = PoseErrorRows::Zero(6, static_cast<Eigen::Index>(condition_parameters_.size()));
+  if (condition_parameters_.empty()) return rows;
+  JointLever levers[kAxisCount];
+  chain_.levers(position, tool_.offset, levers);
+  add_expansion_rows(levers, position, rows);
+  add_effect_rows(levers, position, direction, rows);
+  return rows;
+}
+
+PoseErrorVector ErrorField::condition_value(const AxisPosition& position,
+                                            const ApproachDirection& direction) const {
+  PoseErrorVector error = known_expansion(position);
+  const PoseErrorRows rows = condition_rows(position, direction);
+  for (const Expansion& expansion : expansions_) {
+    if (expansion.parameter >= 0)
+      error += rows.col(place_of(expansion.parameter)) * parameters_[expansion.parameter];
+  }
+  for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+    const int parameter = effects_.columns()[c].parameter;
+    error += rows.col(place_of(parameter)) * parameters_[parameter];
+  }
+  return error;
+}
+
+PoseErrorVector ErrorField::known_expansion(const AxisPosition& position,
+                                            std::optional<AxisName> only) const {
+  PoseErrorVector error = PoseErrorVector::Zero();
+  if (expansions_.empty()) return error;
+  JointLever levers[kAxisCount];
+  chain_.levers(position, tool_.offset, levers);
+  for (const Expansion& expansion : expansions_) {
+    if (only && *only != expansion.axis) continue;
+    error += motion_column(joint_lever(levers, chain_.joint_count(), expansion.axis),
+                           positioning_of(expansion.axis)) *
+             (expansion.strain * position[index_of(expansion.axis)]);
+  }
+  return error;
+}
+
+PoseErrorRows ErrorField::rows(const AxisPosition& position, const ApproachDirection& direction) const {
+  PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, measured_.held(position));
+  if (tool_parameter_ >= 0) rows.block<3, 3>(0, tool_parameter_) = chain_.nominal_rotation_wt(position);
+  const PoseErrorRows of_conditions = condition_rows(position, direction);
+  for (std::size_t i = 0; i < condition_parameters_.size(); ++i)
+    rows.col(condition_parameters_[i]) = of_conditions.col(static_cast<Eigen::Index>(i));
+  return rows;
+}
+
+PoseErrorVector ErrorField::contribution(const Contribution& part, const AxisPosition& position,
+                                         const ApproachDirection& direction) const {
+  const PoseErrorRows all = rows(position, direction);
+  PoseErrorVector error = PoseErrorVector::Zero();
+  for (const int parameter : part.parameters) error += all.col(parameter) * parameters_[parameter];
+  if (part.kind == ContributionKind::Expansion) {
+    error += known_expansion(position, part.axis);
+  }
+  return error;
+}
+
+std::vector<Contribution> ErrorField::contributions() const {
+  std::vector<Contribution> parts;
+  for (const FunctionGroup& group : layout_.groups) {
+    for (int slot = 0; slot < group.count(); ++slot) {
+      Contribution part{ContributionKind::Function,
+                        group.symbols[static_cast<std::size_t>(slot)].name(),
+                        std::string(1, lower_letter_of(group.axis)),
+                        {},
+                        {}};
+      for (int j = 0; j < group.basis->size(); ++j) part.parameters.push_back(group.index(j, slot));
+      parts.push_back(std::move(part));
+    }
+  }
+  for (const ParameterBlock& block : layout_.blocks) {
+    if (!block.location) continue;
+    const AxisName axis = block.location->axis;
+    parts.push_back({ContributionKind::Location,
+                     block.name,
+                     is_rotary(axis) ? std::string() : std::string(1, lower_letter_of(axis)),
+                     {block.offset},
+                     {}});
+  }
+  for (const Expansion& expansion : expansions_) {
+    Contribution part{ContributionKind::Expansion,
+                      std::string("expansion ") + letter_of(expansion.axis),
+                      joined_words(std::string(1, lower_letter_of(expansion.axis)), "temperature"),
+                      {},
+                      expansion.axis};
+    if (expansion.parameter >= 0) part.parameters = {expansion.parameter};
+    parts.push_back(std::move(part));
+  }
+  for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
+    Contribution part{ContributionKind::Effect, effects_.label(e), effects_.reach(e).text(), {}, {}};
+    for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+      if (effects_.columns()[c].effect == e) part.parameters.push_back(effects_.columns()[c].parameter);
+    }
+    parts.push_back(std::move(part));
+  }
+  if (tool_parameter_ >= 0)
+    parts.push_back({ContributionKind::Tool,
+                     "tool " + tool_.name,
+                     {},
+                     {tool_parameter_, tool_parameter_ + 1, tool_parameter_ + 2},
+                     {}});
+  return parts;
+}
+
+struct LinearDisplacements::Parts {
+  KinematicChain chain;
+  Tool tool;
+  ParameterLayout layout;
+  Eigen::VectorXd parameters;
+  MeasuredTravel measured;
+  std::vector<std::pair<std::size_t, double>> strains;  ///< axis and expansion of its scale, m/m
+  MachineEffects coupled;
+  MachineEffects single;                        ///< effects of one axis; empty where `polynomials` hold them
+  std::optional<LinearAxisErrors> polynomials;  ///< in place of the chain
+
+  Vector3d of_effects(const MachineEffects& effects, const AxisPosition& position,
+                      const ApproachDirection& direction) const;
+  /// Displacements per unit of every amplitude.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> unit_columns(const MachineEffects& effects,
+                                                        const Eigen::MatrixXd& drivers, Eigen::Index row,
+                                                        const AxisPosition& position) const;
+};
+
+Eigen::Matrix<double, 3, Eigen::Dynamic> LinearDisplacements::Parts::unit_columns(
+    const MachineEffects& effects, const Eigen::MatrixXd& drivers, Eigen::Index row,
+    const AxisPosition& position) const {
+  JointLever levers[kAxisCount];
+  chain.levers(position, tool.offset, levers);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> units =
+      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, static_cast<Eigen::Index>(effects.amplitude_count()));
+  for (Eigen::Index c = 0; c < units.cols(); ++c) {
+    const EffectTarget& target = effects.columns()[static_cast<std::size_t>(c)].target;
+    if (target.kind == TargetKind::ToolOffset) {
+      units(target.component, c) = drivers(row, c);
+    } else if (target.kind == TargetKind::Motion && !is_rotary(target.symbol.axis)) {
+      units.col(c) = drivers(row, c) * KinematicChain::motion_lever_w(
+                                           joint_lever(levers, chain.joint_count(), target.symbol.axis),
+                                           target.symbol.component);
+    }
+  }
+  return units;
+}
+
+Vector3d LinearDisplacements::Parts::of_effects(const MachineEffects& effects, const AxisPosition& position,
+                                                const ApproachDirection& direction) const {
+  const AxisPosition held = measured.held(position);
+  const auto units = unit_columns(effects, effects.drivers({&held, 1}, {&direction, 1}), 0, position);
+  Vector3d displacement = Vector3d::Zero();
+  for (Eigen::Index c = 0; c < units.cols(); ++c)
+    displacement += units.col(c) * parameters[effects.columns()[static_cast<std::size_t>(c)].parameter];
+  return displacement;
+}
+
+bool is_of_own_axis(const MachineEffects& effects, std::size_t effect) {
+  for (std::size_t c = 0; c < effects.amplitude_count(); ++c) {
+    const EffectColumn& column = effects.columns()[c];
+    if (column.effect != effect) continue;
+    if (column.target.kind != TargetKind::Motion || is_rotary(column.target.symbol.axis)) return false;
+    const EffectReach& reach = effects.reach(effect);
+    for (const AxisName axis : kAllAxes) {
+      if (axis == column.target.symbol.axis) continue;
+      if (reach.position[index_of(axis)] || reach.direction[index_of(axis)]) return false;
+    }
+  }
+  return true;
+}
+
+LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& tool,
+                                         const Conditions& conditions) {
+  const MachineEffects effects(result, tool, conditions);
+  std::vector<std::size_t> single, coupled;
+  for (std::size_t e = 0; e < effects.effect_count(); ++e)
+    (is_of_own_axis(effects, e) ? single : coupled).push_back(e);
+  auto parts = std::make_shared<Parts>(Parts{KinematicChain(result.machine),
+                                             tool,
+                                             result.layout,
+                                             result.parameters,
+                                             MeasuredTravel(result),
+                                             {},
+                                             effects.subset(coupled),
+                                             effects.subset(single),
+                                             {}});
+  for (const Axis& axis : result.machine.axes) {
+    if (!axis.expansion || is_rotary(axis.name)) continue;
+    const double excess = temperature_excess_at(conditions, axis.expansion->channel);
+    double strain = axis.expansion->per_kelvin * excess;
+    if (const ParameterBlock* block =
+            result.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
+      strain += result.parameters[block->offset] * excess;
+    if (strain != 0.0) parts->strains.emplace_back(index_of(axis.name), strain);
+  }
+  parts->polynomials = LinearAxisErrors::make(result, tool.offset, parts->single);
+  if (parts->polynomials) {
+    parts->single = parts->single.subset(parts->polynomials->effects_left_out());
+  }
+  parts_ = std::move(parts);
+}
+
+Vector3d LinearDisplacements::rigid(const AxisPosition& position, const ApproachDirection& direction) const {
+  Vector3d displacement;
+  if (parts_->polynomials) {
+    displacement = parts_->polynomials->at(position, direction);
+  } else {
+    const AxisPosition linear = without_rotary_axes(position);
+    PoseErrors<double> errors =
+        pose_errors(parts_->layout, parts_->measured.held(linear), parts_->parameters);
+    for (const AxisName axis : {AxisName::A, AxisName::B, AxisName::C}) {
+      errors.motion[index_of(axis)] = {};
+      errors.location[index_of(axis)] = {};
+    }
+    displacement = parts_->chain.first_order(linear, parts_->tool.offset, errors).displacement_w;
+  }
+  for (const auto& [axis, strain] : parts_->strains)
+    displacement[static_cast<Eigen::Index>(axis)] += strain * position[axis];
+  if (!parts_->single.empty())
+    displacement += parts_->of_effects(parts_->single, without_rotary_axes(position), direction);
+  return displacement;
+}
+
+Vector3d LinearDisplacements::at(const AxisPosition& position, const ApproachDirection& direction) const {
+  Vector3d displacement = rigid(position, direction);
+  if (has_coupled())
+    displacement += parts_->of_effects(parts_->coupled, without_rotary_axes(position), direction);
+  return displacement;
+}
+
+Vector3d LinearDisplacements::coupled(const AxisPosition& position,
+                                      const ApproachDirection& direction) const {
+  return has_coupled() ? parts_->of_effects(parts_->coupled, without_rotary_axes(position), direction)
+                       : Vector3d(Vector3d::Zero());
+}
+
+std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> LinearDisplacements::coupled_units(
+    std::span<const AxisPosition> positions, std::span<const ApproachDirection> directions) const {
+  std::vector<AxisPosition> linear(positions.size()), held(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    linear[i] = without_rotary_axes(positions[i]);
+    held[i] = parts_->measured.held(linear[i]);
+  }
+  const Eigen::MatrixXd drivers = parts_->coupled.drivers(held, directions);
+  std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> units;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    units.push_back(parts_->unit_columns(parts_->coupled, drivers, static_cast<Eigen::Index>(i), linear[i]));
+  return units;
+}
+
+const MachineEffects& LinearDisplacements::coupled_effects() const { return parts_->coupled; }
+
+bool LinearDisplacements::has_coupled() const { return !parts_->coupled.empty(); }
+
+bool LinearDisplacements::is_of_two_axes() const {
+  for (const EffectColumn& column : parts_->coupled.columns()) {
+    if (parts_->coupled.reach(column.effect).positions() > 1) return false;
+  }
+  return true;
+}
+
+const MeasuredTravel& LinearDisplacements::measured() const { return parts_->measured; }
+
+DisplacementField displacement_field(const FitResult& result, const Tool& tool,
+                                     const Conditions& conditions) {
+  return [errors = LinearDisplacements(result, tool, conditions)](const AxisPosition& position,
+                                                                  const ApproachDirection& direction) {
+    return errors.at(position, direction);
+  };
+}
+
+DisplacementField plain_displacement_field(const FitResult& result, const Tool& tool,
+                                           const Conditions& conditions) {
+  FitResult linear = result;
+  for (const FunctionGroup& group : linear.layout.groups) {
+    if (is_rotary(group.axis)) linear.parameters.segment(group.offset, group.size()).setZero();
+  }
+  for (const ParameterBlock& block : linear.layout.blocks) {
+    if (block.location && is_rotary(block.location->axis)) linear.parameters[block.offset] = 0.0;
+    if (block.name == "tool " + tool.name) linear.parameters.segment(block.offset, block.size()).setZero();
+  }
+  const MachineEffects effects(result, tool, conditions);
+  for (const EffectColumn& column : effects.columns()) {
+    if (column.target.kind == TargetKind::Motion && is_rotary(column.target.symbol.axis))
+      linear.parameters[column.amplitude_parameter] = 0.0;
+  }
+  return [field = ErrorField(linear, tool, conditions)](const AxisPosition& position,
+                                                        const ApproachDirection& direction) -> Vector3d {
+    return field.at(without_rotary_axes(position), direction).head<3>();
+  };
+}
+
+void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position) {
+  for (const Axis& axis : result.machine.axes) {
+    if (!is_rotary(axis.name) || position[index_of(axis.name)] == 0.0) continue;
+    const bool function = std::ranges::any_of(
+        result.layout.groups, [&](const FunctionGroup& group) { return group.axis == axis.name; });
+    const bool location = std::ranges::any_of(result.layout.blocks, [&](const ParameterBlock& block) {
+      return block.location && block.location->axis == axis.name;
+    });
+    if (function || location) continue;
+    throw InputError({},
+                     std::string("the errors of axis ") + letter_of(axis.name) +
+                         " were not identified, and the pose turns it",
+                     std::string("leave ") + letter_of(axis.name) +
+                         " at 0, or identify its errors: name its functions and locations in the model file "
+                         "and measure with the axis in several positions");
+  }
+}
+
+}  // namespace volcal

@@ -1,0 +1,150 @@
+#pragma once
+/// The error of an identified machine at a pose: tool relative to workpiece, actual minus nominal (ISO/TR
+/// 16907:2015, 3.14), with direction of approach, tool and stated conditions. First order (chain.h), a sum of
+/// contributions: error functions, locations, expansions of scales, effects, the tool's offset. What tables,
+/// compensations, plans, Monte Carlo and reports say of the volume follows from it.
+///
+/// Beyond the positions that were measured an error function, and what an effect makes of a position, keep
+/// their last measured value.
+///
+///   const ErrorField field(result, tool, conditions);
+///   field.at(position, direction);           // ex ey ez (m), ea eb ec (rad), workpiece coordinates
+///   field.rows(position, direction);         // their derivatives to result.parameters
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/errors/conditions.h"
+#include "volcal/identify/errors/machine_effects.h"
+#include "volcal/identify/errors/pose.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+using PoseErrorVector = Eigen::Matrix<double, 6, 1>;             ///< ex ey ez, m; ea eb ec, rad
+using PoseErrorRows = Eigen::Matrix<double, 6, Eigen::Dynamic>;  ///< one column per parameter
+
+/// Range of positions with readings, by AxisName, m or rad; an axis without functions has no ends.
+struct MeasuredTravel {
+  std::array<double, kAxisCount> min;
+  std::array<double, kAxisCount> max;
+
+  MeasuredTravel();  ///< without ends
+  explicit MeasuredTravel(const FitResult& result);
+  /// The nearest position that was measured.
+  AxisPosition held(const AxisPosition& position) const;
+  /// Beyond the measured positions of an axis by more than a micrometre or a microradian.
+  bool is_beyond(const AxisPosition& position) const;
+};
+
+enum class ContributionKind { Function, Location, Expansion, Effect, Tool };
+
+/// One summand of the error.
+struct Contribution {
+  ContributionKind kind = ContributionKind::Function;
+  std::string name;              ///< "EAY", "EC0Y", "expansion X", "reversal EXX", "tool long"
+  std::string depends_on;        ///< "y", "z dir_y", "T_column x"; empty = a constant
+  std::vector<int> parameters;   ///< that it is linear in
+  std::optional<AxisName> axis;  ///< of an expansion
+};
+
+class ErrorField {
+ public:
+  ErrorField(const FitResult& result, const Tool& tool, const Conditions& conditions);
+  /// At the result's default conditions.
+  ErrorField(const FitResult& result, const Tool& tool)
+      : ErrorField(result, tool, default_conditions(result)) {}
+
+  /// By tool and direction at a commanded position. Rotary errors are in it as far as they were identified.
+  PoseErrorVector at(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// Derivatives to the parameters; errors are linear in all of them but those of an effect's shape.
+  PoseErrorRows rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// Of one contribution at a pose.
+  PoseErrorVector contribution(const Contribution& part, const AxisPosition& position,
+                               const ApproachDirection& direction = {}) const;
+  std::vector<Contribution> contributions() const;
+
+  /// Parameters of expansions and effects, and the part of rows() that belongs to them.
+  const std::vector<int>& condition_parameters() const { return condition_parameters_; }
+  PoseErrorRows condition_rows(const AxisPosition& position, const ApproachDirection& direction) const;
+  /// Share of the error by expansions and effects.
+  PoseErrorVector condition_value(const AxisPosition& position, const ApproachDirection& direction) const;
+  /// Whether there are expansions or effects.
+  bool depends_on_conditions() const { return !effects_.empty() || !expansions_.empty(); }
+  /// Share of the error that is no parameter's: known expansions of all scales, or of one axis.
+  PoseErrorVector known_expansion(const AxisPosition& position, std::optional<AxisName> only = {}) const;
+  const MachineEffects& effects() const { return effects_; }
+  const MeasuredTravel& measured() const { return measured_; }
+  /// Standard variance of the tool's offset where it is stated and was not estimated, m^2 per component.
+  double stated_tool_variance() const { return stated_tool_variance_; }
+
+ private:
+  /// Displacement along an axis by the expansion of its scale.
+  struct Expansion {
+    AxisName axis = AxisName::X;
+    double strain = 0.0;  ///< known, m/m at the stated temperature
+    double excess = 0.0;  ///< temperature less 20 degC, K
+    int parameter = -1;   ///< deviation of the coefficient, 1/K
+  };
+
+  Eigen::Index place_of(int parameter) const;
+  void add_expansion_rows(const JointLever* levers, const AxisPosition& position, PoseErrorRows& rows) const;
+  void add_effect_rows(const JointLever* levers, const AxisPosition& position,
+                       const ApproachDirection& direction, PoseErrorRows& rows) const;
+
+  KinematicChain chain_;
+  Tool tool_;
+  ParameterLayout layout_;
+  Eigen::VectorXd parameters_;
+  MeasuredTravel measured_;
+  MachineEffects effects_;
+  std::vector<Expansion> expansions_;
+  std::vector<int> condition_parameters_;
+  int tool_parameter_ = -1;
+  double stated_tool_variance_ = 0.0;
+};
+
+/// Whether an effect acts on error motions of one linear axis and its driver sees no position or direction of
+/// another: it is part of that axis' error functions.
+bool is_of_own_axis(const MachineEffects& effects, std::size_t effect);
+
+/// Displacements by the linear axes and the effects, rotary axes at 0 and without errors of theirs: what
+/// tables of linear axes correct.
+class LinearDisplacements {
+ public:
+  LinearDisplacements(const FitResult& result, const Tool& tool, const Conditions& conditions);
+
+  Eigen::Vector3d at(const AxisPosition& position, const ApproachDirection& direction) const;
+  /// What depends on one axis at a time: functions, squareness, expansions, and effects of one axis.
+  Eigen::Vector3d rigid(const AxisPosition& position, const ApproachDirection& direction) const;
+  /// What effects add that make the error motion of one axis depend on another, or move the tool.
+  Eigen::Vector3d coupled(const AxisPosition& position, const ApproachDirection& direction) const;
+  bool has_coupled() const;
+  const MachineEffects& coupled_effects() const;
+  /// Displacements per unit of every amplitude of the coupled effects, one matrix per position, m per unit.
+  std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> coupled_units(
+      std::span<const AxisPosition> positions, std::span<const ApproachDirection> directions) const;
+  /// Whether it is a sum of terms of two axes each (plane_tables.h).
+  bool is_of_two_axes() const;
+  const MeasuredTravel& measured() const;
+
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
+
+/// LinearDisplacements as a function.
+DisplacementField displacement_field(const FitResult& result, const Tool& tool, const Conditions& conditions);
+/// The same along the chain, joint by joint, at every call.
+DisplacementField plain_displacement_field(const FitResult& result, const Tool& tool,
+                                           const Conditions& conditions);
+
+/// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.
+void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position);
+
+}  // namespace volcal

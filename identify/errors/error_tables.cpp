@@ -1,0 +1,329 @@
+#include "volcal/identify/errors/error_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "volcal/identify/errors/correction_positions.h"
+#include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+namespace {
+
+/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be
+/// shorter.
+std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& options) {
+  if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
+  const int positions = options.positions;
+  std::vector<double> table;
+  if (positions >= 2) {
+    for (int i = 0; i < positions; ++i) {
+      table.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / (positions - 1));
+    }
+    return table;
+  }
+  const double edge = is_rotary(axis.name) ? 3.14159265358979323846 / 180.0 : 1e-3;
+  const double coarsest = axis.travel() / edge / 20.0;
+  const double decade = std::pow(10.0, std::floor(std::log10(coarsest)));
+  double step = decade;
+  for (const double factor : {2.0, 5.0}) {
+    if (decade * factor <= coarsest * (1.0 + 1e-9)) step = decade * factor;
+  }
+  const double first = std::ceil(axis.travel_min / edge / step - 1e-9) * step;
+  table.push_back(axis.travel_min);
+  for (int i = 0;; ++i) {
+    const double q = (first + i * step) * edge;
+    if (q >= axis.travel_max - 1e-9) break;
+    if (q > axis.travel_min + 1e-9) table.push_back(q);
+  }
+  table.push_back(axis.travel_max);
+  return table;
+}
+
+/// The tool that the share of effects is found for: the named one, or the machine's first.
+Tool tool_of_tables(const Machine& machine, const ErrorTableOptions& options) {
+  const auto index = machine.tool_index(options.tool);
+  if (index) return machine.tools[*index];
+  return machine.tools.empty() ? Tool{} : machine.tools.front();
+}
+
+/// Rows of error tables: error functions, effects by their own axis' position and direction, and the share of
+/// other effects that a rigid body can have (rigid_compromise.h), at stated conditions.
+class TableRows {
+ public:
+  TableRows(const FitResult& result, const ErrorTableOptions& options)
+      : result_(result),
+        options_(options),
+        conditions_(options.conditions ? *options.conditions : default_conditions(result)),
+        tool_(tool_of_tables(result.machine, options)),
+        measured_(result),
+        effects_(result, tool_, conditions_),
+        compromise_(result, tool_, conditions_) {
+    for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+      const EffectColumn& column = effects_.columns()[c];
+      if (is_of_own_axis(effects_, column.effect)) own_.push_back(c);
+    }
+    for (const EffectColumn& column : effects_.columns()) {
+      if (column.shape >= 0) shape_parameters_.insert(column.parameter);
+    }
+    for (const Axis& axis : result.machine.axes) {
+      if (!axis.expansion) continue;
+      const auto stated = conditions_.temperature_degC.find(axis.expansion->channel);
+      if (stated == conditions_.temperature_degC.end()) continue;
+      excess_[index_of(axis.name)] = stated->second - kReferenceTemperature_degC;
+    }
+  }
+
+  /// Whether a symbol's value differs between the directions of approach.
+  bool has_directions(ErrorSymbol symbol) const {
+    const bool own = std::ranges::any_of(own_, [&](std::size_t c) {
+      const EffectColumn& column = effects_.columns()[c];
+      return column.target.symbol == symbol && effects_.reach(column.effect).direction[index_of(symbol.axis)];
+    });
+    return own || (has_share(symbol) && coupled_direction(symbol.axis));
+  }
+
+  bool has(ErrorSymbol symbol) const {
+    const bool own = std::ranges::any_of(
+        own_, [&](std::size_t c) { return effects_.columns()[c].target.symbol == symbol; });
+    return own || result_.layout.find(symbol).has_value() || has_share(symbol) ||
+           (is_expanding(symbol) && excess_[index_of(symbol.axis)] != 0.0);
+  }
+
+  bool is_extrapolated(ErrorSymbol symbol, double q) const {
+    AxisPosition position{};
+    position.fill(std::numeric_limits<double>::quiet_NaN());
+    position[index_of(symbol.axis)] = q;
+    return measured_.is_beyond(position);
+  }
+
+  /// Derivatives of a value to the parameters. Beyond the readings those of the function there, of which the
+  /// uncertainty is stated, or, `held`, of the value that is held.
+  Eigen::VectorXd derivatives(ErrorSymbol symbol, double q, int direction, bool held) const {
+    Eigen::VectorXd row = at(symbol, q, direction, held);
+    if (options_.zero_plus && has_directions(symbol))
+      row -= at(symbol, result_.machine.axis(symbol.axis).home, 1, held);
+    return row;
+  }
+
+  /// What a value has beside its derivatives times the parameters: a known expansion, and the parameters of
+  /// shapes, in which it is not linear.
+  double constant(ErrorSymbol symbol, double q, const Eigen::VectorXd& derivatives) const {
+    double value = 0.0;
+    for (const int parameter : shape_parameters_)
+      value -= derivatives[parameter] * result_.parameters[parameter];
+    const Axis& axis = result_.machine.axis(symbol.axis);
+    if (!is_expanding(symbol) || !axis.expansion) return value;
+    return value + axis.expansion->per_kelvin * excess_[index_of(symbol.axis)] * q;
+  }
+
+ private:
+  static bool is_expanding(ErrorSymbol symbol) { return symbol.is_positioning(); }
+  bool has_share(ErrorSymbol symbol) const { return !compromise_.empty() && !is_rotary(symbol.axis); }
+  bool coupled_direction(AxisName axis) const {
+    for (std::size_t e = 0; e < effects_.effect_count(); ++e) {
+      if (!is_of_own_axis(effects_, e) && effects_.reach(e).direction[index_of(axis)]) return true;
+    }
+    return false;
+  }
+
+  Eigen::VectorXd function_row(const ParameterLayout::FunctionPlace& place, double q) const {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(result_.layout.size);
+    const FunctionGroup& group = result_.layout.groups[static_cast<std::size_t>(place.group)];
+    const Eigen::VectorXd values = group.basis->row(q);
+    for (int j = 0; j < group.basis->size(); ++j) row[group.index(j, place.slot)] = values[j];
+    return row;
+  }
+
+  Eigen::VectorXd at(ErrorSymbol symbol, double q, int direction, bool hold) const {
+    AxisPosition position{};
+    position[index_of(symbol.axis)] = q;
+    const AxisPosition held = measured_.held(position);
+    const bool at_home = q == result_.machine.axis(symbol.axis).home;  // where the datum makes it zero
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(result_.layout.size);
+    if (const auto place = result_.layout.find(symbol); place && !at_home)
+      row = function_row(*place, hold ? held[index_of(symbol.axis)] : q);
+    if (!own_.empty()) add_own_effects(symbol, held, direction, row);
+    if (has_share(symbol)) {
+      const PoseErrorRows shares = compromise_.motions(symbol.axis, q, direction);
+      const std::vector<int> parameters = compromise_.parameters();
+      for (std::size_t c = 0; c < parameters.size(); ++c)
+        row[parameters[c]] +=
+            shares(static_cast<Eigen::Index>(index_of(symbol.component)), static_cast<Eigen::Index>(c));
+    }
+    const ParameterBlock* expansion =
+        result_.layout.find_block(std::string("expansion ") + letter_of(symbol.axis));
+    if (is_expanding(symbol) && expansion != nullptr)
+      row[expansion->offset] += excess_[index_of(symbol.axis)] * q;
+    return row;
+  }
+
+  void add_own_effects(ErrorSymbol symbol, const AxisPosition& held, int direction,
+                       Eigen::VectorXd& row) const {
+    ApproachDirection approach{};
+    approach[index_of(symbol.axis)] = static_cast<std::int8_t>(direction);
+    const Eigen::MatrixXd drivers = effects_.drivers_and_slopes({&held, 1}, {&approach, 1});
+    for (std::size_t c = 0; c < effects_.columns().size(); ++c) {
+      const EffectColumn& column = effects_.columns()[c];
+      if (!(column.target.kind == TargetKind::Motion && column.target.symbol == symbol) ||
+          !is_of_own_axis(effects_, column.effect))
+        continue;
+      const double amplitude = column.shape < 0 ? 1.0 : result_.parameters[column.amplitude_parameter];
+      row[column.parameter] += amplitude * drivers(0, static_cast<Eigen::Index>(c));
+    }
+  }
+
+  const FitResult& result_;
+  const ErrorTableOptions& options_;
+  Conditions conditions_;
+  Tool tool_;
+  MeasuredTravel measured_;
+  MachineEffects effects_;
+  RigidCompromise compromise_;
+  std::vector<std::size_t> own_;  ///< columns of effects by their own axis alone
+  std::set<int> shape_parameters_;
+  std::array<double, kAxisCount> excess_{};  ///< temperature of the scale less 20 degC, K
+};
+
+/// Calls visit(row without its uncertainty, derivatives to the parameters) for every row of the table.
+template <class Visit>
+void for_each_table_row(const FitResult& result, const ErrorTableOptions& options, const Visit& visit) {
+  const TableRows rows(result, options);
+  for (const Axis& axis : result.machine.axes) {
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      if (!rows.has(symbol)) continue;
+      for (const int direction :
+           rows.has_directions(symbol) ? std::vector<int>{1, -1} : std::vector<int>{0}) {
+        for (const double q : table_positions(axis, options)) {
+          ErrorTableRow place;
+          place.symbol = symbol.name();
+          place.axis = axis.name;
+          place.position = q;
+          place.direction = direction;
+          place.rotation = is_rotation(component);
+          place.extrapolated = rows.is_extrapolated(symbol, q);
+          const Eigen::VectorXd held = rows.derivatives(symbol, q, direction, true);
+          place.value = held.dot(result.parameters) + rows.constant(symbol, q, held);
+          visit(place, place.extrapolated ? rows.derivatives(symbol, q, direction, false) : held);
+        }
+      }
+    }
+  }
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (!block.location) continue;
+    ErrorTableRow place;
+    place.symbol = block.name;
+    place.rotation = is_rotation(block.location->component);
+    place.value = result.parameters[block.offset];
+    visit(place, Eigen::VectorXd(Eigen::VectorXd::Unit(result.layout.size, block.offset)));
+  }
+}
+
+/// Variances of a pose where error functions are not held beyond the readings.
+PoseErrorVector unheld_variance(const FitResult& result, const AxisPosition& position, const Tool& tool) {
+  const KinematicChain chain(result.machine);
+  const PoseErrorRows rows = pose_error_rows(chain, result.layout, position, tool.offset, position);
+  return (rows * result.covariance).cwiseProduct(rows).rowwise().sum();
+}
+
+}  // namespace
+
+std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options) {
+  std::vector<ErrorTableRow> table;
+  for_each_table_row(result, options, [&](ErrorTableRow row, const Eigen::VectorXd& derivatives) {
+    row.u = std::sqrt(std::max(0.0, derivatives.dot(result.covariance * derivatives)));
+    row.U95 = result.coverage_factor * row.u;
+    table.push_back(row);
+  });
+  return table;
+}
+
+Eigen::MatrixXd error_table_derivatives(const FitResult& result, const ErrorTableOptions& options) {
+  std::vector<Eigen::VectorXd> rows;
+  for_each_table_row(result, options,
+                     [&](const ErrorTableRow&, const Eigen::VectorXd& row) { rows.push_back(row); });
+  Eigen::MatrixXd derivatives(static_cast<Eigen::Index>(rows.size()), result.layout.size);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    derivatives.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  return derivatives;
+}
+
+VolumetricError volumetric_error(const FitResult& result, const ErrorField& field,
+                                 const AxisPosition& position, const Tool& tool,
+                                 const ApproachDirection& direction) {
+  VolumetricError error;
+  error.position = position;
+  error.tool = tool.name;
+  const PoseErrorRows rows = field.rows(position, direction);
+  error.value = field.at(position, direction);
+  error.extrapolated = field.measured().is_beyond(position);
+  PoseErrorVector variance = (rows * result.covariance).cwiseProduct(rows).rowwise().sum();
+  if (error.extrapolated) variance = variance.cwiseMax(unheld_variance(result, position, tool));
+  variance.head<3>().array() += field.stated_tool_variance();
+  error.u = variance.cwiseMax(0.0).cwiseSqrt();
+  return error;
+}
+
+PoseErrorRows volumetric_error_rows(const FitResult& result, const AxisPosition& position, const Tool& tool) {
+  return ErrorField(result, tool).rows(position);
+}
+
+VolumetricError volumetric_error(const FitResult& result, const AxisPosition& position, const Tool& tool) {
+  return volumetric_error(result, ErrorField(result, tool), position, tool);
+}
+
+std::vector<AxisPosition> grid_positions(const Machine& machine, int per_axis) {
+  return axis_grid(machine, per_axis).positions();
+}
+
+namespace {
+
+void for_each_plane_of_tool(const FitResult& result, const Tool& tool, const AxisGrid& axes,
+                            const Conditions& conditions,
+                            const std::function<void(std::span<const VolumetricError>)>& use) {
+  const ErrorGrid errors(result, tool, axes, conditions);
+  const MeasuredTravel measured(result);
+  const double of_tool = ErrorField(result, tool, conditions).stated_tool_variance();
+  AxisGrid plane = axes;
+  std::vector<VolumetricError> nodes;
+  errors.for_each_plane([&](std::size_t first, std::span<const NodeError> of_plane) {
+    plane.nodes[0] = {axes.nodes[0][first]};
+    const std::vector<AxisPosition> positions = plane.positions();
+    nodes.resize(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      VolumetricError& error = nodes[i];
+      error.position = positions[i];
+      error.tool = tool.name;
+      error.value = of_plane[i].value;
+      error.extrapolated = measured.is_beyond(positions[i]);
+      PoseErrorVector variance = of_plane[i].variance;
+      if (error.extrapolated) variance = variance.cwiseMax(unheld_variance(result, positions[i], tool));
+      variance.head<3>().array() += of_tool;
+      error.u = variance.cwiseMax(0.0).cwiseSqrt();
+    }
+    use(nodes);
+  });
+}
+
+}  // namespace
+
+void for_each_plane_of_grid(const FitResult& result, int per_axis, const Conditions& conditions,
+                            const std::function<void(std::span<const VolumetricError>)>& use) {
+  const AxisGrid axes = axis_grid(result.machine, per_axis);
+  for (const Tool& tool : result.machine.tools) for_each_plane_of_tool(result, tool, axes, conditions, use);
+}
+
+std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_axis,
+                                             const Conditions& conditions) {
+  std::vector<VolumetricError> grid;
+  for_each_plane_of_grid(result, per_axis, conditions, [&grid](std::span<const VolumetricError> nodes) {
+    grid.insert(grid.end(), nodes.begin(), nodes.end());
+  });
+  return grid;
+}
+
+}  // namespace volcal

@@ -1,0 +1,417 @@
+// The error at a pose, whoever asks for it: the measurement model on probed points, the field, its
+// derivatives, its contributions, grids, tables and compensations, with every registered effect.
+
+#include "volcal/identify/errors/error_field.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/support/effect_campaign.h"
+#include "tests/support/random_matrix.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/identify/program/program_errors.h"
+#include "volcal/identify/solve/summaries.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+namespace {
+
+using Eigen::Vector3d;
+using testing_support::effect_campaign;
+using testing_support::uniform;
+
+constexpr double kSame = 1e-12;  // m or rad
+
+Conditions conditions_somewhere() {
+  Conditions conditions;
+  conditions.temperature_degC = {{"air", 21.3}, {"spindle", 23.9}};
+  conditions.time = 4321.0;
+  conditions.feed = 0.012;
+  return conditions;
+}
+
+/// Points probed under constant conditions, behind the readings that the result was identified from.
+Setup probed_points(const Machine& machine, std::size_t tool, const std::vector<AxisPosition>& positions,
+                    const std::vector<ApproachDirection>& directions, const Conditions& conditions) {
+  Setup setup;
+  setup.name = "probed";
+  setup.instrument = "volumetric-points";
+  setup.tool = tool;
+  setup.options.set("alignment", std::string("none"));
+  setup.noise.set("constant", 1e-6);
+  setup.has_noise = true;
+  Readings& readings = setup.readings;
+  for (const Axis& axis : machine.axes) {
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      readings.position[index_of(axis.name)].push_back(positions[i][index_of(axis.name)]);
+      readings.direction[index_of(axis.name)].push_back(directions[i][index_of(axis.name)]);
+    }
+  }
+  readings.time.assign(positions.size(), *conditions.time);
+  readings.feed.assign(positions.size(), *conditions.feed);
+  for (const auto& [channel, value] : conditions.temperature_degC)
+    readings.temperature[channel].assign(positions.size(), value);
+  readings.value.assign(3, std::vector<double>(positions.size(), 0.0));
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    readings.source_line.push_back(static_cast<std::int64_t>(i) + 2);
+  return setup;
+}
+
+/// Parameters of the size of real errors, a dense covariance.
+FitResult result_of_model(const MeasurementModel& model, std::mt19937_64& random) {
+  FitResult result;
+  result.machine = model.campaign().machine;
+  result.identified = model.spec();
+  result.layout = model.layout();
+  result.parameters = model.initial_parameters();
+  for (const FunctionGroup& group : result.layout.groups) {
+    for (int i = 0; i < group.size(); ++i) result.parameters[group.offset + i] = uniform(random, 2e-5);
+  }
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.kind != ParameterKind::Location && block.kind != ParameterKind::Effect) continue;
+    for (int k = 0; k < block.size(); ++k) result.parameters[block.offset + k] = uniform(random, 2e-5);
+  }
+  const Eigen::MatrixXd root = 1e-6 * test::random_matrix(random, result.layout.size, result.layout.size);
+  result.covariance = root * root.transpose();
+  result.conditions = recorded_conditions(model.campaign());
+  return result;
+}
+
+struct Poses {
+  std::vector<AxisPosition> positions;
+  std::vector<ApproachDirection> directions;
+};
+
+Poses random_poses(const Machine& machine, std::mt19937_64& random, std::size_t count) {
+  Poses poses{std::vector<AxisPosition>(count), std::vector<ApproachDirection>(count)};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const Axis& axis : machine.axes) {
+      poses.positions[i][index_of(axis.name)] =
+          axis.travel_min + axis.travel() * (0.5 + uniform(random, 0.5));
+      poses.directions[i][index_of(axis.name)] = uniform(random, 1.0) > 0.0 ? 1 : -1;
+    }
+  }
+  return poses;
+}
+
+/// A lag ends in the stated temperature, where readings in time have it still underway.
+bool is_late(const EffectSpec& spec) { return spec.kind.starts_with("lagged"); }
+
+bool acts_on_machine(const Effect& effect) {
+  return std::ranges::any_of(effect.amplitudes(), [](const EffectAmplitude& amplitude) {
+    return amplitude.target.kind == TargetKind::Motion || amplitude.target.kind == TargetKind::ToolOffset;
+  });
+}
+
+ModelSpec model_with(const EffectSpec& effect) {
+  ModelSpec model;
+  model.default_function.basis = "legendre";
+  model.default_function.degree = 4;
+  model.effects = {effect};
+  return model;
+}
+
+/// Every effect of the catalogue that acts on the machine, one result each.
+template <class Use>
+void for_each_effect(const std::string& structure, const Use& use) {
+  std::mt19937_64 random(20);
+  const Campaign campaign = effect_campaign(structure);
+  std::set<std::string> kinds;
+  int done = 0;
+  for (const EffectKind* kind : effect_kinds()) {
+    int of_kind = 0;
+    for (const EffectSpec& spec : kind->examples(campaign)) {
+      if (!acts_on_machine(*kind->make(spec, "")) || ++of_kind > 3) continue;
+      const MeasurementModel model(campaign, model_with(spec));
+      use(campaign, spec, result_of_model(model, random), random);
+      kinds.insert(spec.kind);
+      ++done;
+    }
+  }
+  EXPECT_GE(kinds.size(), 14U);
+  EXPECT_GE(done, 30);
+}
+
+TEST(ErrorField, IsWhatProbedPointsOfTheMeasurementModelRead) {
+  const Conditions conditions = conditions_somewhere();
+  for (const char* structure : {"w X' b Y Z t", "w Y' X' b Z t"}) {
+    for_each_effect(structure, [&](const Campaign& campaign, const EffectSpec& spec, const FitResult& result,
+                                   std::mt19937_64& random) {
+      if (is_late(spec)) return;
+      const Poses poses = random_poses(result.machine, random, 20);
+      for (std::size_t tool = 0; tool < 2; ++tool) {
+        Campaign probed = campaign;
+        probed.setups.push_back(
+            probed_points(result.machine, tool, poses.positions, poses.directions, conditions));
+        const MeasurementModel model(probed, result.identified);
+        const ErrorField field(result, result.machine.tools[tool], conditions);
+        const KinematicChain chain(result.machine);
+        Eigen::VectorXd parameters = model.initial_parameters();
+        parameters.head(result.parameters.size()) = result.parameters;
+        for (std::size_t i = 0; i < poses.positions.size(); ++i) {
+          double read[kMaxChannels];
+          model.predict(probed.setups.size() - 1, i, parameters, read);
+          const PoseErrorVector error = field.at(poses.positions[i], poses.directions[i]);
+          for (int k = 0; k < 3; ++k)
+            ASSERT_NEAR(error[k], read[k], kSame) << spec.kind << " " << structure << " tool " << tool;
+        }
+      }
+    });
+  }
+}
+
+TEST(ErrorField, EveryWayToAskGivesTheSameError) {
+  const Conditions conditions = conditions_somewhere();
+  for_each_effect("w X' b Y Z t", [&](const Campaign&, const EffectSpec& spec, const FitResult& result,
+                                      std::mt19937_64& random) {
+    const Poses poses = random_poses(result.machine, random, 10);
+    for (const Tool& tool : result.machine.tools) {
+      const ErrorField field(result, tool, conditions);
+      const DisplacementField fast = displacement_field(result, tool, conditions);
+      const DisplacementField plain = plain_displacement_field(result, tool, conditions);
+      const ProgramErrors program = program_errors(result, tool.name, conditions);
+      const DisplacementField of_program = program.field(tool.offset);
+      const std::vector<Contribution> parts = field.contributions();
+      for (std::size_t i = 0; i < poses.positions.size(); ++i) {
+        const AxisPosition& position = poses.positions[i];
+        const ApproachDirection& direction = poses.directions[i];
+        const PoseErrorVector error = field.at(position, direction);
+        const Vector3d displacement = error.head<3>();
+        EXPECT_LT((fast(position, direction) - displacement).norm(), kSame) << spec.kind;
+        EXPECT_LT((plain(position, direction) - displacement).norm(), kSame) << spec.kind;
+        EXPECT_LT((of_program(position, direction) - displacement).norm(), kSame) << spec.kind;
+        PoseErrorVector sum = PoseErrorVector::Zero();
+        for (const Contribution& part : parts) sum += field.contribution(part, position, direction);
+        EXPECT_LT((sum - error).norm(), kSame) << spec.kind;
+        const VolumetricError stated = volumetric_error(result, field, position, tool, direction);
+        EXPECT_LT((stated.value - error).norm(), kSame) << spec.kind;
+      }
+    }
+  });
+}
+
+TEST(ErrorField, GridsAreTheFieldAtTheirNodesWithItsUncertainty) {
+  const Conditions conditions = conditions_somewhere();
+  for_each_effect("w X' b Y Z t", [&](const Campaign&, const EffectSpec& spec, const FitResult& result,
+                                      std::mt19937_64&) {
+    const std::vector<VolumetricError> grid = volumetric_grid(result, 3, conditions);
+    std::size_t i = 0;
+    for (const Tool& tool : result.machine.tools) {
+      const ErrorField field(result, tool, conditions);
+      std::vector<Covariance3> covariances =
+          ErrorGrid(result, tool, axis_grid(result.machine, 3), conditions).displacement_covariances();
+      for (std::size_t node = 0; node < 27; ++node, ++i) {
+        const VolumetricError plain = volumetric_error(result, field, grid[i].position, tool);
+        ASSERT_LT((grid[i].value - plain.value).norm(), kSame) << spec.kind;
+        ASSERT_LT((grid[i].u - plain.u).norm(), 1e-9 * plain.u.norm()) << spec.kind;
+        const Eigen::Vector3d u = covariances[node].variances().cwiseSqrt();
+        ASSERT_LT((u - plain.u.head<3>()).norm(), 1e-9 * u.norm()) << spec.kind;
+      }
+    }
+  });
+}
+
+/// By differences of the model's prediction at its own parameters.
+TEST(ErrorField, RowsAreTheDerivativesOfTheError) {
+  const Conditions conditions = conditions_somewhere();
+  for_each_effect("w X' b Y Z t", [&](const Campaign&, const EffectSpec& spec, const FitResult& result,
+                                      std::mt19937_64& random) {
+    const Poses poses = random_poses(result.machine, random, 2);
+    const Tool& tool = result.machine.tools[1];
+    const ErrorField field(result, tool, conditions);
+    for (std::size_t i = 0; i < poses.positions.size(); ++i) {
+      const PoseErrorRows rows = field.rows(poses.positions[i], poses.directions[i]);
+      for (const int parameter : field.condition_parameters()) {
+        const double size = std::max(1e-6, std::abs(result.parameters[parameter]));
+        FitResult above = result, below = result;
+        above.parameters[parameter] += 1e-3 * size;
+        below.parameters[parameter] -= 1e-3 * size;
+        const PoseErrorVector slope =
+            (ErrorField(above, tool, conditions).at(poses.positions[i], poses.directions[i]) -
+             ErrorField(below, tool, conditions).at(poses.positions[i], poses.directions[i])) /
+            (2e-3 * size);
+        EXPECT_LT((rows.col(parameter) - slope).norm(), 1e-4 * slope.norm() + 1e-9)
+            << spec.kind << " " << parameter;
+      }
+    }
+  });
+}
+
+// --- the rigid-body model nearest to an effect ---------------------------------------------------------
+
+/// What is left of EAY by y z is orthogonal to what the rotation of Y about x does to the axis behind it, and
+/// to every displacement of Y.
+TEST(RigidCompromise, IsTheLeastSquaresOne) {
+  std::mt19937_64 random(7);
+  const Campaign campaign = effect_campaign();
+  EffectSpec effect;
+  effect.kind = "product-coupling";
+  effect.options.set("symbol", std::string("EAY"));
+  effect.options.set("axis", std::string("Y"));
+  effect.options.set("second_axis", std::string("Z"));
+  const MeasurementModel model(campaign, model_with(effect));
+  const FitResult result = result_of_model(model, random);
+  const Tool& tool = result.machine.tools[1];
+  const RigidCompromise compromise(result, tool, {});
+  ASSERT_FALSE(compromise.empty());
+  const LinearDisplacements displacements(result, tool, {});
+  constexpr int kPlaces = 60;
+  const auto place = [&](AxisName axis, int i) {
+    return result.machine.axis(axis).travel_min + result.machine.axis(axis).travel() * (i + 0.5) / kPlaces;
+  };
+  const Axis& z = result.machine.axis(AxisName::Z);
+  const double middle_z = z.travel_min + 0.5 * z.travel();
+  const auto left_at = [&](const AxisPosition& q) {
+    return displacements.coupled(q, {}) - compromise.at(q, {});
+  };
+  double size = 0.0;
+  Vector3d mean = Vector3d::Zero();
+  std::vector<Vector3d> by_y, by_y_times_z;
+  for (int j = 0; j < kPlaces; j += 6) {
+    by_y.emplace_back(Vector3d::Zero());
+    by_y_times_z.emplace_back(Vector3d::Zero());
+    for (int k = 0; k < kPlaces; ++k) {
+      AxisPosition q{};
+      q[1] = place(AxisName::Y, j);
+      q[2] = place(AxisName::Z, k);
+      const Vector3d left = left_at(q);
+      by_y.back() += left / kPlaces;
+      by_y_times_z.back() += left * ((q[2] - middle_z) / z.travel() / kPlaces);
+      size = std::max(size, displacements.coupled(q, {}).norm());
+    }
+    mean += by_y.back() / 10.0;
+  }
+  EXPECT_GT(size, 1e-8);
+  for (std::size_t j = 0; j < by_y.size(); ++j) {
+    EXPECT_LT((by_y[j] - mean).norm(), 2e-3 * size);
+    EXPECT_LT(std::abs(by_y_times_z[j].y()), 2e-3 * size);
+  }
+}
+
+TEST(RigidCompromise, TablesOfErrorsWithItLeaveLessThanWithout) {
+  std::mt19937_64 random(8);
+  const Campaign campaign = effect_campaign();
+  EffectSpec effect;
+  effect.kind = "axis-coupling";
+  effect.options.set("symbol", std::string("EAY"));
+  effect.options.set("axis", std::string("Z"));
+  effect.options.set("shape", std::string("quadratic"));
+  const MeasurementModel model(campaign, model_with(effect));
+  FitResult result = result_of_model(model, random);
+  result.parameters.setZero();  // an error function is zero at home, which random coefficients are not
+  result.parameters[result.layout.find_block("EAY by z^2")->offset] = 3e-4;
+  FitResult rigid = result;
+  rigid.identified.effects.clear();
+  const Poses poses = random_poses(result.machine, random, 300);
+  const auto left = [&](const FitResult& tables_of) {
+    const TableFormat& format = *find_table_format("csv");
+    TableFormatOptions options;
+    options.step = 0.01;
+    const CompensationTables tables = format.read(write_tables(format, tables_of, options));
+    const DisplacementField truth = displacement_field(result, result.machine.tools[0], {});
+    const Vector3d at_home = truth(home_of(result.machine), kTowardsPlus);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < poses.positions.size(); ++i)
+      squares +=
+          (truth(poses.positions[i], {}) - at_home + tables.correction(poses.positions[i], {})).squaredNorm();
+    return std::sqrt(squares / 300.0);
+  };
+  EXPECT_LT(left(result), 0.75 * left(rigid));
+}
+
+// --- conditions, measured positions, rotary axes ---------------------------------------------------------
+
+TEST(Conditions, AreTheReferenceTemperatureWhereTheModelKnowsTheExpansionAndTheMeanOtherwise) {
+  FitResult result;
+  result.conditions.temperature_degC = {{"scale", {21.0, 22.5, 24.0}}, {"air", {19.0, 20.5, 22.0}}};
+  result.conditions.time = RecordedRange{100.0, 200.0, 300.0};
+  EffectSpec expansion;
+  expansion.kind = "scale-expansion";
+  expansion.options.set("axis", std::string("X"));
+  expansion.options.set("temperature", std::string("scale"));
+  result.identified.effects = {expansion};
+  const Conditions conditions = default_conditions(result);
+  EXPECT_EQ(conditions.temperature_degC.at("scale"), 20.0);
+  EXPECT_EQ(conditions.temperature_degC.at("air"), 20.5);
+  EXPECT_EQ(conditions.time, 200.0);
+  EXPECT_FALSE(conditions.feed);
+  const Conditions stated = stated_conditions(result, {{"T_scale", "23.3"}, {"time_s", "250"}});
+  EXPECT_EQ(stated.temperature_degC.at("scale"), 23.3);
+  EXPECT_EQ(stated.time, 250.0);
+  EXPECT_EQ(stated_reference_temperature(result, stated), 23.3);
+  for (const auto& [name, value] : std::map<std::string, std::string>{
+           {"T_column", "20"}, {"feed_mm_min", "100"}, {"T_scale", "warm"}, {"T_air", "1e9"}, {"x", "1"}})
+    EXPECT_THROW(stated_conditions(result, {{name, value}}), InputError) << name;
+}
+
+TEST(ErrorField, HoldsTheLastMeasuredErrorBeyondTheReadings) {
+  std::mt19937_64 random(9);
+  const Campaign campaign = effect_campaign();
+  EffectSpec effect;
+  effect.kind = "position-reversal";
+  effect.options.set("symbol", std::string("EXX"));
+  const MeasurementModel model(campaign, model_with(effect));
+  FitResult result = result_of_model(model, random);
+  const Axis& x = result.machine.axis(AxisName::X);
+  const double first = x.travel_min + 0.2 * x.travel(), last = x.travel_min + 0.7 * x.travel();
+  for (const Component component : kAllComponents)
+    result.functions.push_back(
+        {.symbol = {component, AxisName::X}, .prior = {}, .measured_min = first, .measured_max = last});
+  const Tool& tool = result.machine.tools[0];
+  const ErrorField field(result, tool, {});
+  const DisplacementField fast = displacement_field(result, tool, {});
+  AxisPosition at_edge{}, beyond{};
+  at_edge[0] = last;
+  beyond[0] = x.travel_max;
+  EXPECT_FALSE(field.measured().is_beyond(at_edge));
+  EXPECT_TRUE(field.measured().is_beyond(beyond));
+  FitResult without = result;
+  without.functions.clear();
+  const PoseErrors<double> held = pose_errors(result.layout, at_edge, result.parameters);
+  // Displacements of X do not depend on its own arm: EXX is held, EYX by what X carries.
+  PoseErrors<double> of_x = held;
+  const KinematicChain chain(result.machine);
+  of_x.motion[0][0] += 0.5 *
+                       result.parameters[result.layout.find_block("reversal EXX along the travel")->offset] *
+                       (last - x.home);
+  const Vector3d wanted = chain.first_order(beyond, tool.offset, of_x).displacement_w;
+  EXPECT_LT((field.at(beyond, kTowardsPlus).head<3>() - wanted).norm(), kSame);
+  for (int i = 0; i <= 20; ++i) {
+    AxisPosition q{};
+    q[0] = x.travel_min + x.travel() * i / 20.0;
+    for (const ApproachDirection& direction : {ApproachDirection{}, kTowardsPlus})
+      EXPECT_LT((field.at(q, direction).head<3>() - fast(q, direction)).norm(), kSame) << q[0];
+  }
+  // u is that of the function there, not that of the value that is held.
+  const VolumetricError stated = volumetric_error(result, field, beyond, tool);
+  const VolumetricError free = volumetric_error(without, ErrorField(without, tool, {}), beyond, tool);
+  EXPECT_TRUE(stated.extrapolated);
+  for (int k = 0; k < 6; ++k) EXPECT_GE(stated.u[k], 0.999 * free.u[k]);
+}
+
+TEST(ErrorField, RefusesARotaryPoseWithoutRotaryErrors) {
+  FitResult result;
+  result.machine = testing_support::machine_of("wC'X'bYZt");
+  AxisPosition position{};
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, position));
+  position[index_of(AxisName::C)] = 0.5;
+  EXPECT_THROW(require_identified_rotary_axes(result, position), InputError);
+  ParameterBlock location;
+  location.name = "EC0C";
+  location.location = LocationSymbol::parse("EC0C");
+  result.layout.blocks.push_back(location);
+  EXPECT_NO_THROW(require_identified_rotary_axes(result, position));
+}
+
+}  // namespace
+}  // namespace volcal

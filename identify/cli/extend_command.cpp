@@ -15,6 +15,7 @@
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"
 #include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
 #include "volcal/identify/report/diagnosis_text.h"
@@ -31,6 +32,7 @@ struct ExtendArguments {
   bool accepted = false;
   std::string campaign;
   std::string output;
+  bool force = false;
   bool json = false;
 };
 
@@ -145,6 +147,14 @@ std::string path_from(const std::string& from, const std::string& file) {
   return std::filesystem::proximate(std::filesystem::absolute(file), folder).generic_string();
 }
 
+void require_no_input(const std::string& output, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    if (input.empty() || !same_file(output, input)) continue;
+    throw InputError({output, 0}, "the output is a file that is read, and would be overwritten",
+                     "name another file with -o, or overwrite it with --force");
+  }
+}
+
 void report(const Changes& changes, const std::string& output, std::size_t effects, bool as_json) {
   if (as_json) {
     const nlohmann::ordered_json json = {
@@ -173,6 +183,7 @@ int run_extend(const ExtendArguments& arguments) {
       add_found(effect, arguments, model, machine, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
+  if (!arguments.force) require_no_input(output, {arguments.model, machine.file, arguments.campaign});
   write_text_file(output, model_toml(model, path_from(output, machine.file)));
   report(changes, output, model.effects.size(), arguments.json);
   return kDone;
@@ -193,6 +204,7 @@ std::function<int()> define_extend(CLI::App& app) {
                  "campaign.toml, for effects of temperatures, stations, setups and tools");
   app.add_option("-o,--output", arguments->output,
                  "model file to write; default: the model's name with the next free number, model-1.toml");
+  app.add_flag("--force", arguments->force, "overwrite the model that is extended");
   app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
   return [arguments] { return run_extend(*arguments); };
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -18,6 +19,7 @@ namespace {
 struct InitArguments {
   std::string structure;
   std::string output;
+  bool force = false;
   bool json = false;
 };
 
@@ -34,22 +36,35 @@ std::string axis_table(AxisName axis) {
       letter_of(axis));
 }
 
+/// Of the first two linear axes; a machine with one has no frame to choose.
+std::string datum_table(const Structure& structure) {
+  std::vector<char> linear;
+  for (const AxisName axis : kLinearAxes) {
+    if (std::ranges::find(structure.joints, axis, &Joint::axis) != structure.joints.end())
+      linear.push_back(letter_of(axis));
+  }
+  if (linear.size() < 2) return "";
+  return fmt::format(
+      "[datum]  # {0} gives the direction of the frame, {1} its plane\nprimary = \"{0}\"\nsecondary = "
+      "\"{1}\"\n",
+      linear[0], linear[1]);
+}
+
 std::string machine_toml(const Structure& structure) {
   std::string text = fmt::format(
       "# The machine: structure, axes, tools. Lengths in mm; every key ends in its unit.\n"
       "format = \"volcal-machine-1\"\n"
       "name = \"my machine\"\n"
-      "structure = \"{}\"  # workpiece to tool; a prime marks an axis that moves the workpiece\n"
-      "[datum]  # X gives the direction of the frame, Y its plane\n"
-      "primary = \"X\"\n"
-      "secondary = \"Y\"\n",
+      "structure = \"{}\"  # workpiece to tool; a prime marks an axis that moves the workpiece\n",
       structure.code);
+  text += datum_table(structure);
   for (const Joint& joint : structure.joints) text += axis_table(joint.axis);
   return text +
          "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
          "point\n"
-         "[tools.side]  # a sideways offset makes the roll of the last axis visible\noffset_mm = [100.0, "
-         "0.0, -200.0]\n";
+         "[tools.side]  # sideways offsets make the rolls of the last axis visible: three tips, on no line\n"
+         "offset_mm = [100.0, 0.0, -200.0]\n"
+         "[tools.front]\noffset_mm = [0.0, 100.0, -200.0]\n";
 }
 
 /// Columns of the commanded positions, in the order X Y Z A B C.
@@ -110,13 +125,7 @@ const char* const kModelToml =
 
 int run_init(const InitArguments& arguments) {
   const Structure structure = Structure::parse(arguments.structure);
-  int linear = 0;
-  for (const Joint& joint : structure.joints) linear += is_rotary(joint.axis) ? 0 : 1;
-  if (linear < 3) {
-    throw InputError({}, "structure \"" + arguments.structure + "\" lacks a linear axis",
-                     "X, Y and Z must be there, as in \"w X' b Y Z t\"");
-  }
-  AtomicFolder folder(arguments.output);
+  AtomicFolder folder(arguments.output, arguments.force ? Replaceable::Anything : Replaceable::Unedited);
   folder.write("machine.toml", machine_toml(structure));
   folder.write("model.toml", kModelToml);
   folder.write("campaign.toml", campaign_toml(structure));
@@ -141,6 +150,7 @@ std::function<int()> define_init(CLI::App& app) {
   app.add_option("STRUCTURE", arguments->structure, "structural code, workpiece to tool (ISO 10791-6)")
       ->required();
   app.add_option("-o,--output", arguments->output, "folder, new or empty")->required();
+  app.add_flag("--force", arguments->force, "overwrite files that were edited, and those of other origin");
   app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
   return [arguments] { return run_init(*arguments); };
 }

@@ -52,6 +52,7 @@ struct PlanArguments {
   double clearance_mm = 100.0;
   double spindle_mm = 100.0;
   bool extend = false;
+  bool force = false;
   bool json = false;
   PlanSettings settings;
 };
@@ -167,6 +168,11 @@ PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Cam
   return settings;
 }
 
+/// study.toml and the campaign of a plan are there to be edited.
+Replaceable replaceable(const PlanArguments& arguments) {
+  return arguments.force ? Replaceable::Anything : Replaceable::Unedited;
+}
+
 std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
   if (arguments.extend && arguments.with.empty()) {
     fail("--extend has nothing to extend", "give the campaign that is measured with --with CAMPAIGN.toml");
@@ -180,7 +186,7 @@ std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
 }
 
 void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const std::string& json) {
-  AtomicFolder folder(arguments.output);
+  AtomicFolder folder(arguments.output, replaceable(arguments));
   folder.write("plan.json", json);
   folder.write("plan.txt", plan_text(plan));
   write_plan_campaign(plan, folder);
@@ -193,7 +199,8 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
 int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   refuse_other_options(app, arguments.settings.instrument);
   if (!arguments.output.empty()) {
-    require_output_folder(arguments.output, {arguments.machine, arguments.model, arguments.with});
+    require_output_folder(arguments.output, {arguments.machine, arguments.model, arguments.with},
+                          replaceable(arguments));
   }
   const std::optional<Campaign> with = given_campaign(arguments);
   PlanSettings settings = settings_of(arguments, with);
@@ -317,6 +324,7 @@ std::function<int()> define_plan(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--threads", arguments->settings.threads, "0 = all; results do not depend on it")
       ->check(not_negative());
+  app.add_flag("--force", arguments->force, "overwrite files that were edited, and those of other origin");
   app.add_flag("--json", arguments->json, "print plan.json on standard output and nothing else");
   return [arguments, &app] { return run_plan(*arguments, app); };
 }

@@ -24,6 +24,7 @@ struct SimulateArguments {
   std::string compensation;
   double least_increment_um = 0.0;
   double wrong_tool_length_mm = 0.0;
+  bool force = false;
   bool json = false;
 };
 
@@ -36,11 +37,12 @@ void compensate(const SimulateArguments& arguments, sim::Study& study) {
 }
 
 int run_simulate(const SimulateArguments& arguments) {
-  require_output_folder(arguments.output, {arguments.study, arguments.compensation});
+  const Replaceable replaceable = arguments.force ? Replaceable::Anything : Replaceable::Unedited;
+  require_output_folder(arguments.output, {arguments.study, arguments.compensation}, replaceable);
   sim::Study study = read_study(arguments.study);
   if (arguments.seed) study.seed = *arguments.seed;
   compensate(arguments, study);
-  AtomicFolder folder(arguments.output);
+  AtomicFolder folder(arguments.output, replaceable);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
   write_simulation(simulated, folder);
   folder.commit();
@@ -79,6 +81,7 @@ std::function<int()> define_simulate(CLI::App& app) {
   app.add_option("--wrong-tool-length", arguments->wrong_tool_length_mm,
                  "every tool is longer by this than the control and the campaign file say, mm (11.2 d)")
       ->check(CLI::Range(-90.0, 90.0));
+  app.add_flag("--force", arguments->force, "overwrite files that were edited, and those of other origin");
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_simulate(*arguments); };
 }

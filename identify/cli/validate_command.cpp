@@ -96,9 +96,12 @@ int run_validate(const ValidateArguments& arguments) {
   }
   const Validation validation = validate(campaign, result, arguments.threads);
   if (arguments.json) {
-    fmt::print("{}\n", figures_json(validation.figures).dump(2));
+    auto json = figures_json(validation.figures);
+    if (!campaign.notes.empty()) json["notes"] = campaign.notes;
+    fmt::print("{}\n", json.dump(2));
   } else {
     fmt::print("{}", figures_text(validation));
+    for (const std::string& note : campaign.notes) fmt::print("! {}\n", note);
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * 1e6 > arguments.max_rms_um;

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/criticism/not_looked_for.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
@@ -95,6 +96,8 @@ class Diagnostician {
   Diagnosis run() {
     search_.run();
     list_removed();
+    diagnosis_.notes = model_.campaign().notes;
+    diagnosis_.not_looked_for = not_looked_for(model_.campaign(), families_);
     diagnosis_.families = families_.size();
     diagnosis_.generic_tests = search_.generic().size();
     diagnosis_.ladder = search_.ladder();

@@ -129,6 +129,8 @@ struct Diagnosis {
   Confounding confounding;
   std::vector<std::string> next_measurement;  ///< in words
   std::vector<MeasurementProposal> proposals;
+  std::vector<std::string> not_looked_for;       ///< sentences: what no file records, and which kinds need it
+  std::vector<std::string> notes;                ///< of the campaign
   std::vector<RemovedReading> removed_readings;  ///< outliers of the model reached, by setup and line
   std::size_t families = 0;
   std::size_t generic_tests = 0;

@@ -8,12 +8,15 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
+#include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -22,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kList = ".volcal";
+constexpr const char* kListOfEditable = ".volcal-init";
 
 [[noreturn]] void fail(const std::string& path, const std::string& problem) {
   throw InputError({path, 0}, problem, "check the path, its permissions and the free space");
@@ -123,7 +127,63 @@ void repair(const fs::path& target) {
   }
 }
 
-void require_replaceable(const fs::path& target) {
+/// FNV-1a of a file's bytes, or of the names and checksums in a folder.
+std::uint64_t content_sum(const fs::path& path) {
+  std::uint64_t sum = 0xcbf29ce484222325U;
+  const auto add = [&sum](std::string_view text) {
+    for (const char c : text) sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  };
+  if (fs::is_directory(path)) {
+    std::set<fs::path> entries;
+    for (const auto& entry : fs::directory_iterator(path)) entries.insert(entry.path());
+    for (const fs::path& entry : entries) {
+      add(entry.filename().string());
+      add(std::to_string(content_sum(entry)));
+    }
+    return sum;
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    add({block.data(), static_cast<std::size_t>(file.gcount())});
+  return sum;
+}
+
+/// Names that a run wrote with their checksums; empty text: written by an older version.
+std::map<std::string, std::string> listed(const fs::path& folder) {
+  std::map<std::string, std::string> names;
+  for (const char* name : {kList, kListOfEditable}) {
+    std::ifstream list(folder / name);
+    for (std::string line; std::getline(list, line);) {
+      const std::size_t tab = line.find('\t');
+      names[line.substr(0, tab)] = tab == std::string::npos ? "" : line.substr(tab + 1);
+    }
+  }
+  return names;
+}
+
+void require_unedited(const fs::path& target) {
+  for (const auto& [name, sum] : listed(target)) {
+    const fs::path path = target / name;
+    if (sum.empty() || !fs::exists(path) || std::to_string(content_sum(path)) == sum) continue;
+    throw InputError({path.string(), 0}, "it has been edited since it was written, and would be overwritten",
+                     "name another folder with -o, or overwrite it with --force");
+  }
+}
+
+[[noreturn]] void refuse_foreign(const fs::path& target, Replaceable replaceable) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(target)) names.insert(entry.path().filename().string());
+  names.erase(kListOfEditable);
+  throw InputError({target.string(), 0},
+                   "the output folder holds files that volcal did not write" +
+                       (names.empty() ? "" : ", as " + printable(*names.begin())),
+                   replaceable == Replaceable::Unedited
+                       ? "name another folder with -o; --force overwrites files of the same names"
+                       : "name another folder with -o, or empty this one");
+}
+
+void require_replaceable(const fs::path& target, Replaceable replaceable) {
   std::error_code error;
   const fs::file_status status = fs::status(target, error);
   if (!fs::exists(status)) return;
@@ -139,17 +199,11 @@ void require_replaceable(const fs::path& target) {
     }
     if (above == above.parent_path()) break;
   }
-  if (!fs::is_empty(target, error) && !fs::exists(target / kList, error)) {
-    throw InputError({target.string(), 0}, "the output folder holds files that volcal did not write",
-                     "name another folder with -o, or empty this one");
-  }
-}
-
-std::set<std::string> listed(const fs::path& folder) {
-  std::set<std::string> names;
-  std::ifstream list(folder / kList);
-  for (std::string line; std::getline(list, line);) names.insert(line);
-  return names;
+  if (replaceable == Replaceable::Anything || fs::is_empty(target, error)) return;
+  const bool ours = fs::exists(target / kList, error) ||
+                    (replaceable == Replaceable::Unedited && fs::exists(target / kListOfEditable, error));
+  if (!ours) refuse_foreign(target, replaceable);
+  if (replaceable == Replaceable::Unedited) require_unedited(target);
 }
 
 fs::path absolute_target(const std::string& target) {
@@ -162,9 +216,10 @@ fs::path absolute_target(const std::string& target) {
 
 }  // namespace
 
-void require_output_folder(const std::string& target, const std::vector<std::string>& inputs) {
+void require_output_folder(const std::string& target, const std::vector<std::string>& inputs,
+                           Replaceable replaceable) {
   const fs::path absolute = absolute_target(target);
-  require_replaceable(absolute);
+  require_replaceable(absolute, replaceable);
   for (const std::string& input : inputs) {
     if (input.empty() || !fs::exists(absolute)) continue;
     const fs::path read = absolute_target(input);
@@ -175,14 +230,14 @@ void require_output_folder(const std::string& target, const std::vector<std::str
   }
 }
 
-AtomicFolder::AtomicFolder(const std::string& target) {
+AtomicFolder::AtomicFolder(const std::string& target, Replaceable replaceable) {
   const fs::path absolute = absolute_target(target);
   target_ = absolute.string();
   std::error_code error;
   fs::create_directories(absolute.parent_path(), error);
   if (error) fail(absolute.parent_path().string(), "creating the folder failed: " + error.message());
   repair(absolute);
-  require_replaceable(absolute);
+  require_replaceable(absolute, replaceable);
   remove_abandoned(absolute);
   create_temporary();
 }
@@ -222,22 +277,22 @@ void AtomicFolder::write(const TableFile& file) const {
 
 void AtomicFolder::carry_over_user_files() const {
   if (!fs::exists(target_)) return;
-  const std::set<std::string> ours = listed(target_);
+  const std::map<std::string, std::string> ours = listed(target_);
   for (const auto& entry : fs::directory_iterator(target_)) {
     const std::string name = entry.path().filename().string();
-    if (name == kList || ours.contains(name) || fs::exists(path(name))) continue;
+    if (name == kList || name == kListOfEditable || ours.contains(name) || fs::exists(path(name))) continue;
     fs::copy(entry.path(), path(name), fs::copy_options::recursive | fs::copy_options::copy_symlinks);
   }
 }
 
-void AtomicFolder::write_list() const {
+void AtomicFolder::write_list(const char* list) const {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(temporary_))
     names.push_back(entry.path().filename().string());
   std::ranges::sort(names);
   std::string text;
-  for (const std::string& name : names) text += name + "\n";
-  NewFile(path(kList), target_ + "/" + kList).append(text);
+  for (const std::string& name : names) text += name + "\t" + std::to_string(content_sum(path(name))) + "\n";
+  NewFile(path(list), target_ + "/" + list).append(text);
 }
 
 void AtomicFolder::exchange() const {
@@ -257,13 +312,13 @@ void AtomicFolder::exchange() const {
   fs::remove_all(backup, error);
 }
 
-void AtomicFolder::commit() { put_in_place(true); }
+void AtomicFolder::commit() { put_in_place(kList); }
 
-void AtomicFolder::commit_to_be_edited() { put_in_place(false); }
+void AtomicFolder::commit_to_be_edited() { put_in_place(kListOfEditable); }
 
-void AtomicFolder::put_in_place(bool listed) {
+void AtomicFolder::put_in_place(const char* list) {
   try {
-    if (listed) write_list();
+    write_list(list);
     carry_over_user_files();
     flush_tree(temporary_);
   } catch (const fs::filesystem_error& error) {

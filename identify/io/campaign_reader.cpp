@@ -4,6 +4,7 @@
 #include <map>
 
 #include "volcal/identify/io/campaign_checks.h"
+#include "volcal/identify/io/campaign_notes.h"
 #include "volcal/identify/io/csv_table.h"
 #include "volcal/identify/io/left_out_readings.h"
 #include "volcal/identify/io/machine_reader.h"
@@ -39,6 +40,7 @@ struct DeclaredSetup {
   const InstrumentSchema* instrument = nullptr;
   ColumnMapping mapping;
   CsvFormat format;
+  bool directions_as_recorded = false;
   std::vector<LeaveOut> leave_out;
   SourcePlace data_place;
 };
@@ -62,6 +64,7 @@ class CampaignReader {
     root_.know("machine");
     root_.text("name");
     campaign_.active_compensations = root_.text("active_compensations").value_or("");
+    directions_as_recorded_ = as_recorded(root_).value_or(false);
     noise_ = root_.table("noise");
     if (noise_) repeatability_ = read_repeatability(*noise_).value_or(0.0);
     for (const TomlTable& table : root_.required_tables("setups", kNoSetups))
@@ -78,14 +81,24 @@ class CampaignReader {
   }
 
   Campaign with_readings() {
+    std::vector<std::vector<UnusedColumn>> unused;
     for (DeclaredSetup& declared : declared_) {
       const CsvTable table = CsvTable::read(declared.setup.data, declared.format, declared.data_place);
+      ColumnChoice choice = choose_columns(table, declared.mapping, campaign_.machine, *declared.instrument);
       declared.setup.readings =
-          read_readings(table, declared.mapping, campaign_.machine, *declared.instrument);
+          read_readings(table, declared.mapping, choice, campaign_.machine, *declared.instrument);
       declared.setup.left_out = left_out_readings(declared.leave_out, declared.setup);
       check_setup(campaign_, declared.setup);
+      unused.push_back(std::move(choice.unused));
     }
-    return description();
+    std::vector<bool> derive;
+    for (const DeclaredSetup& declared : declared_) derive.push_back(!declared.directions_as_recorded);
+    Campaign campaign = description();
+    for (std::size_t i = 0; i < unused.size(); ++i)
+      note_unused_columns(unused[i], campaign.setups[i], campaign);
+    note_doubtful_readings(campaign);
+    derive_directions(derive, campaign);
+    return campaign;
   }
 
  private:
@@ -106,6 +119,7 @@ class CampaignReader {
     read_columns(table, declared.mapping);
     declared.format = read_format(table);
     declared.leave_out = read_leave_out(table);
+    declared.directions_as_recorded = as_recorded(table).value_or(directions_as_recorded_);
     return declared;
   }
 
@@ -167,6 +181,11 @@ class CampaignReader {
     return *index;
   }
 
+  static std::optional<bool> as_recorded(const TomlTable& table) {
+    const auto directions = table.choice("directions", {"from-order", "as-recorded"});
+    return directions ? std::optional(*directions == "as-recorded") : std::nullopt;
+  }
+
   static std::optional<double> read_repeatability(const TomlTable& table) {
     return table.number("repeatability_um", {0.0, kLargestRepeatability_um});
   }
@@ -199,6 +218,11 @@ class CampaignReader {
   static void read_columns(const TomlTable& table, ColumnMapping& mapping) {
     mapping.place = table.place("columns");
     mapping.scale_place = table.place("scale");
+    mapping.constant_place = table.place("constants");
+    if (const auto constants = table.table("constants")) {
+      for (const std::string& column : constants->keys())
+        mapping.constant[column] = *constants->raw_number(column);
+    }
     if (const auto columns = table.table("columns")) {
       for (const std::string& column : columns->keys())
         mapping.file_name[column] = columns->required_text(column);
@@ -224,6 +248,10 @@ class CampaignReader {
       }
       format.delimiter = (*delimiter)[0];
     }
+    if (const auto encoding = table.choice("encoding", encoding_names())) {
+      const auto found = std::ranges::find(encoding_names(), *encoding) - encoding_names().begin();
+      format.encoding = static_cast<TextEncoding>(found);
+    }
     if (const auto decimal = table.choice("decimal", {".", ","})) format.decimal = (*decimal)[0];
     if (format.decimal == format.delimiter) {
       table.fail(
@@ -240,6 +268,7 @@ class CampaignReader {
   Campaign campaign_;
   std::optional<TomlTable> noise_;
   double repeatability_ = 0.0;
+  bool directions_as_recorded_ = false;
   std::map<std::string, int> setup_line_;
   std::vector<DeclaredSetup> declared_;
 };

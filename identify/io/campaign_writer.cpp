@@ -149,6 +149,10 @@ std::string leave_out_toml(const Setup& setup, const InstrumentSchema& schema) {
   return "leave_out = [" + text + "]\n";
 }
 
+bool records_directions(const Setup& setup) {
+  return std::ranges::any_of(setup.readings.direction, [](const auto& column) { return !column.empty(); });
+}
+
 std::string setup_toml(const Setup& setup, const Machine& machine) {
   const InstrumentSchema& schema = schema_of(setup);
   std::string text = "\n[[setups]]\n";
@@ -210,6 +214,7 @@ std::string campaign_toml(const Campaign& campaign, const std::string& machine_p
   std::string text = fmt::format("format = \"{}\"\nmachine = {}\n", kCampaignFormat, toml_text(machine_path));
   if (!campaign.active_compensations.empty())
     text += "active_compensations = " + toml_text(campaign.active_compensations) + "\n";
+  if (std::ranges::none_of(campaign.setups, records_directions)) text += "directions = \"as-recorded\"\n";
   std::set<std::string> files;
   for (const Setup& setup : campaign.setups) {
     if (!files.insert(readings_file_name(setup)).second) {

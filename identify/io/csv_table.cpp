@@ -304,12 +304,15 @@ class CsvTable::RowReader {
 };
 
 CsvTable CsvTable::read(const std::string& path, const CsvFormat& format, const SourcePlace& named_at) {
-  return CsvTable(read_text_file(path, named_at), path, format);
+  std::string text = read_text_file(path, named_at);
+  if (format.encoding != TextEncoding::Utf8) text = to_utf8(text, format.encoding);
+  return CsvTable(std::move(text), path, format);
 }
 
 CsvTable CsvTable::parse(std::string text, const std::string& file, const CsvFormat& format) {
   require_text(text, file);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (format.encoding != TextEncoding::Utf8) text = to_utf8(text, format.encoding);
   return CsvTable(std::move(text), file, format);
 }
 

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/io/text_encoding.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -22,6 +23,7 @@ namespace volcal {
 struct CsvFormat {
   char delimiter = ',';
   char decimal = '.';
+  TextEncoding encoding = TextEncoding::Utf8;
   std::size_t skip_rows = 0;  ///< lines of the file before the header is looked for
 };
 

@@ -193,6 +193,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
     json["removed_readings"].push_back(
         {{"setup", removed.setup}, {"line", removed.line}, {"reading", removed.reading}});
   }
+  if (!diagnosis.not_looked_for.empty()) json["not_looked_for"] = diagnosis.not_looked_for;
+  if (!diagnosis.notes.empty()) json["notes"] = diagnosis.notes;
   json["ranking"] = list_json(diagnosis.ranking);
   json["families"] = diagnosis.families;
   json["generic_tests"] = diagnosis.generic_tests;

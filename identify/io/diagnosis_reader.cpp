@@ -205,6 +205,8 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
   diagnosis.model_changes = list_from(json.at("model_changes"));
   read_noise(json.at("noise"), diagnosis);
+  diagnosis.not_looked_for = json.value("not_looked_for", std::vector<std::string>{});
+  diagnosis.notes = json.value("notes", std::vector<std::string>{});
   for (const Json& each : json.at("removed_readings")) {
     diagnosis.removed_readings.push_back({each.at("setup").get<std::string>(),
                                           each.at("line").get<std::int64_t>(),
@@ -222,7 +224,9 @@ Diagnosis diagnosis_from(const Json& json) {
 Diagnosis diagnosis_from_json(const std::string& text, const std::string& file) {
   const std::string remedy = "give a folder that volcal diagnose wrote, or run the diagnosis again";
   try {
-    return diagnosis_from(Json::parse(text));
+    const Json json = Json::parse(text);
+    json_parts::require_no_control(json);
+    return diagnosis_from(json);
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');

@@ -1,6 +1,9 @@
 #include "volcal/identify/io/machine_reader.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
 
 #include "volcal/identify/io/nearest_name.h"
 #include "volcal/identify/io/text_file.h"
@@ -37,6 +40,7 @@ class MachineReader {
   Machine read() {
     document_.require_format(kMachineFormat);
     machine_.name = root_.text("name").value_or("");
+    root_.require_no_formula("name", machine_.name);
     const std::string code = root_.required_text("structure");
     machine_.structure = Structure::parse(code, machine_.file, root_.place("structure").line);
     read_axes();
@@ -139,17 +143,33 @@ class MachineReader {
     return ScaleExpansion{*coefficient, sigma.value_or(0.0), *channel};
   }
 
+  /// The first two linear axes; of a machine with fewer the others stand in for those that it lacks.
+  void use_default_datum() {
+    std::vector<AxisName> order;
+    for (const bool wanted : {true, false}) {
+      for (const AxisName axis : kLinearAxes) {
+        if (machine_.has_axis(axis) == wanted) order.push_back(axis);
+      }
+    }
+    machine_.datum = {order[0], order[1]};
+  }
+
   void read_datum() {
     const auto table = root_.table("datum");
+    const auto linear =
+        std::ranges::count_if(machine_.axes, [](const Axis& axis) { return !is_rotary(axis.name); });
+    use_default_datum();
     if (table) {
-      machine_.datum.primary = datum_axis(*table, "primary");
-      machine_.datum.secondary = datum_axis(*table, "secondary");
+      if (linear >= 1 || table->has("primary")) machine_.datum.primary = datum_axis(*table, "primary");
+      if (linear >= 2 || table->has("secondary")) machine_.datum.secondary = datum_axis(*table, "secondary");
       if (machine_.datum.primary == machine_.datum.secondary) {
         table->fail("secondary", "datum: primary and secondary are both " + table->required_text("primary"),
                     "choose two different linear axes");
       }
     }
-    for (const AxisName axis : {machine_.datum.primary, machine_.datum.secondary}) {
+    const std::array<AxisName, 2> datum = {machine_.datum.primary, machine_.datum.secondary};
+    for (std::size_t i = 0; i < datum.size() && static_cast<std::ptrdiff_t>(i) < linear; ++i) {
+      const AxisName axis = datum[i];
       if (machine_.has_axis(axis)) continue;
       root_.fail("datum", std::string("the datum axis ") + letter_of(axis) + " is no axis of the structure",
                  "choose primary and secondary among the structure's linear axes in [datum]");
@@ -172,6 +192,7 @@ class MachineReader {
     for (const std::string& name : tools->keys()) {
       if (name.find_first_not_of(" \t") == std::string::npos)
         tools->fail(name, "the name of a tool is empty", "give it a name, as in [tools.long]");
+      tools->require_no_formula(name, name);
       const TomlTable table = tools->required_table(name);
       table.know("offset_mm");
       if (!table.has("offset_mm")) table.fail_missing("offset_mm");

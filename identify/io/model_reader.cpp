@@ -77,11 +77,28 @@ class ModelReader {
       if (name == "default") continue;
       const auto symbol = ErrorSymbol::parse(name);
       if (!symbol || !machine_.has_axis(symbol->axis)) {
+        reject_location_as_function(*functions, name);
         functions->fail(name, "functions." + printable(name) + " is no error motion of this machine",
                         suggest_name(name, function_names(machine_), "functions"));
       }
       spec_.functions[*symbol] = read_function(functions->required_table(name), *symbol);
     }
+  }
+
+  /// A squareness or another location error is one number and stands in a table of its own.
+  void reject_location_as_function(const TomlTable& functions, const std::string& name) const {
+    const auto location = LocationSymbol::parse(std::string(stem_of_key(name)));
+    if (!location) return;
+    const auto known = location_symbols(machine_);
+    const std::string symbol = location->name();
+    if (std::ranges::find(known, *location) != known.end()) {
+      functions.fail(name, "functions." + printable(name) + " is a location error, no error motion",
+                     "write it below [locations]: " + symbol + " = \"zero\" switches it off, " + symbol +
+                         "_" + std::string(edge_unit(location->component)) + " = NUMBER states it");
+    }
+    functions.fail(name,
+                   "functions." + printable(name) + " is a location error that this machine does not have",
+                   "remove the line; " + location_remedy(known));
   }
 
   FunctionSpec read_default(const TomlTable& table) {
@@ -245,12 +262,17 @@ class ModelReader {
 
   void fail_location(const TomlTable& table, const std::string& key,
                      const std::vector<LocationSymbol>& known) const {
+    table.fail(key, "locations." + printable(key) + " is no location error of this machine",
+               location_remedy(known));
+  }
+
+  std::string location_remedy(const std::vector<LocationSymbol>& known) const {
+    if (known.empty()) return "a machine with one linear axis has no squareness";
     std::vector<std::string> names;
     names.reserve(known.size());
     for (const LocationSymbol& symbol : known) names.push_back(symbol.name());
-    table.fail(key, "locations." + printable(key) + " is no location error of this machine",
-               std::string("with primary ") + letter_of(machine_.datum.primary) + " and secondary " +
-                   letter_of(machine_.datum.secondary) + " they are " + join_names(names));
+    return std::string("with primary ") + letter_of(machine_.datum.primary) + " and secondary " +
+           letter_of(machine_.datum.secondary) + " the location errors are " + join_names(names);
   }
 
   /// An effect states its amplitude in one unit, that of what it acts on; the schema has all of them.

@@ -39,11 +39,21 @@ bool LineFile::refill() {
                      "is it an NC program? end its lines with LF or CRLF");
   const std::size_t count = std::fread(buffer_.data() + end_, 1, kChunk, file_.get());
   if (std::ferror(file_.get())) throw InputError({path_, 0}, "reading the file failed", "check the disk");
+  const std::string_view read(buffer_.data() + end_, count);
+  if (!begun_ && (read.starts_with("\xFF\xFE") || read.starts_with("\xFE\xFF")))
+    throw InputError({path_, 0}, "the file is UTF-16 text", "save it again as plain text (ASCII or UTF-8)");
   if (std::memchr(buffer_.data() + end_, '\0', count) != nullptr)
     throw InputError({path_, 0}, "the file is binary (it holds NUL bytes)", "give the text of an NC program");
   end_ += count;
   at_end_ = count == 0;
+  if (!begun_) skip_byte_order_mark();
   return !at_end_;
+}
+
+void LineFile::skip_byte_order_mark() {
+  begun_ = true;
+  const std::string_view text(buffer_.data(), end_);
+  if (text.starts_with("\xEF\xBB\xBF")) begin_ = 3;
 }
 
 bool LineFile::next(std::string_view& line) {

@@ -24,6 +24,7 @@ class LineFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   bool refill();
+  void skip_byte_order_mark();
 
   std::string path_;
   std::unique_ptr<std::FILE, Close> file_;
@@ -31,6 +32,7 @@ class LineFile {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   bool at_end_ = false;
+  bool begun_ = false;
 };
 
 /// A file written under a temporary name beside its target and renamed by commit(): a killed program leaves

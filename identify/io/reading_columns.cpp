@@ -13,6 +13,11 @@ std::string axis_column(AxisName axis) {
   return std::string(1, letter) + (is_rotary(axis) ? "_deg" : "_mm");
 }
 
+std::string direction_column(AxisName axis) {
+  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
+  return std::string("dir_") + letter;
+}
+
 std::string sigma_column(const InstrumentSchema& instrument) {
   const auto is_angle = [](const ColumnSchema& column) {
     const std::string_view unit = unit_of_key(column.column).suffix;

@@ -1,11 +1,9 @@
 #include "volcal/identify/io/readings_reader.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 
-#include "volcal/identify/io/nearest_name.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/units.h"
 
@@ -20,290 +18,37 @@ constexpr double kHottest_degC = 300.0;
 constexpr double kShopColdest_degC = -20.0;  // some value of a channel lies between these two
 constexpr double kShopHottest_degC = 60.0;
 
-std::string direction_column(AxisName axis) {
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-  return std::string("dir_") + letter;
-}
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-/// Columns that a file may lack, in the order in which they are looked for.
-std::vector<std::string> optional_columns(const Machine& machine, const InstrumentSchema& instrument) {
-  std::vector<std::string> names;
-  for (const Axis& axis : machine.axes) names.push_back(direction_column(axis.name));
-  for (const char* column : {"time_s", "line", "run", "feed_mm_min"}) names.emplace_back(column);
-  names.push_back(sigma_column(instrument));
-  return names;
-}
-
 double si_factor(const std::string& column) { return unit_of_key(column).si_per_unit; }
 
 class ReadingsReader {
  public:
-  ReadingsReader(const CsvTable& table, const ColumnMapping& mapping, const Machine& machine,
-                 const InstrumentSchema& instrument)
-      : table_(table), mapping_(mapping), machine_(machine), instrument_(instrument) {}
+  ReadingsReader(const CsvTable& table, const ColumnMapping& mapping, const ColumnChoice& choice,
+                 const Machine& machine, const InstrumentSchema& instrument)
+      : table_(table), mapping_(mapping), choice_(choice), machine_(machine), instrument_(instrument) {}
 
   Readings read() {
-    check_mapping();
-    choose_columns();
-    reject_near_misses();
-    reject_scale_of_nothing();
-    CsvColumns columns = table_.numbers(index_);
+    readings_.column_set = choice_.column_set;
+    readings_.value.resize(instrument_.column_sets[choice_.column_set].size());
+    CsvColumns columns = table_.numbers(choice_.index);
     line_ = std::move(columns.source_line);
-    for (std::size_t i = 0; i < name_.size(); ++i) {
-      store(name_[i], std::move(columns.values[i]));
+    for (std::size_t i = 0; i < choice_.name.size(); ++i) {
+      scale(choice_.name[i], columns.values[i]);
+      store(choice_.name[i], std::move(columns.values[i]));
     }
+    in_constants_ = true;
+    for (const auto& [column, value] : mapping_.constant) store(column, std::vector(line_.size(), value));
     readings_.source_line = std::move(line_);
     return std::move(readings_);
   }
 
  private:
-  void check_mapping() const {
-    const auto known = known_columns(machine_, instrument_);
-    const auto check = [&](const std::string& column, const SourcePlace& place, const std::string& key) {
-      if (std::ranges::find(known, column) != known.end() || !temperature_channel(column).empty()) return;
-      throw InputError(place, key + " names the unknown column " + printable(column),
-                       suggest_name(column, known, "columns"));
-    };
-    for (const auto& [column, name] : mapping_.file_name) check(column, mapping_.place, "columns");
-    for (const auto& [column, factor] : mapping_.scale) check(column, mapping_.scale_place, "scale");
-  }
-
-  std::string file_name(const std::string& column) const {
-    const auto found = mapping_.file_name.find(column);
-    return found == mapping_.file_name.end() ? column : found->second;
-  }
-
-  /// A column under its standard name counts only when the mapping does not use that name for another one.
-  std::optional<std::size_t> find(const std::string& column) const {
-    const std::string name = file_name(column);
-    const auto found = table_.find(name);
-    if (!found && mapping_.file_name.contains(column)) fail_mapped(column, name);
-    return found;
-  }
-
-  [[noreturn]] void fail_mapped(const std::string& column, const std::string& name) const {
-    throw InputError(mapping_.place,
-                     "columns reads " + column + " from \"" + printable(name) + "\", but " + table_.file() +
-                         " has no such column" + delimiter_hint(),
-                     suggest_name(name, table_.header(), "columns of the file"));
-  }
-
-  std::string delimiter_hint() const {
-    const auto other = table_.other_delimiter();
-    if (!other) return "";
-    return std::string("; its header is separated by ") +
-           (*other == '\t' ? "tabs" : std::string("'") + *other + "'");
-  }
-
-  void take(const std::string& column, std::size_t index) {
-    const auto taken = std::ranges::find(index_, index);
-    if (taken != index_.end()) {
-      throw InputError(mapping_.place,
-                       "columns reads both " + name_[static_cast<std::size_t>(taken - index_.begin())] +
-                           " and " + column + " from \"" + printable(table_.header()[index]) + "\"",
-                       "give each its own column of the file");
-    }
-    name_.push_back(column);
-    index_.push_back(index);
-  }
-
-  void require(const std::string& column) {
-    const auto index = find(column);
-    if (!index) fail_missing(column);
-    take(column, *index);
-  }
-
-  bool take_if_present(const std::string& column) {
-    const auto index = find(column);
-    if (index) take(column, *index);
-    return index.has_value();
-  }
-
-  [[noreturn]] void fail_missing(const std::string& column) const {
-    throw InputError(table_.header_place(), "column " + column + " is missing" + delimiter_hint(),
-                     missing_remedy(column));
-  }
-
-  std::string missing_remedy(const std::string& column) const {
-    if (const auto other = table_.other_delimiter()) {
-      return std::string("add delimiter = \"") + (*other == '\t' ? "\\t" : std::string(1, *other)) +
-             "\" to the setup";
-    }
-    for (const std::string& present : table_.header()) {
-      const Unit unit = unit_of_key(present);
-      if (unit.suffix.empty() || stem_of_key(present) != stem_of_key(column)) continue;
-      return "the file has " + present + "; add columns = { " + column + " = \"" + present +
-             "\" } and scale = { " + column + " = " + number_text(unit.si_per_unit / si_factor(column)) +
-             " } to the setup";
-    }
-    if (const auto near = nearest_name(column, table_.header())) {
-      return "the file has \"" + printable(*near) + "\"; rename it or add columns = { " + column + " = \"" +
-             printable(*near) + "\" } to the setup";
-    }
-    return "the file has " + printable(join_names(table_.header())) + "; add columns = { " + column +
-           " = \"NAME IN THE FILE\" } to the setup if it is there under another name";
-  }
-
-  void choose_columns() {
-    for (const Axis& axis : machine_.axes) require(axis_column(axis.name));
-    choose_reading();
-    for (const std::string& column : optional_columns(machine_, instrument_)) take_if_present(column);
-    choose_temperatures();
-    for (const AxisName axis : kAllAxes) {
-      if (!machine_.has_axis(axis)) take_if_present(axis_column(axis));
-    }
-  }
-
-  void choose_temperatures() {
-    for (const auto& [column, name] : mapping_.file_name) {
-      if (!temperature_channel(column).empty()) take_if_present(column);
-    }
-    for (const std::string& column : table_.header()) {
-      if (!temperature_channel(column).empty() && !is_taken(column)) take_if_present(column);
-    }
-  }
-
-  bool is_taken(const std::string& header_name) const {
-    return std::ranges::any_of(index_, [&](std::size_t i) { return table_.header()[i] == header_name; }) ||
-           std::ranges::find(name_, header_name) != name_.end();
-  }
-
-  void choose_reading() {
-    std::vector<std::size_t> complete;
-    std::size_t fullest = 0;
-    std::size_t most = 0;
-    for (std::size_t s = 0; s < instrument_.column_sets.size(); ++s) {
-      const auto& set = instrument_.column_sets[s];
-      const auto present = [&](const ColumnSchema& column) { return find(column.column).has_value(); };
-      const auto count = static_cast<std::size_t>(std::ranges::count_if(set, present));
-      if (count == set.size()) complete.push_back(s);
-      if (count > most) {
-        most = count;
-        fullest = s;
-      }
-    }
-    if (complete.empty()) fail_reading(fullest, most);
-    drop_parts_of_larger_sets(complete);
-    if (complete.size() > 1) fail_two_readings(complete);
-    readings_.column_set = complete.front();
-    const auto& set = instrument_.column_sets[complete.front()];
-    readings_.value.resize(set.size());
-    for (const ColumnSchema& column : set) require(column.column);
-  }
-
-  /// Of the sets found, those whose columns all belong to another set found as well say nothing new.
-  void drop_parts_of_larger_sets(std::vector<std::size_t>& complete) const {
-    const auto is_part_of = [&](std::size_t part, std::size_t whole) {
-      const auto& columns = instrument_.column_sets[whole];
-      return part != whole &&
-             std::ranges::all_of(instrument_.column_sets[part], [&](const ColumnSchema& column) {
-               return std::ranges::find(columns, column.column, &ColumnSchema::column) != columns.end();
-             });
-    };
-    const std::vector<std::size_t> all = complete;
-    std::erase_if(complete, [&](std::size_t part) {
-      return std::ranges::any_of(all, [&](std::size_t whole) { return is_part_of(part, whole); });
-    });
-  }
-
-  [[noreturn]] void fail_reading(std::size_t set, std::size_t present) const {
-    for (const ColumnSchema& column : instrument_.column_sets[set]) {
-      if (find(column.column)) continue;
-      if (present > 0 || instrument_.column_sets.size() == 1) fail_missing(column.column);
-      std::vector<std::string> names;
-      for (const auto& alternative : instrument_.column_sets) names.push_back(alternative.front().column);
-      throw InputError(table_.header_place(),
-                       "the reading column is missing: " + instrument_.name + " reads " + join_names(names) +
-                           delimiter_hint(),
-                       missing_remedy(column.column));
-    }
-    fail_missing(instrument_.column_sets[set].front().column);
-  }
-
-  [[noreturn]] void fail_two_readings(const std::vector<std::size_t>& complete) const {
-    const std::string first = instrument_.column_sets[complete[0]].front().column;
-    const std::string second = instrument_.column_sets[complete[1]].front().column;
-    throw InputError(table_.header_place(), "the file has both " + first + " and " + second,
-                     "keep one of them; " + instrument_.name + " takes one kind of reading per setup");
-  }
-
-  /// A factor that would act on nothing must not be dropped in silence.
-  void reject_scale_of_nothing() const {
-    for (const auto& [column, factor] : mapping_.scale) {
-      if (std::ranges::find(name_, column) != name_.end()) continue;
-      throw InputError(
-          mapping_.scale_place,
-          "scale has a factor for " + printable(column) + ", but " + table_.file() + " has no such column",
-          "remove the factor, or add columns = { " + printable(column) +
-              " = \"NAME IN THE FILE\" } to the setup");
-    }
-  }
-
-  /// Columns that nobody reads and that look like a slip of a standard name must not be dropped in silence.
-  void reject_near_misses() const {
-    const auto known = optional_columns(machine_, instrument_);
-    for (const std::string& column : table_.header()) {
-      if (is_taken(column)) continue;
-      if (const auto meant = missing_component(column)) {
-        const std::string_view unit = unit_of_key(column).suffix;
-        const bool other_unit = !unit.empty() && unit != unit_of_key(*meant).suffix;
-        throw InputError(table_.header_place(), "column " + printable(column) + " is not " + *meant,
-                         near_miss_remedy(column, *meant, other_unit));
-      }
-      if (column.starts_with("T_")) {
-        throw InputError(table_.header_place(), "column " + printable(column) + " looks like a temperature",
-                         "name it T_<channel>_degC, or map it with columns = { T_CHANNEL_degC = \"" +
-                             printable(column) + "\" }");
-      }
-      for (const std::string& standard : known) {
-        if (std::ranges::find(name_, standard) != name_.end()) continue;
-        const bool other_case = lower(column) == lower(standard) && column != standard;
-        const bool other_unit = !unit_of_key(column).suffix.empty() && column != standard &&
-                                stem_of_key(column) == stem_of_key(standard) && stem_of_key(column) != column;
-        if (!other_case && !other_unit) continue;
-        throw InputError(table_.header_place(),
-                         "column " + printable(column) + " is not " + standard +
-                             (other_case ? ": names are case-sensitive" : ": the unit differs"),
-                         near_miss_remedy(column, standard, other_unit));
-      }
-    }
-  }
-
-  /// The column of a larger set than the one found that `column` may be meant to be.
-  std::optional<std::string> missing_component(const std::string& column) const {
-    std::vector<std::string> missing;
-    for (const auto& set : instrument_.column_sets) {
-      if (set.size() <= instrument_.column_sets[readings_.column_set].size()) continue;
-      for (const ColumnSchema& part : set) {
-        if (std::ranges::find(name_, part.column) == name_.end()) missing.push_back(part.column);
-      }
-    }
-    const auto same_stem = std::ranges::find_if(missing, [&](const std::string& name) {
-      return lower(std::string(stem_of_key(column))) == stem_of_key(name);
-    });
-    return same_stem != missing.end() ? std::optional(*same_stem) : nearest_name(column, missing);
-  }
-
-  static std::string near_miss_remedy(const std::string& column, const std::string& standard,
-                                      bool other_unit) {
-    std::string remedy = "rename it or add columns = { " + standard + " = \"" + printable(column) + "\" }";
-    if (other_unit) {
-      remedy +=
-          " and scale = { " + standard + " = " + number_text(si_factor(column) / si_factor(standard)) + " }";
-    }
-    return remedy + " to the setup";
+  void scale(const std::string& column, std::vector<double>& values) const {
+    const auto factor = mapping_.scale.find(column);
+    if (factor == mapping_.scale.end()) return;
+    for (double& value : values) value *= factor->second;
   }
 
   void store(const std::string& column, std::vector<double> values) {
-    if (const auto factor = mapping_.scale.find(column); factor != mapping_.scale.end()) {
-      for (double& value : values) value *= factor->second;
-    }
     if (const auto channel = temperature_channel(column); !channel.empty()) {
       check_temperatures(column, values);
       readings_.temperature[channel] = std::move(values);
@@ -379,7 +124,8 @@ class ReadingsReader {
   }
 
   [[noreturn]] void fail(std::size_t row, const std::string& problem, const std::string& remedy) const {
-    throw InputError({table_.file(), static_cast<int>(line_[row])}, problem, remedy);
+    const SourcePlace in_file{table_.file(), static_cast<int>(line_[row])};
+    throw InputError(in_constants_ ? mapping_.constant_place : in_file, problem, remedy);
   }
 
   void check_range(const std::string& column, const std::vector<double>& values, double min, double max,
@@ -460,29 +206,25 @@ class ReadingsReader {
 
   const CsvTable& table_;
   const ColumnMapping& mapping_;
+  const ColumnChoice& choice_;
   const Machine& machine_;
   const InstrumentSchema& instrument_;
-  std::vector<std::string> name_;  // standard names of the columns taken, in step with index_
-  std::vector<std::size_t> index_;
   std::vector<std::int64_t> line_;
+  bool in_constants_ = false;
   Readings readings_;
 };
 
 }  // namespace
 
-std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument) {
-  std::vector<std::string> names;
-  for (const Axis& axis : machine.axes) names.push_back(axis_column(axis.name));
-  for (const auto& set : instrument.column_sets) {
-    for (const ColumnSchema& column : set) names.push_back(column.column);
-  }
-  for (const std::string& column : optional_columns(machine, instrument)) names.push_back(column);
-  return names;
+Readings read_readings(const CsvTable& table, const ColumnMapping& mapping, const ColumnChoice& choice,
+                       const Machine& machine, const InstrumentSchema& instrument) {
+  return ReadingsReader(table, mapping, choice, machine, instrument).read();
 }
 
 Readings read_readings(const CsvTable& table, const ColumnMapping& mapping, const Machine& machine,
                        const InstrumentSchema& instrument) {
-  return ReadingsReader(table, mapping, machine, instrument).read();
+  return read_readings(table, mapping, choose_columns(table, mapping, machine, instrument), machine,
+                       instrument);
 }
 
 }  // namespace volcal

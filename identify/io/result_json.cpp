@@ -318,7 +318,9 @@ std::string result_summary_json(const FitResult& result) {
 FitResult result_from_json(const std::string& text, const std::string& file) {
   const std::string remedy = "give a folder that volcal fit wrote, or run the fit again";
   try {
-    return result_from(Json::parse(text));
+    const Json json = Json::parse(text);
+    json_parts::require_no_control(json);
+    return result_from(json);
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     const auto line = 1 + std::count(text.begin(), end, '\n');

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "volcal/identify/io/text_encoding.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/functions/registry.h"
 
@@ -194,6 +196,20 @@ void require_inside(long offset, long count, const ParameterLayout& layout) {
 }
 
 }  // namespace
+
+void require_no_control(const Json& json) {
+  const auto check = [](std::string text) {
+    std::erase(text, '\n');
+    if (holds_control(text))
+      throw std::invalid_argument("the text \"" + text + "\" holds a control character");
+  };
+  if (json.is_string()) check(json.get<std::string>());
+  if (!json.is_structured()) return;
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object()) check(key);
+    if (!value.is_number()) require_no_control(value);
+  }
+}
 
 Json number(double value) {
   if (std::isfinite(value)) return value;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "volcal/identify/io/nearest_name.h"
+#include "volcal/identify/io/text_encoding.h"
 
 namespace volcal {
 namespace {
@@ -117,10 +118,14 @@ std::string resolve_path(const std::string& from, const std::string& file) {
 std::string printable(const std::string& text) {
   constexpr std::size_t kLongest = 60;
   std::string shown;
-  for (const char c : text.substr(0, kLongest)) {
-    shown += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? '?' : c;
+  std::string_view rest = text;
+  while (!rest.empty() && shown.size() < kLongest) {
+    const std::size_t length = utf8_length(rest);
+    const std::string_view character = rest.substr(0, std::max<std::size_t>(length, 1));
+    shown += length == 0 || is_control(character) ? std::string_view("?") : character;
+    rest.remove_prefix(character.size());
   }
-  if (text.size() > kLongest) shown += "...";
+  if (!rest.empty()) shown += "...";
   return shown;
 }
 

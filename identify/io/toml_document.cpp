@@ -316,7 +316,16 @@ std::string TomlTable::required_text(std::string_view key) const { return or_mis
 std::string TomlTable::required_name(std::string_view key) const {
   std::string given = required_text(key);
   if (is_blank(given)) fail(key, name(key) + " is empty", "give it a name");
+  require_no_formula(key, given);
   return given;
+}
+
+void TomlTable::require_no_formula(std::string_view key, const std::string& name) const {
+  const std::size_t first = name.find_first_not_of(" \t");
+  if (first == std::string::npos || std::string_view("=+-@").find(name[first]) == std::string_view::npos)
+    return;
+  fail(key, "the name \"" + printable(name) + "\" begins with " + name[first],
+       "begin it with a letter or a figure: a spreadsheet takes it for a formula in the tables that hold it");
 }
 
 std::vector<double> TomlTable::required_numbers(std::string_view key, NumberLimits limits) const {

@@ -67,7 +67,8 @@ class TomlTable {
   // The same, with an error when the key is absent.
   double required_number(std::string_view key, NumberLimits limits = {}) const;
   std::string required_text(std::string_view key) const;
-  std::string required_name(std::string_view key) const;  ///< a text that is more than blanks
+  /// A text that is more than blanks and that no spreadsheet takes for a formula.
+  std::string required_name(std::string_view key) const;
   std::vector<double> required_numbers(std::string_view key, NumberLimits limits = {}) const;
   Eigen::Vector3d required_vector3(std::string_view key) const;
   TomlTable required_table(std::string_view key) const;
@@ -80,6 +81,8 @@ class TomlTable {
   /// Keys of a schema: type, required, choices and plausible bounds checked; values in SI under the stem.
   Options options(const std::vector<KeySchema>& schema) const;
 
+  /// Throws InputError where `name`, the value or the name of a key, begins like a formula (= + - @).
+  void require_no_formula(std::string_view key, const std::string& name) const;
   /// Throws InputError at a key (or at this table when the key is absent).
   [[noreturn]] void fail(std::string_view key, const std::string& problem, const std::string& remedy) const;
   /// Throws "KEY is missing", or names the unknown key that was probably meant to be it. `remedy`:

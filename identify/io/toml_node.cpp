@@ -4,30 +4,42 @@
 
 #include <algorithm>
 
+#include "volcal/identify/io/text_encoding.h"
+#include "volcal/identify/io/text_file.h"
+
 namespace volcal::detail {
 namespace {
 
+/// Texts of a file are shown on terminals and written into tables.
+void require_no_control(std::string_view text, int line, const std::string& file) {
+  if (!holds_control(text)) return;
+  throw InputError({file, line},
+                   "the text \"" + printable(std::string(text)) + "\" holds a control character",
+                   "write it in letters, figures and signs; a path in single quotes keeps its backslashes");
+}
+
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 
-TomlNode convert(const toml::node& node);
+TomlNode convert(const toml::node& node, const std::string& file);
 
-void convert_table(const toml::table& table, TomlNode& into) {
+void convert_table(const toml::table& table, const std::string& file, TomlNode& into) {
   for (const auto& [key, child] : table) {
-    TomlNode converted = convert(child);
+    require_no_control(key.str(), static_cast<int>(key.source().begin.line), file);
+    TomlNode converted = convert(child, file);
     converted.line = static_cast<int>(key.source().begin.line);
     into.entries.push_back({std::string(key.str()), std::move(converted)});
   }
   std::ranges::stable_sort(into.entries, {}, [](const auto& entry) { return entry.node.line; });
 }
 
-TomlNode convert(const toml::node& node) {
+TomlNode convert(const toml::node& node, const std::string& file) {
   TomlNode converted;
   converted.line = line_of(node);
   if (const auto* table = node.as_table()) {
-    convert_table(*table, converted);
+    convert_table(*table, file, converted);
   } else if (const auto* array = node.as_array()) {
     converted.kind = TomlKind::Array;
-    for (const toml::node& item : *array) converted.items.push_back(convert(item));
+    for (const toml::node& item : *array) converted.items.push_back(convert(item, file));
   } else if (const auto* integer = node.as_integer()) {
     converted.kind = TomlKind::Integer;
     converted.integer = integer->get();
@@ -38,6 +50,7 @@ TomlNode convert(const toml::node& node) {
   } else if (const auto* text = node.as_string()) {
     converted.kind = TomlKind::Text;
     converted.text = text->get();
+    require_no_control(converted.text, converted.line, file);
   } else if (const auto* boolean = node.as_boolean()) {
     converted.kind = TomlKind::Boolean;
     converted.boolean = boolean->get();
@@ -47,13 +60,25 @@ TomlNode convert(const toml::node& node) {
   return converted;
 }
 
+void require_utf8_text(std::string_view text, const std::string& file) {
+  int line = 1;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) {
+      throw InputError({file, line},
+                       "the file is not UTF-8 text; it seems to be in a code page as cp1252 or latin1",
+                       "save it as UTF-8, or write names without accents");
+    }
+    if (text.front() == '\n') ++line;
+    text.remove_prefix(length);
+  }
+}
+
 std::string syntax_remedy(const std::string& description) {
   if (description.find("redefine") != std::string::npos ||
       description.find("duplicate") != std::string::npos) {
     return "each key and each table may appear once; remove one of the two";
   }
-  if (description.find("utf-8") != std::string::npos)
-    return "save the file as UTF-8, or write names without accents";
   return "TOML syntax: key = value, texts in double quotes, decimal point, arrays as [1.0, 2.0]";
 }
 
@@ -72,11 +97,12 @@ TomlNode* TomlNode::find(std::string_view key) {
 }
 
 std::shared_ptr<TomlSource> parse_toml(const std::string& text, const std::string& file) {
+  require_utf8_text(text, file);
   try {
     const toml::table table = toml::parse(std::string_view(text), std::string_view(file));
     auto source = std::make_shared<TomlSource>();
     source->file = file;
-    convert_table(table, source->root);
+    convert_table(table, file, source->root);
     return source;
   } catch (const toml::parse_error& error) {
     std::string description(error.description());

@@ -13,11 +13,11 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 char upper(char c) { return c >= 'a' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-/// Cuts the line end off.
+/// Cuts the line end off: LF, CR LF, and CR CR LF of files that went through two systems.
 void split_line_end(std::string_view line, NcBlock& block) {
   std::size_t size = line.size();
   if (size > 0 && line[size - 1] == '\n') --size;
-  if (size > 0 && line[size - 1] == '\r') --size;
+  while (size > 0 && line[size - 1] == '\r') --size;
   block.text = line.substr(0, size);
   block.line_end = line.substr(size);
 }
@@ -30,10 +30,18 @@ void split_line_end(std::string_view line, NcBlock& block) {
   if (c == '%') place.refuse("% stands beside other words", "write it on a line of its own");
   if (c == '@' || c == '^')
     place.refuse("polar coordinates (@ and ^) are not read", "write X, Y and Z coordinates");
+  const char* const usage = "write words of a letter and a number, and comments in ( ) or after ;";
   const auto code = static_cast<unsigned char>(c);
-  const bool shown = code > 0x20 && code < 0x7F;
-  place.refuse(shown ? std::string("\"") + c + "\" begins no word" : "a character that is no plain text",
-               "write words of a letter and a number, and comments in ( ) or after ;");
+  if (code > 0x20 && code < 0x7F) place.refuse(std::string("\"") + c + "\" begins no word", usage);
+  if (c == '\r')
+    place.refuse("a carriage return (CR) stands within the line",
+                 "end the lines of the program with LF or CRLF");
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  const std::string byte = {'0', 'x', kDigits[code >> 4], kDigits[code & 0xF]};
+  if (code >= 0x80)
+    place.refuse("a character outside ASCII (byte " + byte + ") stands outside a comment",
+                 "write it in ASCII; comments may hold any character");
+  place.refuse("a control character (byte " + byte + ")", "remove it; " + std::string(usage));
 }
 
 class BlockReader {

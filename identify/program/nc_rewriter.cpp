@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "volcal/model/description/errors.h"
@@ -12,8 +13,29 @@
 namespace volcal {
 namespace {
 
-constexpr double kShareOfJumps = 0.25;    ///< of the tolerance
-constexpr double kTravelRounding = 1e-9;  // m
+constexpr double kShareOfJumps = 0.25;        ///< of the tolerance
+constexpr double kTravelRounding = 1e-9;      // m
+constexpr std::size_t kLongestWritten = 255;  // characters without line end: what LinuxCNC reads
+
+/// "(a b c)" as comments of at most `longest` characters, broken at blanks, the later ones behind "(".
+std::vector<std::string> comments_of(const std::string& text, std::size_t longest) {
+  std::vector<std::string> comments;
+  std::string_view rest = text;
+  while (rest.size() > longest) {
+    std::size_t cut = rest.rfind(' ', longest - 1);
+    if (cut == std::string_view::npos || cut == 0) cut = longest - 1;
+    comments.push_back(std::string(rest.substr(0, cut)) + ")");
+    comments.back().insert(0, comments.size() > 1 ? "(" : "");
+    rest.remove_prefix(rest[cut] == ' ' ? cut + 1 : cut);
+  }
+  comments.push_back((comments.empty() ? "" : "(") + std::string(rest));
+  return comments;
+}
+
+std::size_t length_without_end(std::string_view line) {
+  const std::size_t last = line.find_last_not_of("\r\n");
+  return last == std::string_view::npos ? 0 : last + 1;
+}
 
 }  // namespace
 
@@ -175,8 +197,21 @@ void NcRewriter::write_header(std::string_view line) {
   header_written_ = true;
   const bool percent = !written_.empty() && written_.front().text.starts_with('%');
   const std::string end = line.ends_with("\r\n") ? "\r\n" : "\n";
-  const NcWrittenLine header{options_.header + end, 0.0};
-  written_.insert(percent ? written_.begin() + 1 : written_.begin(), header);
+  std::vector<NcWrittenLine> header;
+  for (const std::string& comment : comments_of(options_.header, kLongestWritten - 1))
+    header.push_back({comment + end, 0.0});
+  written_.insert(percent ? written_.begin() + 1 : written_.begin(), header.begin(), header.end());
+}
+
+/// What was added must not make a line longer than controls read; lines that were so before are the user's.
+void NcRewriter::require_readable(std::string_view line) const {
+  for (const NcWrittenLine& written : written_) {
+    const std::size_t length = length_without_end(written.text);
+    if (length <= kLongestWritten || length <= length_without_end(line)) continue;
+    interpreter_.place().refuse(
+        fmt::format("the rewritten block has {} characters, and controls read {}", length, kLongestWritten),
+        "write its comment on a line of its own");
+  }
 }
 
 void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
@@ -197,6 +232,7 @@ void NcRewriter::rewrite(std::string_view line, const Sink& sink) {
     place.refuse(error.what(), "look at the result's error tables");
   }
   if (written_.size() > 1) ++summary_.split_lines;
+  require_readable(line);
   write_header(line);
   ++summary_.lines_read;
   summary_.lines_written += static_cast<std::int64_t>(written_.size());

@@ -14,7 +14,7 @@ Json micro(double value) { return value / kMicro; }
 Json micro(const Eigen::Vector3d& v) { return {v.x() / kMicro, v.y() / kMicro, v.z() / kMicro}; }
 
 Json size_json(const ResidualSize& size) {
-  return {{"n", size.count}, {"rms", micro(size.rms)}, {"max", micro(size.max)}};
+  return {{"n", size.count}, {"mean", micro(size.mean)}, {"rms", micro(size.rms)}, {"max", micro(size.max)}};
 }
 
 Json cell_json(const ComparisonCell& cell) {
@@ -180,6 +180,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
   Json list = Json::array();
   for (const ComparedModel& model : models) list.push_back(model_json(campaign, model));
   Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
+  if (!campaign.notes.empty()) json["notes"] = campaign.notes;
   if (!heldout.empty()) json["held_out"] = Json::array();
   for (const HeldOutModel& model : heldout) {
     json["held_out"].push_back({{"name", model.name},

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "volcal/identify/report/comparison_report.h"
+#include "volcal/identify/report/signed_means_text.h"
 #include "volcal/identify/report/standard_figures_text.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/stats/channels.h"
@@ -337,6 +338,7 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
   }
   const Comparisons comparisons = comparisons_of(models);
   if (two) text += against_sentence(*comparisons[0], *comparisons[1], "all readings");
+  for (const std::string& note : campaign.notes) text += "! " + note + '\n';
   text += '\n' + setups_text(campaign, comparisons, options.all_cells, "Residuals by setup");
   const std::string places = places_text(comparisons, options);
   if (!places.empty()) text += '\n' + places;
@@ -345,6 +347,9 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
       "  dof: readings less the nuisance parameters estimated anew; readings that the model was fitted to "
       "have\n"
       "  chi2/dof a little below 1\n";
+  const std::string means =
+      signed_means_text(comparisons, options.all_cells ? campaign.setups.size() : kSetupsShown);
+  if (!means.empty()) text += '\n' + means;
   std::vector<NamedFigures> figures;
   for (std::size_t m = 0; m < models.size(); ++m) {
     const std::string name = two ? std::string("model") + kSuffix[m] : "model";

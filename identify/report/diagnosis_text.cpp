@@ -217,7 +217,10 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       "removed\n",
       diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(),
       diagnosis.removed_readings.size());
-  return text + removed_text(diagnosis);
+  text += removed_text(diagnosis);
+  for (const std::string& words : diagnosis.not_looked_for) text += words + "\n";
+  for (const std::string& note : diagnosis.notes) text += "! " + note + "\n";
+  return text;
 }
 
 }  // namespace volcal

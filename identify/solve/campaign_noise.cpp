@@ -50,7 +50,7 @@ std::vector<ObservationPlace> observation_places(const MeasurementModel& model) 
 }
 
 CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> stated_sigma,
-                             const std::vector<bool>& removed) {
+                             const std::vector<bool>& removed, const Eigen::VectorXd* estimated) {
   CampaignNoise noise{observation_places(model), {}, {}};
   noise.data.sigma = std::move(stated_sigma);
   std::map<std::tuple<std::size_t, std::int32_t, int>, std::size_t> sequence_of;
@@ -59,7 +59,8 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
     const Setup& setup = model.campaign().setups[setup_index];
     const Readings& readings = setup.readings;
     if (!removed.empty() && removed[i]) noise.data.sigma[i] = std::numeric_limits<double>::infinity();
-    noise.data.length.push_back(model.bound(setup_index).noise_length(row, channel));
+    noise.data.length.push_back(estimated ? model.noise_length(setup_index, row, channel, *estimated)
+                                          : model.bound(setup_index).noise_length(row, channel));
     const std::int32_t run = readings.run.empty() ? 0 : readings.run[row];
     const auto [found, is_new] =
         sequence_of.try_emplace({setup_index, run, channel}, noise.data.sequences.size());

@@ -28,8 +28,9 @@ struct CampaignNoise {
 };
 
 /// All observations. `stated_sigma`: per observation, m or rad; `removed`: per observation, empty = none.
+/// `estimated`: where the stations stand; null = where they are guessed to.
 CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> stated_sigma,
-                             const std::vector<bool>& removed);
+                             const std::vector<bool>& removed, const Eigen::VectorXd* estimated = nullptr);
 
 /// Whole sequences, evenly chosen, until `limit` observations are reached; every instrument keeps one at
 /// least. A sequence that alone is longer than the limit gives its first readings in time. All when there are

@@ -124,7 +124,9 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
   options.threads = threads;
   model.set_second_order_remainder(parameters);
   minimise(index, weight, datum, prior, options, z);
-  if (renew_sigma_of_angles(index, datum.raw(z), sigma)) {
+  const bool angles = renew_sigma_of_angles(index, datum.raw(z), sigma);
+  const bool lengths = renew_sigma_of_lengths(index, datum.raw(z), sigma);
+  if (angles || lengths) {
     weight = weights_of(index, sigma);
     minimise(index, weight, datum, prior, options, z);
   }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/adjustment.h"
@@ -64,6 +65,7 @@ class Identification {
     progress("nuisance parameters on the nominal machine", 0.0);
     fit_nuisance();
     renew_sigma_of_angles(index_, parameters_, stated_sigma_);
+    if (renew_sigma_of_lengths(index_, parameters_, stated_sigma_)) found_stations_ = parameters_;
     check_plausible();
     lap("nuisance parameters");
     progress("rank analysis", 0.1);
@@ -279,7 +281,7 @@ class Identification {
   /// Estimated about the white adjustment and once more about that which follows from it: smoothing chosen
   /// with white weights takes part of a wander for detail of the functions.
   void model_noise() {
-    campaign_noise_ = campaign_noise(model_, stated_sigma_, removed_);
+    campaign_noise_ = noise_of_campaign();
     NoiseOptions options;
     options.threads = threads_;
     options.uncertainty = false;
@@ -298,6 +300,10 @@ class Identification {
     result_.noise.groups = campaign_noise_.groups;
     result_.noise.rows = noise_table(estimate);
     for (const InstrumentNoise& own : estimate.instruments) white_log_u_.push_back(own.log_uncertainty.white);
+  }
+
+  CampaignNoise noise_of_campaign() const {
+    return campaign_noise(model_, stated_sigma_, removed_, found_stations_ ? &*found_stations_ : nullptr);
   }
 
   void update_covariance() {
@@ -343,7 +349,7 @@ class Identification {
       update_hyperparameters();
       minimise_all();
     } else {
-      campaign_noise_ = campaign_noise(model_, stated_sigma_, removed_);
+      campaign_noise_ = noise_of_campaign();
       adjust_to_noise(0);
     }
   }
@@ -423,6 +429,7 @@ class Identification {
   std::vector<std::vector<std::size_t>> group_of_channel_;  ///< per setup
   std::vector<double> scale_;
   Eigen::VectorXd parameters_;
+  std::optional<Eigen::VectorXd> found_stations_;  ///< where the guesses are too far off for the noise
   std::unique_ptr<DatumSpace> datum_;
   Eigen::VectorXd z_;
   GaussianPrior base_prior_;

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/tool_tips.h"
 
 namespace volcal {
 namespace {
@@ -120,14 +121,6 @@ double largest_sideways_offset(const Campaign& campaign, int k) {
   return largest;
 }
 
-/// The linear axis whose direction a squareness turns.
-std::optional<AxisName> turned_axis(const std::string& name) {
-  const auto location = LocationSymbol::parse(name);
-  if (!location || is_rotary(location->axis) || !is_rotation(location->component)) return std::nullopt;
-  if (direction_of(location->component) == direction_of(location->axis)) return std::nullopt;
-  return location->axis;
-}
-
 /// Name of the straightness that displaces as a squareness does: this one in proportion to the position, the
 /// straightness in any other course. Empty for other errors.
 std::string straightness_beside(const std::string& name) {
@@ -158,8 +151,12 @@ Explanation explain_unseen(const Campaign& campaign, const std::string& name) {
     return {"no reading has a lever arm about " + about,
             "add setups with another tool offset, or an angle instrument about " + about};
   }
+  const bool location = LocationSymbol::parse(name).has_value();
+  const std::string off = symbol     ? " ([functions] " + name + " = { basis = \"zero\" })"
+                          : location ? " ([locations] " + name + " = \"zero\")"
+                                     : "";
   return {"no reading changes when it changes",
-          "add readings that are sensitive to it, or switch it off in the model"};
+          "add readings that are sensitive to it, or switch it off in the model" + off};
 }
 
 std::set<std::string> stations(const ParameterLayout& layout) {
@@ -197,6 +194,8 @@ std::string remedy_for_mixture(const MeasurementModel& model, const std::string&
     remedies.emplace_back("measure from more stations (four, well apart)");
   if (tools_in_use(model.campaign()) < 2)
     remedies.emplace_back("repeat with a second tool offset, sideways and of another length");
+  if (std::string tool = third_tool(model.campaign(), error, partners); !tool.empty())
+    remedies.push_back(std::move(tool));
   if (station_count == 0 && std::ranges::any_of(partners, is_nuisance)) {
     remedies.emplace_back(
         "add an instrument that holds position or direction over the whole travel (tracer, straightness, "

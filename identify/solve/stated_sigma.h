@@ -17,4 +17,9 @@ std::vector<double> stated_sigma(const ReadingIndex& index, const Eigen::VectorX
 bool renew_sigma_of_angles(const ReadingIndex& index, const Eigen::VectorXd& parameters,
                            std::vector<double>& sigma);
 
+/// Anew those in proportion to a length from a station that stands elsewhere than it was guessed to. False,
+/// and `sigma` stays as it is, where that would change none by more than 1 %.
+bool renew_sigma_of_lengths(const ReadingIndex& index, const Eigen::VectorXd& parameters,
+                            std::vector<double>& sigma);
+
 }  // namespace volcal

@@ -18,6 +18,7 @@ namespace {
 constexpr double kSignificanceOfLackOfFit = 1e-3;
 constexpr double kUnitSlip = 100.0;
 constexpr double kContradicted = 5.0;       // standard deviations of a prior
+constexpr double kFarGuess = 0.1;           // m, of a station: cm accuracy is enough
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
 
 void report_stated_sigma(FitResult& result) {
@@ -123,6 +124,23 @@ void report_contradicted_priors(FitResult& result) {
   }
 }
 
+/// A guess of metres is worth a correction though no prior holds it: a fit may start too far off.
+void report_far_guesses(FitResult& result) {
+  for (const ParameterBlock& block : result.layout.blocks) {
+    const bool point = block.kind == ParameterKind::Nuisance && block.units[0] == "mm" &&
+                       block.labels == std::vector<std::string>{"x", "y", "z"};
+    if (!point || (block.prior_sigma.array() != 0.0).any()) continue;
+    const Eigen::Vector3d guess = block.guess;
+    const Eigen::Vector3d found = result.parameters.segment<3>(block.offset);
+    if ((found - guess).norm() < kFarGuess) continue;
+    const double ratio = guess.norm() > 0.0 ? found.norm() / guess.norm() : 0.0;
+    result.messages.push_back(fmt::format(
+        "{}: found {:.0f} mm from its guess; write [{:.0f}, {:.0f}, {:.0f}] mm in the campaign file{}",
+        block.name, (found - guess).norm() * 1e3, found.x() * 1e3, found.y() * 1e3, found.z() * 1e3,
+        std::abs(std::log(ratio / 1e3)) < std::log(2.0) ? " (is the guess in m?)" : ""));
+  }
+}
+
 void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& binding, FitResult& result) {
   for (const EffectBinding& effect : binding.effects) {
     std::size_t unrecorded = 0;
@@ -164,6 +182,7 @@ std::string_view to_string(FitStatus status) {
 
 void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
            FitResult& result) {
+  result.messages.insert(result.messages.end(), campaign.notes.begin(), campaign.notes.end());
   report_stated_sigma(result);
   report_noise(result);
   const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
@@ -172,6 +191,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
   report_left_out(campaign, result);
   report_outliers(result);
   report_contradicted_priors(result);
+  report_far_guesses(result);
   report_unrecorded_drivers(campaign, binding, result);
   if (lack) report_lack_of_fit(result);
   if (!end.converged)

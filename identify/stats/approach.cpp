@@ -1,7 +1,10 @@
 #include "volcal/identify/stats/approach.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
+
+#include "volcal/identify/stats/target_positions.h"
 
 namespace volcal {
 
@@ -20,9 +23,11 @@ std::vector<Pass> passes(const Readings& readings) {
 std::vector<int> approach_from_order(std::span<const double> positions) {
   const std::size_t count = positions.size();
   std::vector<int> approach(count, 0);
+  const std::vector<std::size_t> target = group_targets(positions, kSamePosition).group;
   const auto move_to = [&](std::size_t k) {
     const double move = positions[k] - positions[k - 1];
-    return std::abs(move) <= kSamePosition ? 0 : (move > 0.0 ? 1 : -1);
+    if (target[k] == target[k - 1] || std::abs(move) <= kSamePosition) return 0;
+    return move > 0.0 ? 1 : -1;
   };
   int next_move = 0;
   for (std::size_t k = count; k-- > 0;) {
@@ -44,7 +49,10 @@ std::vector<int> axis_approach(const Readings& readings, AxisName axis) {
   for (const Pass& pass : passes(readings)) {
     std::vector<double> along;
     for (const std::size_t row : pass.rows) along.push_back(position[row]);
-    const std::vector<int> from_order = approach_from_order(along);
+    const auto [low, high] = std::ranges::minmax(along);
+    const bool moves = high - low > kStandingRange;
+    const std::vector<int> from_order =
+        moves ? approach_from_order(along) : std::vector<int>(along.size(), 0);
     for (std::size_t k = 0; k < pass.rows.size(); ++k) {
       const std::size_t row = pass.rows[k];
       const int stated = column.empty() ? 0 : column[row];

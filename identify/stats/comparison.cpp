@@ -105,7 +105,7 @@ bool axis_moves(const Campaign& campaign, AxisName axis) {
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     for (const double position : positions(campaign, i, axis)) {
       if (!first) first = position;
-      if (std::abs(position - *first) > kSamePosition) return true;
+      if (std::abs(position - *first) > kStandingRange) return true;
     }
   }
   return false;
@@ -220,6 +220,7 @@ std::vector<Classifier> all_classifiers(const Campaign& campaign, const Comparis
 
 void include(double residual, ResidualSize& size) {
   ++size.count;
+  size.mean += residual;            // sum until `finish`
   size.rms += residual * residual;  // sum of squares until `finish`
   size.max = std::max(size.max, std::abs(residual));
 }
@@ -233,7 +234,9 @@ void include(const ResidualRecord& record, bool is_angle, ComparisonCell& cell) 
 }
 
 void finish(ResidualSize& size) {
-  if (size.count > 0) size.rms = std::sqrt(size.rms / static_cast<double>(size.count));
+  if (size.count == 0) return;
+  size.mean /= static_cast<double>(size.count);
+  size.rms = std::sqrt(size.rms / static_cast<double>(size.count));
 }
 
 void finish(ComparisonCell& cell) {

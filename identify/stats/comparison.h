@@ -14,8 +14,9 @@ namespace volcal {
 /// Size of the residuals of one kind (lengths in m, angles in rad).
 struct ResidualSize {
   std::size_t count = 0;
-  double rms = 0.0;  ///< 0 without observations
-  double max = 0.0;  ///< of the absolute value
+  double mean = 0.0;  ///< signed, reading minus prediction; 0 without observations
+  double rms = 0.0;   ///< 0 without observations
+  double max = 0.0;   ///< of the absolute value
 };
 
 /// Observations that share something: a setup, a range of X, an approach ...

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "volcal/identify/stats/target_positions.h"
 
 namespace volcal {
 namespace {
@@ -40,22 +43,19 @@ ApproachStatistics statistics(const std::vector<double>& deviations) {
   return result;
 }
 
-std::vector<PositioningTarget> group_by_target(std::vector<PositioningReading> readings, double tolerance) {
-  std::stable_sort(readings.begin(), readings.end(),
-                   [](const auto& a, const auto& b) { return a.target < b.target; });
-  std::vector<PositioningTarget> targets;
-  for (std::size_t first = 0; first < readings.size();) {
-    std::vector<double> positive, negative;
-    double sum = 0.0;
-    std::size_t next = first;
-    for (; next < readings.size() && readings[next].target - readings[first].target <= tolerance; ++next) {
-      (readings[next].direction > 0 ? positive : negative).push_back(readings[next].deviation);
-      sum += readings[next].target;
-    }
-    targets.push_back({sum / static_cast<double>(next - first), statistics(positive), statistics(negative)});
-    first = next;
+void set_targets(const std::vector<PositioningReading>& readings, double tolerance,
+                 PositioningFigures& figures) {
+  std::vector<double> position;
+  for (const PositioningReading& reading : readings) position.push_back(reading.target);
+  const TargetGroups groups = group_targets(position, tolerance);
+  std::vector<std::vector<double>> positive(groups.position.size()), negative(groups.position.size());
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    auto& approaches = readings[k].direction > 0 ? positive : negative;
+    approaches[groups.group[k]].push_back(readings[k].deviation);
   }
-  return targets;
+  for (std::size_t g = 0; g < groups.position.size(); ++g)
+    figures.targets.push_back({groups.position[g], statistics(positive[g]), statistics(negative[g])});
+  figures.target_spread = groups.spread;
 }
 
 UnidirectionalFigures unidirectional(const std::vector<PositioningTarget>& targets,
@@ -145,7 +145,7 @@ PositioningFigures positioning_figures(std::span<const PositioningReading> readi
                [](const PositioningReading& reading) { return reading.direction != 0; });
   PositioningFigures figures;
   figures.unknown_direction = static_cast<int>(readings.size() - known.size());
-  figures.targets = group_by_target(std::move(known), target_tolerance);
+  set_targets(known, target_tolerance, figures);
   figures.positive = unidirectional(figures.targets, &PositioningTarget::positive);
   figures.negative = unidirectional(figures.targets, &PositioningTarget::negative);
   set_reversal_figures(figures);

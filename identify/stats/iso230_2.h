@@ -61,9 +61,10 @@ struct PositioningFigures {
   std::optional<double> repeatability;       ///< R
   std::optional<double> accuracy;            ///< A
   int unknown_direction = 0;                 ///< readings left out because their approach is unknown
+  double target_spread = 0.0;                ///< largest range of recorded positions taken as one target, m
 };
 
-/// Readings whose targets lie within `target_tolerance` (m) above the first of a group share one target.
+/// Readings share a target as group_targets() says; `target_tolerance` in m.
 PositioningFigures positioning_figures(std::span<const PositioningReading> readings,
                                        double target_tolerance = 1e-6);
 

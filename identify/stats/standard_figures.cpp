@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "volcal/identify/stats/approach.h"
 #include "volcal/identify/stats/channels.h"
+#include "volcal/identify/stats/target_positions.h"
 #include "volcal/identify/stats/test_paths.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {
@@ -90,13 +93,7 @@ class LineEvaluation {
     }
     if (own_zero_) zero_each_line(line, readings);
     PositioningFigures figures = positioning_figures(readings);
-    if (own_zero_) {
-      figures.reversal.reset();
-      figures.mean_reversal.reset();
-      figures.systematic.reset();
-      figures.repeatability.reset();
-      figures.accuracy.reset();
-    }
+    if (own_zero_) drop_what_compares_lines(line, readings, figures);
     return figures;
   }
 
@@ -119,6 +116,36 @@ class LineEvaluation {
     }
   }
 
+  /// A line's own zero says nothing between lines: figures of both directions, and those of one direction
+  /// where its lines did not meet the same targets.
+  static void drop_what_compares_lines(const std::vector<std::int32_t>& line,
+                                       const std::vector<PositioningReading>& readings,
+                                       PositioningFigures& figures) {
+    figures.reversal.reset();
+    figures.mean_reversal.reset();
+    figures.systematic.reset();
+    figures.repeatability.reset();
+    figures.accuracy.reset();
+    const bool positive = lines_share_targets(line, readings, +1);
+    const bool negative = lines_share_targets(line, readings, -1);
+    if (!positive) figures.positive = {};
+    if (!negative) figures.negative = {};
+    if (!positive || !negative) figures.mean_bidirectional.reset();
+  }
+
+  static bool lines_share_targets(const std::vector<std::int32_t>& line,
+                                  const std::vector<PositioningReading>& readings, int direction) {
+    std::vector<double> position;
+    for (const PositioningReading& reading : readings) position.push_back(reading.target);
+    const TargetGroups targets = group_targets(position, kSamePosition);
+    std::map<std::int32_t, std::set<std::size_t>> met;
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      if (readings[k].direction == direction) met[line[k]].insert(targets.group[k]);
+    }
+    return std::all_of(met.begin(), met.end(),
+                       [&](const auto& one) { return one.second == met.begin()->second; });
+  }
+
   const Setup& setup_;
   const StraightPath& path_;
   std::vector<Vector3d> point_w_;
@@ -131,7 +158,14 @@ std::vector<std::string> line_notes(const LineEvaluation& evaluation, const Posi
                                     const SetupValues& values) {
   std::vector<std::string> notes = common_notes(values);
   if (evaluation.every_line_has_its_own_zero()) {
-    notes.emplace_back("every line has its own zero: reversal and bidirectional figures are not seen");
+    const bool shared = figures.positive.systematic || figures.negative.systematic;
+    notes.emplace_back(shared
+                           ? "every line has its own zero: reversal and bidirectional figures are not seen"
+                           : "every line has its own zero and targets of its own: no figure compares them");
+  }
+  if (figures.target_spread > kSamePosition) {
+    notes.push_back(fmt::format("recorded positions within {:.1f} um were taken as one target",
+                                figures.target_spread / kMetrePerMicrometre));
   }
   if (figures.unknown_direction > 0) {
     notes.push_back(fmt::format("{} readings of unknown approach are left out", figures.unknown_direction));
@@ -231,7 +265,9 @@ void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const Setup
 void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupValues& values,
                      StandardFigures& result) {
   if (setup.readings.channels() < 3) {
-    result.not_recognised.push_back(setup.name + ": two components of the error vectors only");
+    result.not_recognised.push_back(setup.name + (setup.readings.channels() == 1
+                                                      ? ": one component of the error vectors only"
+                                                      : ": two components of the error vectors only"));
     return;
   }
   const std::vector<Vector3d> point_w = nominal_points_w(campaign, setup);

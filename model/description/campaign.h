@@ -62,6 +62,8 @@ struct Campaign {
   std::string active_compensations =
       {};  ///< of the control while it was measured, in words; empty = not stated
 
+  std::vector<std::string> notes = {};  ///< what was noticed while it was read, a sentence each
+
   std::size_t reading_count() const;  ///< observations: rows times channels, over all setups
 };
 

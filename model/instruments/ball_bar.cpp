@@ -70,6 +70,10 @@ class BallBarSetup final : public EquationBase<BallBarSetup> {
     return (nominal_point_w_[row] - centre_guess_w_).norm();
   }
 
+  double noise_length_at(std::size_t row, int /*channel*/, const double* nuisance) const override {
+    return (nominal_point_w_[row] - Eigen::Map<const Eigen::Vector3d>(nuisance)).norm();
+  }
+
  private:
   double length_guess(const Setup& setup) const {
     double sum = 0.0;

@@ -117,6 +117,11 @@ class BoundSetup {
   virtual void local_nuisance(std::size_t row, int* index) const;
   /// Length (m) that scales the per-metre part of the noise of a channel.
   virtual double noise_length(std::size_t row, int channel) const = 0;
+  /// The same where the nuisance parameters of the row, as linearize() takes them, are known better than by
+  /// their guesses: the length from a station follows where the station is found to stand.
+  virtual double noise_length_at(std::size_t row, int channel, const double* /*nuisance*/) const {
+    return noise_length(row, channel);
+  }
   /// Constant part of a channel's noise from the noise table (m or rad).
   virtual double noise_constant(const Options& noise, int channel) const;
 

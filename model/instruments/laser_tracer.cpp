@@ -105,6 +105,10 @@ class LaserTracerSetup final : public EquationBase<LaserTracerSetup> {
     return (nominal_point_w_[row] - station_guess_w_).norm();
   }
 
+  double noise_length_at(std::size_t row, int /*channel*/, const double* nuisance) const override {
+    return (nominal_point_w_[row] - Eigen::Map<const Eigen::Vector3d>(nuisance)).norm();
+  }
+
  private:
   double dead_path_guess(const Setup& setup) const {
     double sum = 0.0;

@@ -136,6 +136,10 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
     return channel == 0 ? (nominal_point_w_[row] - station_guess_w_).norm() : 0.0;
   }
 
+  double noise_length_at(std::size_t row, int channel, const double* nuisance) const override {
+    return channel == 0 ? (nominal_point_w_[row] - Eigen::Map<const Eigen::Vector3d>(nuisance)).norm() : 0.0;
+  }
+
   double noise_constant(const Options& noise, int channel) const override {
     return noise.number(channel == 0 ? "constant" : "angle").value_or(0.0);
   }

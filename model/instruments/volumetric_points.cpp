@@ -23,7 +23,7 @@ const InstrumentSchema kVolumetricPointsSchema = {
     .name = "volumetric-points",
     .summary = "Error vectors at points of the volume: grid plate, probed artefact, tracker points.",
     .equation =
-        "e = P - P_nominal + t + rotation x (P_nominal - pivot), of which two or three components "
+        "e = P - P_nominal + t + rotation x (P_nominal - pivot), of which one, two or three components "
         "are read; pivot: centroid of the points, or the origin with `artefact`",
     .source = "ISO/TR 16907, 7.4",
     .keys = {{.key = "alignment",
@@ -36,7 +36,10 @@ const InstrumentSchema kVolumetricPointsSchema = {
     .column_sets = {{component(0), component(1), component(2)},
                     {component(0), component(1)},
                     {component(1), component(2)},
-                    {component(0), component(2)}},
+                    {component(0), component(2)},
+                    {component(0)},
+                    {component(1)},
+                    {component(2)}},
     .noise_keys = length_noise_keys()};
 
 class VolumetricPointsSetup final : public EquationBase<VolumetricPointsSetup> {

@@ -121,8 +121,24 @@ void MeasurementModel::expand_effects(const Eigen::VectorXd& parameters) {
   }
 }
 
+void MeasurementModel::local_nuisance(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                                      double* nuisance) const {
+  const SetupBinding& place = binding_.setups[setup];
+  int index[kMaxLocalNuisance];
+  place.bound->local_nuisance(row, index);
+  for (int k = 0; k < place.bound->local_nuisance_size(); ++k)
+    nuisance[k] = parameters[place.nuisance[static_cast<std::size_t>(index[k])]];
+}
+
+double MeasurementModel::noise_length(std::size_t setup, std::size_t row, int channel,
+                                      const Eigen::VectorXd& parameters) const {
+  double nuisance[kMaxLocalNuisance];
+  local_nuisance(setup, row, parameters, nuisance);
+  return binding_.setups[setup].bound->noise_length_at(row, channel, nuisance);
+}
+
 double MeasurementModel::sigma(std::size_t setup, std::size_t row, int channel,
-                               const Eigen::VectorXd& parameters) const {
+                               const Eigen::VectorXd& parameters, bool estimated) const {
   const Setup& source = campaign_.setups[setup];
   const SetupBinding& place = binding_.setups[setup];
   const BoundSetup& bound = *place.bound;
@@ -131,19 +147,17 @@ double MeasurementModel::sigma(std::size_t setup, std::size_t row, int channel,
     variance = source.readings.sigma[row] * source.readings.sigma[row];
   } else {
     const double constant = place.noise_constant[channel];
-    const double per_metre = place.noise_per_metre * bound.noise_length(row, channel);
+    const double length =
+        estimated ? noise_length(setup, row, channel, parameters) : bound.noise_length(row, channel);
+    const double per_metre = place.noise_per_metre * length;
     variance = constant * constant + per_metre * per_metre;
   }
   if (source.repeatability > 0.0) {
     ToolState<double> state;
     state.point_w = chain_.nominal_point_w(commanded_position(campaign_.machine, source.readings, row),
                                            place.tool_offset);
-    int index[kMaxLocalNuisance];
     double nuisance[kMaxLocalNuisance];
-    bound.local_nuisance(row, index);
-    for (int k = 0; k < bound.local_nuisance_size(); ++k) {
-      nuisance[k] = parameters[place.nuisance[static_cast<std::size_t>(index[k])]];
-    }
+    local_nuisance(setup, row, parameters, nuisance);
     Linearization lin;
     bound.linearize(row, state, nuisance, lin);
     const double along = Eigen::Map<const Eigen::Vector3d>(lin.d_state[channel]).norm();

@@ -72,7 +72,13 @@ class MeasurementModel {
   void expand_effects(const Eigen::VectorXd& parameters);
 
   /// Stated standard deviation of a channel, SI: constant, per metre and repeatability, or the sigma column.
-  double sigma(std::size_t setup, std::size_t row, int channel, const Eigen::VectorXd& parameters) const;
+  /// The part per metre counts the length from where a station is guessed to stand, or, with `estimated`,
+  /// from where `parameters` put it.
+  double sigma(std::size_t setup, std::size_t row, int channel, const Eigen::VectorXd& parameters,
+               bool estimated = false) const;
+  /// Length of a reading that its noise is in proportion to, m, as `parameters` put the stations.
+  double noise_length(std::size_t setup, std::size_t row, int channel,
+                      const Eigen::VectorXd& parameters) const;
 
   /// Errors at a commanded position (effects and tool errors not included), SI.
   PoseErrors<double> errors_at(const AxisPosition& position, const Eigen::VectorXd& parameters) const;
@@ -80,6 +86,9 @@ class MeasurementModel {
  private:
   struct RowState;
 
+  /// Nuisance parameters of a row, as its instrument takes them.
+  void local_nuisance(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,
+                      double* nuisance) const;
   PoseErrors<double> errors_at_reading(std::size_t setup, std::size_t row, const AxisPosition& position,
                                        const Eigen::VectorXd& parameters) const;
   void add_functions(std::size_t setup, std::size_t row, const Eigen::VectorXd& parameters,

@@ -200,5 +200,17 @@ TEST(Compare, AxesThatNeverMoveGetNoBreakdown) {
   EXPECT_NE(comparison.find("X"), nullptr);
 }
 
+/// S1: (1 + 4 - 3 + 0) / 4 = 0.5 um; S2: (0 + 1 + 0 - 2) / 4 = -0.25 urad; lengths of all: those of S1.
+TEST(Comparison, MeansKeepTheirSign) {
+  const Campaign campaign = small_campaign();
+  const Comparison comparison = compare(campaign, small_records());
+  const Breakdown* setups = comparison.find("setup");
+  ASSERT_EQ(setups->cells.size(), 2U);
+  EXPECT_NEAR(setups->cells[0].lengths.mean, 0.5e-6, 1e-15);
+  EXPECT_NEAR(setups->cells[1].angles.mean, -0.25e-6, 1e-15);
+  EXPECT_NEAR(comparison.total.lengths.mean, 0.5e-6, 1e-15);
+  EXPECT_NEAR(comparison.total.angles.mean, -0.25e-6, 1e-15);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -111,6 +111,18 @@ TEST(ComparisonText, HasTheFiguresOfReadingsAndModelAndDashesForUndefinedOnes) {
   EXPECT_THAT(text, Not(HasSubstr("nan")));
 }
 
+TEST(ComparisonText, SignedMeansStandBesideTheRms) {
+  Campaign campaign = campaign_of_two_setups();
+  campaign.notes = {"a note of the reader"};
+  const auto model = compared_model("result", campaign, records_of(campaign, 1.0));
+  const std::string text = comparison_text(campaign, std::vector<ComparedModel>{model});
+  EXPECT_THAT(text, HasSubstr("Signed means of the residuals, reading minus prediction"));
+  EXPECT_THAT(text, HasSubstr("! a note of the reader\n"));
+  const auto json = nlohmann::json::parse(comparison_json(campaign, std::vector<ComparedModel>{model}, {}));
+  EXPECT_TRUE(json["models"][0]["by"]["setup"][0]["lengths_um"].contains("mean"));
+  EXPECT_EQ(json["notes"][0], "a note of the reader");
+}
+
 TEST(ComparisonText, TwoModelsStandSideBySide) {
   const Campaign campaign = campaign_of_two_setups();
   const std::vector<ComparedModel> models = {

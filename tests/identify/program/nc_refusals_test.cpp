@@ -39,6 +39,16 @@ TEST(NcRefusals, OfWordsThatCannotBeRead) {
       {"G0 X1 N5\n", "1: N stands behind other words (write the number of a block first)"},
       {"G0 X1 2\n",
        "1: \"2\" begins no word (write words of a letter and a number, and comments in ( ) or after ;)"},
+      {"G0 X1\rG0 X2\n",
+       "1: a carriage return (CR) stands within the line (end the lines of the program with LF or CRLF)"},
+      {"G0 X1 \xB5\n",
+       "1: a character outside ASCII (byte 0xB5) stands outside a comment (write it in ASCII; comments may "
+       "hold "
+       "any character)"},
+      {"G0 \x1b X1\n",
+       "1: a control character (byte 0x1B) (remove it; write words of a letter and a number, and comments in "
+       "( ) "
+       "or after ;)"},
       {"G0 X1 X2\n", "1: X stands twice (write it once, or two blocks)"},
       {"G0 @3 ^20\n", "1: polar coordinates (@ and ^) are not read (write X, Y and Z coordinates)"},
   });

@@ -14,6 +14,7 @@ namespace volcal {
 namespace {
 
 using testing::errors_with;
+using testing::motions_of;
 using testing::rewritten;
 using testing::simple_setup;
 
@@ -166,6 +167,45 @@ TEST(NcRewriter, TakesTheFunctionalPointFromTheLengthThatIsActive) {
             "G0 X9.9950\nG43 H1\nG0 X9.9900\nG43 H2 X9.9800\nG49 X9.9950\n");
   point.lengths_from = Eigen::Vector3d(0, 0, -0.3);
   EXPECT_THAT(rewritten(program, errors, setup, {}, point).text, ::testing::HasSubstr("G43 H2 X9.9500\n"));
+}
+
+/// Files that went through two systems end their lines in CR CR LF; what is copied keeps them.
+TEST(NcRewriter, ReadsLinesThatEndInTwoCarriageReturns) {
+  EXPECT_EQ(rewritten("G21 G90\r\r\nG0 X1 Y1 Z1\r\r\nM2\r\r\n", shift(0, 0, 0)).text,
+            "G21 G90\r\r\nG0 X1 Y1 Z1\r\r\nM2\r\r\n");
+}
+
+/// Controls read 255 characters: a header with many offsets is as many comments.
+TEST(NcRewriter, SplitsALongHeader) {
+  NcRewriteOptions options;
+  options.header = std::string(kCompensatedMark) + " result out/result";
+  for (int tool = 1; tool <= 60; ++tool) options.header += " H" + std::to_string(tool) + "=150.125";
+  options.header += ")";
+  const std::string text = rewritten("%\nG21 G90\nG0 X1\n", shift(0, 0, 0), simple_setup(), options).text;
+  const std::vector<std::string> lines = testing::program_lines(text);
+  ASSERT_EQ(lines.front(), "%\n");
+  std::string joined;
+  std::size_t comments = 0;
+  for (const std::string& line : lines) {
+    EXPECT_LE(line.size(), 256U);  // with its line end
+    if (line[0] != '(') continue;
+    ASSERT_TRUE(line.ends_with(")\n"));
+    const std::size_t begin = comments == 0 ? 0 : 1;
+    joined += (comments == 0 ? "" : " ") + line.substr(begin, line.size() - begin - 2);
+    ++comments;
+  }
+  EXPECT_GE(comments, 3U);
+  EXPECT_EQ(joined + ")", options.header);
+  EXPECT_EQ(motions_of(text).size(), 1U) << "the comments are read back";
+}
+
+/// A comment that fits its own block and no longer the block with corrected words.
+TEST(NcRewriter, RefusesABlockThatGrowsBeyondWhatControlsRead) {
+  const std::string program = "G0 X1 (" + std::string(245, 'c') + ")\n";
+  EXPECT_THAT(testing::refusal([&] { rewritten(program, shift(1, 0, 0)); }),
+              ::testing::AllOf(::testing::HasSubstr("part.ngc:1: the rewritten block has"),
+                               ::testing::HasSubstr("write its comment on a line of its own")));
+  EXPECT_EQ(rewritten(program, shift(0, 0, 0)).text, program);
 }
 
 }  // namespace

@@ -328,5 +328,25 @@ TEST(Fit, TwelveErrorModelLeavesTheAngularErrorsOut) {
   EXPECT_EQ(result.status, FitStatus::LackOfFit) << "the simulated machine has angular errors";
 }
 
+/// Noise in proportion to length counts from where the station is found to stand.
+TEST(Fit, AStationsGuessChangesNoStatus) {
+  auto simulated = sim::simulate(small_study(0, small_tracking()));
+  const FitResult near = fit(simulated.campaign, spline_model(4));
+  const auto tells_guess = [](const FitResult& result) {
+    return std::ranges::any_of(result.messages, [](const std::string& message) {
+      return message.find("mm from its guess") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(tells_guess(near));
+  for (volcal::Setup& setup : simulated.campaign.setups) {
+    setup.options.set("station",
+                      Eigen::Vector3d(*setup.options.vector("station") + Eigen::Vector3d(0.4, -0.3, 0.2)));
+  }
+  const FitResult far = fit(simulated.campaign, spline_model(4));
+  EXPECT_EQ(far.status, near.status);
+  EXPECT_NEAR(far.sigma0, near.sigma0, 0.01 * near.sigma0);
+  EXPECT_TRUE(tells_guess(far));
+}
+
 }  // namespace
 }  // namespace volcal

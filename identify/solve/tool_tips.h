@@ -1,0 +1,21 @@
+#pragma once
+/// What the tools of a campaign can tell of the rotations of an axis.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+/// The linear axis whose direction a squareness turns; nothing for other names.
+std::optional<AxisName> turned_axis(const std::string& name);
+
+/// The remedy "repeat with a third tool ..." where the tips of all tools in use lie on one line, and an error
+/// and what it can be exchanged with are rotations of one axis and what goes with them: nothing moves the
+/// tips when the axis turns about that line. Empty otherwise.
+std::string third_tool(const Campaign& campaign, const std::string& error,
+                       const std::vector<std::string>& partners);
+
+}  // namespace volcal

@@ -1,0 +1,293 @@
+/// Files as instruments and controls write them, from the program's point of view: read, or refused with a
+/// remedy that can be followed.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/program.h"
+
+namespace volcal {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Contains;
+using testing::content;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::run_program;
+
+class InputCase : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (scratch_.path() / name).string(); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(scratch_.path() / name, std::ios::binary) << text;
+  }
+  /// A machine of X, Y and Z, 300 mm each, without tool offset.
+  void write_machine() const {
+    std::string text = "format = \"volcal-machine-1\"\nstructure = \"w b X Y Z t\"\n";
+    for (const char axis : {'X', 'Y', 'Z'})
+      text += std::string("[axes.") + axis + "]\ntravel_mm = [-300.0, 300.0]\nhome_mm = 0.0\n";
+    write("machine.toml", text + "[tools.t]\noffset_mm = [0.0, 0.0, 0.0]\n");
+  }
+  void write_campaign(const std::string& setup, const std::string& head = "") const {
+    write("campaign.toml", "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n" + head +
+                               "[[setups]]\nname = \"S\"\n" + setup);
+  }
+  static nlohmann::json figures(const std::string& campaign) {
+    const auto run = run_program("compare " + campaign + " nominal --json");
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output)["models"][0]["standards"]["iso230_2"][0];
+  }
+
+  testing::ScratchFolder scratch_;
+};
+
+/// By the formulas of ISO 230-2 on the exact targets; recorded with +-1 um they are the same targets.
+TEST_F(InputCase, ScatteredTargetsGiveTheFiguresOfTheirTargets) {
+  const std::string folder = VOLCAL_SOURCE_DIR "/tests/data/jittered-targets/";
+  for (const char* campaign : {"a.toml", "h.toml"}) {
+    const auto test = figures(folder + campaign);
+    const auto& readings = test["readings"];
+    EXPECT_NEAR(readings["E_um"].get<double>(), 117.94, 0.005) << campaign;
+    EXPECT_NEAR(readings["R_um"].get<double>(), 36.85, 0.005) << campaign;
+    EXPECT_NEAR(readings["A_um"].get<double>(), 137.31, 0.005) << campaign;
+    EXPECT_NEAR(readings["B_um"].get<double>(), 23.56, 0.005) << campaign;
+  }
+  EXPECT_THAT(figures(folder + "h.toml")["notes"].dump(), HasSubstr("um were taken as one target"));
+  EXPECT_THAT(figures(folder + "a.toml")["notes"].dump(), Not(HasSubstr("taken as one target")));
+}
+
+/// A gauge block at four places, each with its own zero: nothing compares them.
+TEST_F(InputCase, LinesWithTargetsAndZerosOfTheirOwnGiveNoFigure) {
+  write_machine();
+  write("gauge.csv",
+        "x_mm,y_mm,z_mm,displacement_mm,line\n-280,0,0,0,1\n-254.989,0,0,25.000,1\n-258,0,0,0,2\n"
+        "-232.981,0,0,25.000,2\n-240,0,0,0,3\n-215.009,0,0,25.000,3\n-217,0,0,0,4\n-192.006,0,0,25.000,4\n");
+  write_campaign(
+      "instrument = \"displacement\"\ndata = \"gauge.csv\"\ndirection = [1, 0, 0]\noffset_per = \"line\"\n"
+      "noise = { constant_um = 3.0 }\n");
+  const auto test = figures(path("campaign.toml"));
+  for (const char* figure : {"A_um", "E_um", "M_um", "R_um", "B_um"})
+    EXPECT_TRUE(test["readings"][figure].is_null());
+  for (const char* side : {"positive", "negative"}) {
+    for (const char* figure : {"A_um", "E_um", "R_um"})
+      EXPECT_TRUE(test["readings"][side][figure].is_null()) << figure;
+  }
+  EXPECT_THAT(test["notes"].dump(), HasSubstr("no figure compares them"));
+}
+
+/// Heights of a plane tilted by 200 and -100 urad: the alignment of the board takes it, nothing is left.
+TEST_F(InputCase, AHeightMapIsOneComponent) {
+  write_machine();
+  std::string csv = "x_mm,y_mm,z_mm,ez_um\n";
+  for (int y = 0; y <= 4; ++y) {
+    for (int x = 0; x <= 4; ++x)
+      csv += std::to_string(60 * x) + "," + std::to_string(60 * y) + ",0," +
+             std::to_string(12.0 * x - 6.0 * y) + "\n";
+  }
+  write("map.csv", csv);
+  write("model.toml",
+        "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"zero\" }\n[locations]\nEC0Y = "
+        "\"zero\"\n"
+        "EA0Z = \"zero\"\nEB0Z = \"zero\"\n");
+  write_campaign("instrument = \"volumetric-points\"\ndata = \"map.csv\"\nnoise = { constant_um = 1.0 }\n");
+  const auto run = run_program("compare " + path("campaign.toml") + " " + path("model.toml") + " --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto total = nlohmann::json::parse(run.output)["models"][0]["total"];
+  EXPECT_EQ(total["observations"], 25);
+  EXPECT_LT(total["lengths_um"]["rms"].get<double>(), 0.01);
+}
+
+TEST_F(InputCase, AMissingComponentIsNotReadFromAnotherOne) {
+  write_machine();
+  write("map.csv", "x_mm,y_mm,z_mm,Ex,Ez\n0,0,0,1,1\n10,0,0,1,1\n");
+  write_campaign("instrument = \"volumetric-points\"\ndata = \"map.csv\"\nnoise = { constant_um = 1.0 }\n");
+  const auto run = run_program("compare " + path("campaign.toml") + " nominal");
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("volumetric-points reads ex_um, ey_um, ez_um"));
+  EXPECT_THAT(run.errors, Not(HasSubstr("ex_um = \"Ez\"")));
+}
+
+class OneAxis : public InputCase {
+ protected:
+  void SetUp() override {
+    write("machine.toml",
+          "format = \"volcal-machine-1\"\nstructure = \"w b X t\"\n[axes.X]\ntravel_mm = [-20.0, "
+          "20.0]\nhome_mm = "
+          "0.0\n[tools.target]\noffset_mm = [0.0, 0.0, 0.0]\n");
+    std::string csv = "cycle;dir;Target;Ref\n";
+    for (int cycle = 1; cycle <= 3; ++cycle) {
+      for (int k = -4; k <= 4; ++k) csv += row(cycle, 1, 5 * k);
+      for (int k = 4; k >= -4; --k) csv += row(cycle, -1, 5 * k);
+    }
+    write("raw.csv", csv);
+    write_campaign(
+        "instrument = \"displacement\"\ndata = \"raw.csv\"\ndirection = [1, 0, 0]\ndelimiter = \";\"\n"
+        "columns = { x_mm = \"Target\", displacement_mm = \"Ref\", dir_x = \"dir\", run = \"cycle\" }\n"
+        "noise = { constant_um = 1.0 }\n");
+  }
+  /// 2 um per mm, 4 um of reversal, +-1 um by cycle.
+  static std::string row(int cycle, int direction, int target) {
+    const double deviation_um = 2.0 * target + 2.0 * direction + (cycle - 2);
+    return std::to_string(cycle) + ";" + std::to_string(direction) + ";" + std::to_string(target) + ";" +
+           std::to_string(target + deviation_um * 1e-3) + "\n";
+  }
+};
+
+TEST_F(OneAxis, HasItsFigures) {
+  const auto readings = figures(path("campaign.toml"))["readings"];
+  EXPECT_NEAR(readings["E_um"].get<double>(), 84.0, 1e-6);  // 2 um/mm x 40 mm + 4 um
+  EXPECT_NEAR(readings["B_um"].get<double>(), 4.0, 1e-6);
+  EXPECT_NEAR(readings["R_um"].get<double>(), 8.0, 1e-6);  // 2 s + 2 s + |B| with s = 1 um
+}
+
+TEST_F(OneAxis, IsIdentified) {
+  write(
+      "model.toml",
+      "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\ndefault = { basis = \"zero\" }\n"
+      "EXX = { basis = \"bspline\", degree = 1, knots = 4 }\n[[effects]]\nkind = \"reversal\"\nsymbol = "
+      "\"EXX\"\n");
+  const auto run = run_program("fit " + path("campaign.toml") + " --model " + path("model.toml") + " -o " +
+                               path("result"));
+  ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
+  EXPECT_THAT(content(path("result/error_tables.csv")), HasSubstr("EXX,X,20"));
+  const auto again = run_program("compare " + path("campaign.toml") + " " + path("result"));
+  EXPECT_EQ(again.exit_code, 0) << again.errors;
+}
+
+TEST_F(OneAxis, RemediesSayWhatToSwitchOff) {
+  const auto all = run_program("fit " + path("campaign.toml") + " -o " + path("result"));
+  EXPECT_EQ(all.exit_code, 1) << all.errors;
+  EXPECT_THAT(all.output, HasSubstr("[functions] EYX = { basis = \"zero\" }"));
+  write("model.toml", "format = \"volcal-model-1\"\n[functions]\nEC0Y = { basis = \"zero\" }\n");
+  const auto squareness = run_program("fit " + path("campaign.toml") + " --model " + path("model.toml") +
+                                      " -o " + path("result"));
+  EXPECT_EQ(squareness.exit_code, 2);
+  EXPECT_THAT(squareness.errors, HasSubstr("a machine with one linear axis has no squareness"));
+}
+
+TEST_F(InputCase, SquarenessBelowFunctionsIsSentToLocations) {
+  write_machine();
+  write("line.csv", "x_mm,y_mm,z_mm,displacement_mm\n0,0,0,0\n100,0,0,100\n");
+  write_campaign("instrument = \"displacement\"\ndata = \"line.csv\"\nnoise = { constant_um = 1.0 }\n");
+  write("model.toml", "format = \"volcal-model-1\"\n[functions]\nEC0Y = { basis = \"zero\" }\n");
+  const auto run = run_program("fit " + path("campaign.toml") + " --model " + path("model.toml") + " -o " +
+                               path("result"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, HasSubstr("[locations]: EC0Y = \"zero\" switches it off"));
+  EXPECT_THAT(run.errors, Not(HasSubstr("did you mean")));
+}
+
+TEST_F(InputCase, NamesAreShownWithoutControlCharacters) {
+  write_machine();
+  write_campaign(
+      "instrument = \"displacement\"\ndata = \"li\x1b[31mne.csv\"\nnoise = { constant_um = 1.0 }\n");
+  const auto raw = run_program("compare " + path("campaign.toml") + " nominal");
+  EXPECT_EQ(raw.exit_code, 2);
+  EXPECT_THAT(raw.errors, Not(HasSubstr("\x1b")));
+  write_campaign(
+      "instrument = \"displacement\"\ndata = \"li\\u001b[31mne.csv\"\nnoise = { constant_um = 1.0 }\n");
+  const auto escaped = run_program("compare " + path("campaign.toml") + " nominal");
+  EXPECT_EQ(escaped.exit_code, 2);
+  EXPECT_THAT(escaped.errors, HasSubstr("control character"));
+  EXPECT_THAT(escaped.errors, Not(HasSubstr("\x1b")));
+  EXPECT_THAT(run_program("fit \"$(printf 'no\\033[31mthing.toml')\" -o x").errors, Not(HasSubstr("\x1b")));
+}
+
+TEST(CommandLine, AFullStandardOutputIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  const std::string campaign = VOLCAL_SOURCE_DIR "/tests/data/jittered-targets/a.toml";
+  for (const std::string& command : {"compare " + campaign + " nominal", std::string("diagnose --list"),
+                                     std::string("--version"), std::string("compare --help")}) {
+    const testing::ScratchFolder scratch;
+    const std::string errors = (scratch.path() / "errors").string();
+    const int status =
+        std::system((std::string(VOLCAL_PROGRAM) + " " + command + " >/dev/full 2>" + errors).c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 1) << command;
+    EXPECT_THAT(content(errors), HasSubstr("No space left on device")) << command;
+  }
+}
+
+TEST(Init, ForceOverwritesAndNamesTheEditedFile) {
+  const testing::ScratchFolder scratch;
+  const fs::path folder = scratch.path() / "machine";
+  const std::string init = "init \"w X' b Y Z t\" -o " + folder.string();
+  ASSERT_EQ(run_program(init).exit_code, 0);
+  EXPECT_EQ(run_program(init).exit_code, 0) << "nothing was edited";
+  std::ofstream(folder / "campaign.toml", std::ios::app) << "# mine\n";
+  std::ofstream(folder / "readings.csv") << "x_mm\n";
+  const auto refused = run_program(init);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("campaign.toml: it has been edited"));
+  EXPECT_THAT(refused.errors, HasSubstr("--force"));
+  EXPECT_EQ(run_program(init + " --force").exit_code, 0);
+  EXPECT_THAT(content(folder / "campaign.toml"), Not(HasSubstr("# mine")));
+  EXPECT_TRUE(fs::exists(folder / "readings.csv")) << "files of other names stay";
+}
+
+/// The files of `init` as they stand: planned with a tracer, measured, identified; nothing is invisible.
+TEST(Init, ItsMachineIsPlannedMeasuredAndIdentified) {
+  const testing::ScratchFolder scratch;
+  const auto in = [&](const std::string& name) { return (scratch.path() / name).string(); };
+  ASSERT_EQ(run_program("init \"w X' b Y Z t\" -o " + in("machine")).exit_code, 0);
+  const auto plan =
+      run_program("plan " + in("machine/machine.toml") + " --readings 960 --seed 1 -o " + in("plan"));
+  ASSERT_EQ(plan.exit_code, 0) << plan.errors;
+  EXPECT_THAT(plan.output, Not(HasSubstr("cannot determine")));
+  const auto simulated = run_program("simulate " + in("plan/study.toml") + " -o " + in("campaign"));
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.errors;
+  const auto fit = run_program("fit " + in("campaign/campaign.toml") + " --model " +
+                               in("machine/model.toml") + " -o " + in("result"));
+  EXPECT_EQ(fit.exit_code, 0) << fit.output << fit.errors;
+  EXPECT_THAT(fit.output, Not(HasSubstr("not visible")));
+}
+
+TEST(Init, AMachineOfOneAxisHasNoDatum) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "machine").string();
+  ASSERT_EQ(run_program("init \"w b X t\" -o " + folder).exit_code, 0);
+  EXPECT_THAT(content(folder + "/machine.toml"), Not(HasSubstr("[datum]")));
+  const auto list = run_program("fit " + folder + "/campaign.toml -o " + folder + "/result");
+  EXPECT_THAT(list.errors, HasSubstr("key setups is missing")) << "the machine itself is read";
+}
+
+TEST(Simulate, RefusesAFolderWithEditedFiles) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "campaign").string();
+  std::ofstream(scratch.path() / "study.toml")
+      << "format = \"volcal-study-1\"\nmachine = \"" VOLCAL_SOURCE_DIR
+         "/datasets/demo/machine.toml\"\nseed = 3\n[[measurements]]\nkind = \"diagonals\"\n";
+  const std::string simulate = "simulate " + (scratch.path() / "study.toml").string() + " -o " + folder;
+  const auto first = run_program(simulate);
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  EXPECT_EQ(run_program(simulate).exit_code, 0) << "nothing was edited";
+  std::ofstream(folder + "/campaign.toml", std::ios::app) << "# mine\n";
+  const auto refused = run_program(simulate);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("campaign.toml: it has been edited"));
+  EXPECT_EQ(run_program(simulate + " --force").exit_code, 0);
+  EXPECT_THAT(content(folder + "/campaign.toml"), Not(HasSubstr("# mine")));
+}
+
+TEST(Extend, AsksBeforeItOverwritesItsInput) {
+  const testing::ScratchFolder scratch;
+  const std::string model = (scratch.path() / "model.toml").string();
+  const std::string text = "format = \"volcal-model-1\"\nmachine = \"" VOLCAL_SOURCE_DIR
+                           "/datasets/demo/machine.toml\"\n[functions]\n";
+  std::ofstream(model) << text;
+  const std::string extend = "extend " + model + " --effect reversal:EXX -o " + model;
+  const auto refused = run_program(extend);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("--force"));
+  EXPECT_EQ(content(model), text);
+  EXPECT_EQ(run_program(extend + " --force").exit_code, 0);
+  EXPECT_THAT(content(model), HasSubstr("reversal"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
+#include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -44,7 +45,8 @@ struct NamedModel {
   ModelSpec spec;
   ModelSpec refittable;  ///< what --held-out fits
   bool can_be_fitted = true;
-  std::optional<Campaign> aligned;  ///< the readings in the coordinate system of an aligned result
+  std::optional<FitResult> result = {};  ///< that it was read from
+  std::optional<Campaign> aligned = {};  ///< the readings in the coordinate system of an aligned result
 
   const Campaign& readings(const Campaign& campaign) const { return aligned ? *aligned : campaign; }
 };
@@ -57,7 +59,7 @@ bool predicts_errors(const ModelSpec& model) {
 
 /// A result, a model file, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
-  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false, {}};
+  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
   if (!std::filesystem::exists(argument)) {
     throw InputError(
         {argument, 0}, "there is no such result or model",
@@ -72,9 +74,9 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
                        "compare with a result of the same machine");
     }
-    return {argument, result.identified, refittable_model(result), true, std::move(aligned)};
+    return {argument, result.identified, refittable_model(result), true, result, std::move(aligned)};
   }
-  NamedModel model{argument, read_model(argument, campaign.machine), {}, true, {}};
+  NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
   model.refittable = model.spec;
   if (!predicts_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
   return model;
@@ -133,7 +135,10 @@ int run_compare(const CompareArguments& arguments) {
     const NamedModel& model = named.emplace_back(load(argument, campaign));
     const Campaign& readings = model.readings(campaign);
     Evaluation evaluation = evaluate_model(readings, model.spec, nullptr, arguments.threads);
+    std::optional<Screening> screening;
+    if (model.result) screening = screen(readings, as_fitted(evaluation, *model.result), arguments.threads);
     models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
+    models.back().screening = screening;
   }
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
@@ -146,6 +151,8 @@ int run_compare(const CompareArguments& arguments) {
              })) {
     text += '\n' + heldout_hint();
   }
+  if (predicts_errors(named.back().spec) && fails(models.back()))
+    text += fmt::format("\nnext: volcal diagnose {} --auto -o diagnosis\n", arguments.campaign);
   if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
   if (arguments.json) {
     fmt::print("{}", json);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/today.h"
+#include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -49,6 +51,23 @@ FitOptions fit_options(const FitArguments& arguments) {
   return options;
 }
 
+/// A robust loss has no likelihood to test by; an adjustment that did not converge has no residuals to trust.
+bool can_be_screened(const FitResult& result, const FitOptions& options) {
+  return options.loss == RobustLoss::None && result.status != FitStatus::NotConverged;
+}
+
+void add_screening(const Campaign& campaign, int threads, FitResult& result) {
+  const auto start = std::chrono::steady_clock::now();
+  judge(screen(campaign, result, threads), result);
+  result.timings.push_back({"scans of the residuals",
+                            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+std::string diagnosis_of(const FitArguments& arguments) {
+  return "volcal diagnose " + arguments.campaign +
+         (arguments.model.empty() ? "" : " --model " + arguments.model) + " --auto -o diagnosis";
+}
+
 int run_fit(const FitArguments& arguments) {
   require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   const Campaign campaign = read_campaign(arguments.campaign);
@@ -57,7 +76,11 @@ int run_fit(const FitArguments& arguments) {
   FitOptions options = fit_options(arguments);
   ProgressBar bar("fit");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const FitResult result = fit(campaign, model, options);
+  FitResult result = fit(campaign, model, options);
+  if (can_be_screened(result, options)) {
+    bar.update("scans of the residuals", 0.95);
+    add_screening(campaign, options.threads, result);
+  }
   bar.finish();
   std::map<std::string, std::string> more;
   if (report_available()) more["report.html"] = report_html(result, campaign, {today()});
@@ -67,6 +90,7 @@ int run_fit(const FitArguments& arguments) {
   } else {
     fmt::print("{}", fit_summary_text(result, campaign));
     fmt::print("\nwritten: {}\n", arguments.output);
+    if (result.status == FitStatus::LackOfFit) fmt::print("next: {}\n", diagnosis_of(arguments));
     if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
   return result.status == FitStatus::RankDeficient || result.status == FitStatus::NotConverged ? kIncomplete
@@ -77,7 +101,9 @@ std::function<int()> define_fit(CLI::App& app) {
   auto arguments = std::make_shared<FitArguments>();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option("-m,--model", arguments->model,
-                 "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
+                 "model.toml: bases of the error functions, errors left out, effects, widths of priors "
+                 "([priors] squareness_mrad, displacement_um, rotation_urad); default: all 21 errors, cubic "
+                 "B-splines, automatic knots");
   app.add_option("-o,--output", arguments->output, "result folder (replaced as a whole)")->required();
   app.add_option("--outliers", arguments->outliers, "readings flagged by the w-test: list or remove them")
       ->check(CLI::IsMember({"list", "remove"}));

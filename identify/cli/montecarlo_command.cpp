@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/draw_ranks.h"
 #include "volcal/identify/cli/fit_policies.h"
+#include "volcal/identify/cli/interrupt_watch.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
@@ -42,6 +43,7 @@ struct MonteCarloArguments {
   std::vector<std::string> disturbances;
   MonteCarloOptions options;
   double checkpoint_s = 10.0;
+  double minutes = 10.0;
   bool resume = false;
   bool json = false;
 };
@@ -153,20 +155,43 @@ void require_draws_left(const MonteCarloArguments& arguments, const std::string&
                    "give -n as before or larger");
 }
 
+/// Why drawing ended.
+enum class End { Done, OutOfTime, Interrupted };
+
+/// The first rank's word holds for all.
+End agreed(const MonteCarloArguments& arguments, End own) {
+  if (arguments.options.team == nullptr) return own;
+  const std::string first = arguments.options.team->gather(std::to_string(static_cast<int>(own))).front();
+  return static_cast<End>(std::stoi(first));
+}
+
 /// Every rank draws; the first reports and keeps checkpoints.
-void draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloStudy& study) {
+End draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloStudy& study) {
   using Clock = std::chrono::steady_clock;
   const std::string checkpoint = checkpoint_path(arguments);
+  const bool has_a_limit = arguments.options.draws == 0 && arguments.minutes > 0.0;
   DrawProgress progress(bar, study);
-  Clock::time_point kept = Clock::now();
+  const InterruptWatch interrupt;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point kept = start;
+  if (is_first(arguments)) progress.update(study);
   while (!study.done()) {
     study.run_block();
+    const double minutes = std::chrono::duration<double>(Clock::now() - start).count() / 60.0;
+    const End end = agreed(arguments, interrupt.was_asked_for()                    ? End::Interrupted
+                                      : has_a_limit && minutes > arguments.minutes ? End::OutOfTime
+                                                                                   : End::Done);
+    if (end != End::Done) {
+      if (is_first(arguments)) write_checkpoint(checkpoint, study.fingerprint(), study.save());
+      return end;
+    }
     if (!is_first(arguments)) continue;
     progress.update(study);
     if (std::chrono::duration<double>(Clock::now() - kept).count() < arguments.checkpoint_s) continue;
     write_checkpoint(checkpoint, study.fingerprint(), study.save());
     kept = Clock::now();
   }
+  return End::Done;
 }
 
 void write_study(const MonteCarloArguments& arguments, const std::string& json,
@@ -179,9 +204,13 @@ void write_study(const MonteCarloArguments& arguments, const std::string& json,
   folder.commit();
 }
 
-/// A study whose draws are all made.
-MonteCarloResult drawn(const MonteCarloArguments& arguments, const Campaign& campaign,
-                       const FitResult& fit_result, ProgressBar& bar) {
+struct Drawn {
+  MonteCarloResult result;
+  End end = End::Done;
+};
+
+Drawn drawn(const MonteCarloArguments& arguments, const Campaign& campaign, const FitResult& fit_result,
+            ProgressBar& bar) {
   MonteCarloOptions options = arguments.options;
   options.path = draw_path(arguments.path);
   options.sources.functions =
@@ -193,9 +222,18 @@ MonteCarloResult drawn(const MonteCarloArguments& arguments, const Campaign& cam
   const std::string checkpoint = checkpoint_path(arguments);
   if (arguments.resume) restore(checkpoint, study);
   require_draws_left(arguments, checkpoint, study);
-  draw_all(arguments, bar, study);
+  const End end = draw_all(arguments, bar, study);
   bar.finish();
-  return study.result();
+  return {study.result(), end};
+}
+
+/// What was drawn so far is kept.
+int tell_interrupted(const MonteCarloArguments& arguments, const MonteCarloResult& result) {
+  if (is_first(arguments)) {
+    fmt::print(stderr, "interrupted after {} draws, which {} keeps; the same command with --resume goes on\n",
+               count_number(static_cast<long long>(result.draws)), checkpoint_path(arguments));
+  }
+  return kIncomplete;
 }
 
 /// Ends as fit does, and writes nothing.
@@ -217,14 +255,15 @@ int run_montecarlo(MonteCarloArguments arguments) {
     bar.finish();
     return tell_undetermined(arguments, fit_result);
   }
-  const MonteCarloResult result = drawn(arguments, campaign, fit_result, bar);
+  const auto [result, end] = drawn(arguments, campaign, fit_result, bar);
+  if (end == End::Interrupted) return tell_interrupted(arguments, result);
   const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
                         (!result.adaptive || result.settled);
   const int exit_code = complete ? kDone : kIncomplete;
   if (!is_first(arguments)) return exit_code;
   const std::string json = montecarlo_json(result);
   write_study(arguments, json, result, campaign.machine);
-  remove_checkpoint(checkpoint_path(arguments));
+  if (end == End::Done) remove_checkpoint(checkpoint_path(arguments));
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
@@ -283,6 +322,11 @@ std::function<int()> define_montecarlo(CLI::App& app) {
       ->check(CLI::IsMember({"list", "remove"}));
   app.add_option("--noise", arguments->noise, "of the fit: auto or white")
       ->check(CLI::IsMember({"auto", "white"}));
+  app.add_option("--minutes", arguments->minutes,
+                 "of drawing, of a study without --draws: it ends with what it has reached, exit 1, and "
+                 "--resume goes on; 0 = no limit")
+      ->check(not_negative())
+      ->capture_default_str();
   app.add_option("--checkpoint-every", arguments->checkpoint_s, "seconds between checkpoints")
       ->check(not_negative())
       ->capture_default_str();

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/alignment.h"
 #include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/solve/fitted_readings.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::cli {
@@ -26,7 +28,7 @@ struct ValidateArguments {
   bool json = false;
 };
 
-nlohmann::ordered_json figures_json(const ValidationFigures& figures) {
+nlohmann::ordered_json figures_json(const ValidationFigures& figures, const FittedReadings& fitted) {
   nlohmann::ordered_json json = {{"rms_before_um", figures.rms_before * 1e6},
                                  {"rms_after_um", figures.rms_after * 1e6},
                                  {"max_before_um", figures.max_before * 1e6},
@@ -34,6 +36,7 @@ nlohmann::ordered_json figures_json(const ValidationFigures& figures) {
                                  {"reduced_chi2", figures.reduced_chi2},
                                  {"coverage95", figures.coverage95},
                                  {"readings", figures.lengths}};
+  json["fitted_readings"] = fitted.is_known ? nlohmann::ordered_json(fitted.readings) : nullptr;
   if (figures.angles > 0) {
     json["angle_rms_before_urad"] = figures.angle_rms_before * 1e6;
     json["angle_rms_after_urad"] = figures.angle_rms_after * 1e6;
@@ -44,7 +47,30 @@ nlohmann::ordered_json figures_json(const ValidationFigures& figures) {
   return json;
 }
 
-std::string figures_text(const Validation& validation) {
+/// Whose readings these are.
+std::string provenance(const FittedReadings& fitted) {
+  if (!fitted.is_known) return "Readings (which ones the fit was made from, the result does not say)";
+  if (fitted.readings == 0) return "Readings that the fit never saw";
+  return fitted.are_all() ? "Readings that the fit was made from"
+                          : "Readings, some of which the fit was made from";
+}
+
+std::string warning(const FittedReadings& fitted) {
+  if (fitted.readings == 0) return {};
+  const std::string remedy =
+      "give a campaign with other setups, or hold lines out: volcal compare --held-out";
+  if (fitted.are_all()) {
+    return "\n! this is the campaign that the fit was made from: a fit explains its own readings, and these "
+           "figures prove nothing; " +
+           remedy + "\n";
+  }
+  return fmt::format("\n! the fit was made from {} of {} readings, those of {}; {}\n",
+                     count_number(static_cast<long long>(fitted.readings)),
+                     count_number(static_cast<long long>(fitted.all)), fmt::join(fitted.setups, ", "),
+                     remedy);
+}
+
+std::string figures_text(const Validation& validation, const FittedReadings& fitted) {
   const ValidationFigures& figures = validation.figures;
   TextTable totals({{"", Align::Left},
                     {"readings"},
@@ -53,7 +79,7 @@ std::string figures_text(const Validation& validation) {
                     {"max before"},
                     {"max after"},
                     {"unit", Align::Left}},
-                   "Readings that the fit never saw; before = nominal machine, after = identified");
+                   provenance(fitted) + "; before = nominal machine, after = identified");
   const auto add = [&](const char* name, std::size_t count, double rms0, double rms1, double max0,
                        double max1, const char* unit) {
     if (count == 0) return;
@@ -82,12 +108,14 @@ std::string figures_text(const Validation& validation) {
          fmt::format(
              "\nreduced chi2 {:.3f} and {:.1f} % of readings inside 1.96 sqrt(u_model^2 + sigma^2) (95 % "
              "expected)\n",
-             figures.reduced_chi2, 100.0 * figures.coverage95);
+             figures.reduced_chi2, 100.0 * figures.coverage95) +
+         warning(fitted);
 }
 
 int run_validate(const ValidateArguments& arguments) {
   const FitResult result = read_result(arguments.result);
   Campaign campaign = read_campaign(arguments.campaign);
+  const FittedReadings fitted = fitted_readings(campaign, result);
   adopt_alignment(campaign, result);
   const std::string difference = machine_difference(result.machine, campaign.machine);
   if (!difference.empty()) {
@@ -96,12 +124,14 @@ int run_validate(const ValidateArguments& arguments) {
   }
   const Validation validation = validate(campaign, result, arguments.threads);
   if (arguments.json) {
-    auto json = figures_json(validation.figures);
+    auto json = figures_json(validation.figures, fitted);
     if (!campaign.notes.empty()) json["notes"] = campaign.notes;
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}
+", json.dump(2));
   } else {
-    fmt::print("{}", figures_text(validation));
-    for (const std::string& note : campaign.notes) fmt::print("! {}\n", note);
+    fmt::print("{}", figures_text(validation, fitted));
+    for (const std::string& note : campaign.notes) fmt::print("! {}
+", note);
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * 1e6 > arguments.max_rms_um;

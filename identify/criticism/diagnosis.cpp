@@ -12,6 +12,7 @@
 #include "volcal/identify/criticism/effect_search.h"
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/not_looked_for.h"
+#include "volcal/identify/solve/result.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
@@ -175,7 +176,7 @@ class Diagnostician {
       const double si = shapes[k].si_per_unit();
       out.spec.options.set(stem, shape[at]);
       out.shape_text += fmt::format("{}{} {:.4g}", k > 0 ? ", " : "", stem, shape[at] / si);
-      if (u[at] > 0.0) out.shape_text += fmt::format(" +- {:.2g}", 1.96 * u[at] / si);
+      if (u[at] > 0.0) out.shape_text += fmt::format(" +- {:.2g}", kCoverageFactor * u[at] / si);
       out.shape_text += " " + shapes[k].unit();
     }
   }
@@ -487,7 +488,7 @@ class Diagnostician {
     for (const AmplitudeFigure& amplitude : effect.amplitudes) {
       text +=
           fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitude.label, amplitude.value / amplitude.si_per_unit,
-                      1.96 * amplitude.u / amplitude.si_per_unit, amplitude.unit);
+                      kCoverageFactor * amplitude.u / amplitude.si_per_unit, amplitude.unit);
     }
     return text + (effect.shape_text.empty() ? "" : ", " + effect.shape_text);
   }

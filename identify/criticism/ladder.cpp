@@ -7,6 +7,7 @@
 
 #include "volcal/identify/criticism/heldout_errors.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/result.h"
 
 namespace volcal {
 namespace {
@@ -133,7 +134,7 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   }
   const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, accepted, solution);
   const double excess = (figures.squares - figures.expected) / figures.count;
-  const double spread = 1.96 * figures.spread / figures.count;
+  const double spread = kCoverageFactor * figures.spread / figures.count;
   step.rms_heldout = std::sqrt(figures.squares / figures.count);
   step.noise_floor = std::sqrt(figures.expected / figures.count);
   step.systematic = std::sqrt(std::max(0.0, excess));

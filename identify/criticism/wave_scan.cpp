@@ -35,6 +35,8 @@ struct Band {
     return std::min(bins - 1, static_cast<std::size_t>(1.0 / (kFinestWave * step())));
   }
   double lowest() const { return kWavesOfKernels / range; }
+  /// Does the axis move far enough for any period?
+  bool is_open() const { return range > kWavesOfKernels * kFinestWave && first() < last(); }
 };
 
 Eigen::VectorXd positions(const LinearModel& model, AxisName axis) {
@@ -163,11 +165,11 @@ std::vector<WaveTest> wave_scan(const LinearModel& model, const Projector& proje
   for (const Axis& axis : model.campaign().machine.axes) {
     if (!is_rotary(axis.name)) axes.push_back(axis.name);
   }
+  std::erase_if(axes, [&](AxisName axis) { return !band_of(positions(model, axis)).is_open(); });
   std::vector<WaveTest> tests(axes.size() * kDirections);
   run_parallel(axes.size(), threads, [&](std::size_t i) {
     const Eigen::VectorXd q = positions(model, axes[i]);
     const Band band = band_of(q);
-    if (band.first() >= band.last()) return;
     Eigen::FFT<double> fft;
     const Spectrum xy = transformed(fft, q, band, score.col(0), score.col(1));
     const Spectrum z = transformed(fft, q, band, score.col(2), Eigen::VectorXd::Zero(q.size()));

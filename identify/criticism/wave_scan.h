@@ -42,7 +42,8 @@ struct WaveTest {
   double log10_choices = 0.0;  ///< its part in log10_p
 };
 
-/// One test per linear axis and direction, the same for any number of threads.
+/// One test per direction and linear axis that moves by more than kWavesOfKernels of the finest waves; the
+/// same for any number of threads.
 std::vector<WaveTest> wave_scan(const LinearModel& model, const Projector& projector, int threads);
 
 /// Cosine and sine along a direction, all observations.

@@ -62,6 +62,7 @@ class ModelReader {
     root_.text("name");
     read_functions();
     read_locations();
+    read_priors();
     read_effects();
     document_.reject_unknown();
     check_default();
@@ -258,6 +259,20 @@ class ModelReader {
       }
       spec_.locations[*symbol] = *table->number(key);
     }
+  }
+
+  void read_priors() {
+    const auto table = root_.table("priors");
+    if (!table) return;
+    const auto width = [&](const char* key) {
+      const auto value = table->number(key);
+      if (value && *value <= 0.0) {
+        table->fail(key, "priors." + std::string(key) + " is a standard deviation and must be positive",
+                    "leave it out for the program's own");
+      }
+      return value;
+    };
+    spec_.priors = {width("displacement_um"), width("rotation_urad"), width("squareness_mrad")};
   }
 
   void fail_location(const TomlTable& table, const std::string& key,

@@ -4,7 +4,8 @@
 /// Functions: `basis`, `degree`, `knots = "auto"` or a number of intervals, or `knots_mm` / `knots_deg`
 /// (breakpoints, ends included); an identified function also has `coefficients_um` / `coefficients_urad`. A
 /// function is left out with basis = "zero". `[locations]`: `EC0Y_urad = 12.3` (known), `EC0Y = "zero"` (left
-/// out).
+/// out). `[priors]`: `displacement_um`, `rotation_urad`, `squareness_mrad`, how large errors may be before
+/// any reading is seen (standard deviations).
 
 #include <string>
 

@@ -30,7 +30,8 @@ Json setups_json(const FitResult& result) {
                    {"dof", number(setup.redundancy)},
                    {"chi2_per_dof", number(ratio(setup.chi2, setup.redundancy))},
                    {"rms_residual", number(setup.rms_residual)},
-                   {"max_residual", number(setup.max_residual)}});
+                   {"max_residual", number(setup.max_residual)},
+                   {"readings_fingerprint", setup.fingerprint}});
   }
   return all;
 }
@@ -232,7 +233,8 @@ void read_head(const Json& json, FitResult& result) {
                              .chi2 = number(setup.at("chi2")),
                              .redundancy = number(setup.at("dof")),
                              .rms_residual = number(setup.at("rms_residual")),
-                             .max_residual = number(setup.at("max_residual"))});
+                             .max_residual = number(setup.at("max_residual")),
+                             .fingerprint = setup.value("readings_fingerprint", std::string())});
   }
   for (const Json& component : json.at("variance_components")) {
     result.variance_components.push_back({.instrument = component.at("instrument").get<std::string>(),

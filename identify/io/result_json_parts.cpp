@@ -308,9 +308,16 @@ Json model(const ModelSpec& spec) {
   for (const LocationSymbol& symbol : spec.locations_off) off.push_back(symbol.name());
   Json effects = Json::array();
   for (const EffectSpec& each : spec.effects) effects.push_back(effect(each));
-  return {{"file", spec.file},      {"default_function", function_json(spec.default_function)},
-          {"functions", functions}, {"locations", locations},
-          {"locations_off", off},   {"effects", effects}};
+  Json json = {{"file", spec.file},      {"default_function", function_json(spec.default_function)},
+               {"functions", functions}, {"locations", locations},
+               {"locations_off", off},   {"effects", effects}};
+  const auto add_prior = [&json](const char* key, const std::optional<double>& width) {
+    if (width) json["priors"][key] = number(*width);
+  };
+  add_prior("displacement", spec.priors.displacement);
+  add_prior("rotation", spec.priors.rotation);
+  add_prior("squareness", spec.priors.squareness);
+  return json;
 }
 
 ModelSpec model_from(const Json& json) {
@@ -325,6 +332,12 @@ ModelSpec model_from(const Json& json) {
   }
   for (const Json& name : json.at("locations_off")) spec.locations_off.push_back(location_symbol(name));
   for (const Json& effect : json.at("effects")) spec.effects.push_back(effect_from(effect));
+  if (!json.contains("priors")) return spec;
+  const Json& priors = json.at("priors");
+  const auto width = [&priors](const char* key) {
+    return priors.contains(key) ? std::optional(number(priors.at(key))) : std::nullopt;
+  };
+  spec.priors = {width("displacement"), width("rotation"), width("squareness")};
   return spec;
 }
 

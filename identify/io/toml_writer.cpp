@@ -87,6 +87,19 @@ bool key_applies(const KeySchema& key, const EffectSchema& schema, const Effect&
   return std::ranges::find(effect.amplitudes(), key.key, &EffectAmplitude::key) != effect.amplitudes().end();
 }
 
+std::string priors_toml(const PriorWidths& priors) {
+  std::string text;
+  const auto add = [&text](const char* key, const std::optional<double>& width, double si_per_unit) {
+    if (!width) return;
+    text +=
+        fmt::format("{}{} = {}\n", text.empty() ? "\n[priors]\n" : "", key, edge_number(*width, si_per_unit));
+  };
+  add("displacement_um", priors.displacement, kMicro);
+  add("rotation_urad", priors.rotation, kMicro);
+  add("squareness_mrad", priors.squareness, 1e-3);
+  return text;
+}
+
 }  // namespace
 
 std::string effect_toml(const EffectSpec& effect) {
@@ -169,6 +182,7 @@ std::string model_toml(const ModelSpec& spec, const std::string& machine_path, c
         fmt::format("{}_{} = {}\n", symbol.name(), edge_unit(symbol.component), edge_number(value, kMicro));
   }
   for (const LocationSymbol& symbol : spec.locations_off) text += symbol.name() + " = \"zero\"\n";
+  text += priors_toml(spec.priors);
   for (const EffectSpec& effect : spec.effects) text += effect_toml(effect);
   return text;
 }

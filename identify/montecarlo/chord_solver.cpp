@@ -16,8 +16,103 @@ double shortened(double before, double after) { return std::max(kShortest, befor
 
 }  // namespace
 
+/// The steps of one draw, from the gradient at one point to the next point where one is asked for.
+class ChordSolver::Path {
+ public:
+  Path(const WeakParameters& weak, const CampaignDraw& draw, const Eigen::VectorXd& linear)
+      : weak_(weak), draw_(draw), scale_(weak.solve(draw, linear)), next_(scale_.deviation) {
+    // The linear step has about one standard deviation per parameter.
+    before_ = std::sqrt(static_cast<double>(linear.size()));
+  }
+
+  const CampaignDraw& draw() const { return draw_; }
+  bool done() const { return done_; }
+  const Outcome& outcome() const { return outcome_; }
+  /// Where a gradient is asked for; in the end the solution.
+  const Eigen::VectorXd& deviation() const { return next_; }
+
+  void take(Eigen::VectorXd gradient) {
+    ++outcome_.gradients;
+    if (step_.size() > 0) {
+      const double after = gradient.dot(step_);
+      if (after > -kFallsAlongAStep * along_ && outcome_.gradients < kMostGradients) {
+        step_ *= shortened(along_, after);
+        next_ = at_ + step_;
+        return;
+      }
+      learn(gradient);
+      before_ = length_;
+    }
+    at_ = next_;
+    gradient_ = std::move(gradient);
+    propose();
+  }
+
+ private:
+  /// A step and how the gradient changed along it.
+  struct Curvature {
+    Eigen::VectorXd step;
+    Eigen::VectorXd change;
+    double product = 0.0;
+  };
+
+  void learn(const Eigen::VectorXd& gradient) {
+    Eigen::VectorXd change = gradient - gradient_;
+    const double product = step_.dot(change);
+    if (product > 0.0) known_.push_back({step_, std::move(change), product});
+  }
+
+  Eigen::VectorXd descent() const {
+    Eigen::VectorXd q = gradient_;
+    std::vector<double> share(known_.size());
+    for (std::size_t i = known_.size(); i-- > 0;) {
+      share[i] = known_[i].step.dot(q) / known_[i].product;
+      q -= share[i] * known_[i].change;
+    }
+    Eigen::VectorXd step = weak_.inverse_curvature(scale_, q);
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      step += (share[i] - known_[i].change.dot(step) / known_[i].product) * known_[i].step;
+    return -step;
+  }
+
+  void propose() {
+    step_ = descent();
+    along_ = gradient_.dot(step_);
+    if (!(along_ <= 0.0) && scale_.correction.size() > 0) {  // the second order misleads
+      scale_.correction.resize(0, 0);
+      known_.clear();
+      step_ = descent();
+      along_ = gradient_.dot(step_);
+    }
+    length_ = std::sqrt(std::max(0.0, -along_));
+    const double contraction = length_ / before_;
+    outcome_.to_come = contraction < 1.0 ? length_ * contraction / (1.0 - contraction)
+                                         : std::numeric_limits<double>::infinity();
+    outcome_.converged = outcome_.to_come < kEnough;
+    next_ = at_ + step_;
+    done_ = outcome_.converged || outcome_.gradients >= kMostGradients || !std::isfinite(length_);
+  }
+
+  const WeakParameters& weak_;
+  const CampaignDraw& draw_;
+  WeakParameters::Solution scale_;
+  Eigen::VectorXd next_;
+  Eigen::VectorXd at_;
+  Eigen::VectorXd gradient_;  ///< at_
+  Eigen::VectorXd step_;
+  std::vector<Curvature> known_;
+  double before_ = 0.0;  ///< length of the step before
+  double along_ = 0.0;
+  double length_ = 0.0;
+  bool done_ = false;
+  Outcome outcome_;
+};
+
 ChordSolver::ChordSolver(const RepeatedCampaign& campaign)
-    : campaign_(campaign), gradient_(campaign.linear_model().model(), campaign.whitener()) {
+    : campaign_(campaign),
+      prior_(campaign.prior_precision().sparseView()),
+      gradient_(campaign.linear_model().model(), campaign.whitener()),
+      weak_(campaign) {
   if (StateMap::is_exact_for(campaign.linear_model().model()))
     together_.emplace(gradient_.model(), campaign.whitener());
 }
@@ -26,15 +121,16 @@ ChordSolver::Workspace::Workspace(const ChordSolver& solver) : one(solver.gradie
   if (solver.together_) several.emplace(*solver.together_);
 }
 
-Eigen::VectorXd ChordSolver::gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& readings,
-                                         const Eigen::VectorXd& deviation, Workspace& work) const {
+Eigen::VectorXd ChordSolver::gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& deviation,
+                                         Workspace& work) const {
   const Eigen::VectorXd raw = campaign_.datum().raw(campaign_.identified() + deviation);
+  const Eigen::VectorXd readings = campaign_.predicted() + draw.errors;
   return campaign_.datum().reduce_gradient(gradient_.at(raw, readings, work.one)) +
-         campaign_.prior_precision() * (deviation - draw.statement);
+         prior_ * (deviation - draw.statement);
 }
 
-Eigen::MatrixXd ChordSolver::first_gradients(const std::vector<CampaignDraw>& draws,
-                                             const Eigen::MatrixXd& deviations, Workspace& work) const {
+Eigen::MatrixXd ChordSolver::gradients(const std::vector<const CampaignDraw*>& draws,
+                                       const Eigen::MatrixXd& deviations, Workspace& work) const {
   constexpr Eigen::Index kAtOnce = DrawGradients::kDraws;
   const auto count = static_cast<Eigen::Index>(draws.size());
   Eigen::MatrixXd gradients(deviations.rows(), count);
@@ -43,76 +139,57 @@ Eigen::MatrixXd ChordSolver::first_gradients(const std::vector<CampaignDraw>& dr
     gradients.middleCols(first, several) =
         together(draws.data() + first, deviations.middleCols(first, several), work);
   }
-  for (Eigen::Index k = 0; !together_ && k < count; ++k) {
-    const CampaignDraw& draw = draws[static_cast<std::size_t>(k)];
-    gradients.col(k) = gradient_at(draw, campaign_.predicted() + draw.errors, deviations.col(k), work);
-  }
+  for (Eigen::Index k = 0; !together_ && k < count; ++k)
+    gradients.col(k) = gradient_at(*draws[static_cast<std::size_t>(k)], deviations.col(k), work);
   return gradients;
 }
 
 /// Of as many draws as there are deviations.
-Eigen::MatrixXd ChordSolver::together(const CampaignDraw* draws, const Eigen::MatrixXd& deviations,
+Eigen::MatrixXd ChordSolver::together(const CampaignDraw* const* draws, const Eigen::MatrixXd& deviations,
                                       Workspace& work) const {
   const Eigen::Index count = deviations.cols();
   Eigen::MatrixXd raw(campaign_.linear_model().model().layout().size, count);
   Eigen::MatrixXd readings(campaign_.observations(), count), beside(campaign_.parameters(), count);
   for (Eigen::Index k = 0; k < count; ++k) {
     raw.col(k) = campaign_.datum().raw(campaign_.identified() + deviations.col(k));
-    readings.col(k) = campaign_.predicted() + draws[k].errors;
-    beside.col(k) = deviations.col(k) - draws[k].statement;
+    readings.col(k) = campaign_.predicted() + draws[k]->errors;
+    beside.col(k) = deviations.col(k) - draws[k]->statement;
   }
   const Eigen::MatrixXd of_readings = together_->at(raw, readings, *work.several);
-  Eigen::MatrixXd gradients = campaign_.prior_precision() * beside;
-  for (Eigen::Index k = 0; k < count; ++k)
+  Eigen::MatrixXd gradients(campaign_.parameters(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    gradients.col(k) = prior_ * beside.col(k);
     gradients.col(k) += campaign_.datum().reduce_gradient(of_readings.col(k));
+  }
   return gradients;
 }
 
-Eigen::VectorXd ChordSolver::step_from(const Eigen::VectorXd& gradient,
-                                       const std::vector<Curvature>& known) const {
-  Eigen::VectorXd q = gradient;
-  std::vector<double> share(known.size());
-  for (std::size_t i = known.size(); i-- > 0;) {
-    share[i] = known[i].step.dot(q) / known[i].product;
-    q -= share[i] * known[i].change;
-  }
-  Eigen::VectorXd step = campaign_.gain() * q;
-  for (std::size_t i = 0; i < known.size(); ++i)
-    step += (share[i] - known[i].change.dot(step) / known[i].product) * known[i].step;
-  return -step;
-}
-
-ChordSolver::Outcome ChordSolver::solve(const CampaignDraw& draw, Eigen::VectorXd gradient,
-                                        Eigen::Ref<Eigen::VectorXd> deviation, Workspace& work) const {
-  const Eigen::VectorXd readings = campaign_.predicted() + draw.errors;
-  std::vector<Curvature> known;
-  // The linear step has about one standard deviation per parameter.
-  double before = std::sqrt(static_cast<double>(deviation.size()));
-  Outcome outcome;
-  Point at{deviation, std::move(gradient)};
-  for (outcome.gradients = 1;; ++outcome.gradients) {
-    Eigen::VectorXd step = step_from(at.gradient, known);
-    const double along = at.gradient.dot(step);
-    const double length = std::sqrt(std::max(0.0, -along)), contraction = length / before;
-    outcome.to_come = contraction < 1.0 ? length * contraction / (1.0 - contraction)
-                                        : std::numeric_limits<double>::infinity();
-    outcome.converged = outcome.to_come < kEnough;
-    deviation = at.deviation + step;
-    if (outcome.converged || outcome.gradients >= kMostGradients || !std::isfinite(length)) return outcome;
-    Point next{deviation, gradient_at(draw, readings, deviation, work)};
-    for (double after = next.gradient.dot(step); after > -kFallsAlongAStep * along;
-         after = next.gradient.dot(step)) {
-      step *= shortened(along, after);
-      next = {at.deviation + step, Eigen::VectorXd()};
-      next.gradient = gradient_at(draw, readings, next.deviation, work);
-      if (++outcome.gradients >= kMostGradients) break;
+std::vector<ChordSolver::Outcome> ChordSolver::solve(const std::vector<CampaignDraw>& draws,
+                                                     Eigen::Ref<Eigen::MatrixXd> deviations,
+                                                     Workspace& work) const {
+  std::vector<Path> paths;
+  paths.reserve(draws.size());
+  for (std::size_t k = 0; k < draws.size(); ++k)
+    paths.emplace_back(weak_, draws[k], deviations.col(static_cast<Eigen::Index>(k)));
+  std::vector<Path*> open(paths.size());
+  std::ranges::transform(paths, open.begin(), [](Path& path) { return &path; });
+  while (!open.empty()) {
+    std::vector<const CampaignDraw*> of;
+    Eigen::MatrixXd at(deviations.rows(), static_cast<Eigen::Index>(open.size()));
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      of.push_back(&open[k]->draw());
+      at.col(static_cast<Eigen::Index>(k)) = open[k]->deviation();
     }
-    Eigen::VectorXd change = next.gradient - at.gradient;
-    const double product = step.dot(change);
-    if (product > 0.0) known.push_back({step, std::move(change), product});
-    at = std::move(next);
-    before = length;
+    const Eigen::MatrixXd here = gradients(of, at, work);
+    for (std::size_t k = 0; k < open.size(); ++k) open[k]->take(here.col(static_cast<Eigen::Index>(k)));
+    std::erase_if(open, [](const Path* path) { return path->done(); });
   }
+  std::vector<Outcome> outcomes;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    deviations.col(static_cast<Eigen::Index>(k)) = paths[k].deviation();
+    outcomes.push_back(paths[k].outcome());
+  }
+  return outcomes;
 }
 
 }  // namespace volcal

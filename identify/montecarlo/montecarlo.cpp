@@ -1,7 +1,6 @@
 #include "volcal/identify/montecarlo/montecarlo.h"
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -13,6 +12,7 @@
 #include "volcal/identify/montecarlo/path_solvers.h"
 #include "volcal/identify/montecarlo/state_bytes.h"
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/stats/content_hash.h"
 #include "volcal/identify/stats/normal.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
@@ -40,23 +40,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Fowler, Noll and Vo's hash, 64 bit, variant 1a.
-class Fnv1a {
- public:
-  void add(std::uint64_t value) {
-    for (int byte = 0; byte < 8; ++byte, value >>= 8U) hash_ = (hash_ ^ (value & 0xFFU)) * 0x100000001B3U;
+void add(const Eigen::Ref<const Eigen::MatrixXd>& values, ContentHash& hash) {
+  for (Eigen::Index column = 0; column < values.cols(); ++column) {
+    for (Eigen::Index row = 0; row < values.rows(); ++row) hash.add(values(row, column));
   }
-  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& values) {
-    for (Eigen::Index column = 0; column < values.cols(); ++column) {
-      for (Eigen::Index row = 0; row < values.rows(); ++row) add(values(row, column));
-    }
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xCBF29CE484222325U;
-};
+}
 
 }  // namespace
 
@@ -97,10 +85,8 @@ class MonteCarloStudy::Work {
         solvers_(repeated_),
         sums_(set_.items.size()),
         tolerance_(projection_.quantities()) {
-    for (Eigen::Index i = 0; i < tolerance_.size(); ++i) {
-      const double per_unit = set_.items[static_cast<std::size_t>(i)].si_per_unit;
-      tolerance_[i] = numerical_tolerance(projection_.unit()[i] / per_unit, options_.digits) * per_unit;
-    }
+    for (Eigen::Index i = 0; i < tolerance_.size(); ++i)
+      tolerance_[i] = tolerance_of(static_cast<std::size_t>(i), projection_.unit()[i]);
     check_paths();
     path_ = options_.path == DrawPath::Automatic ? supported_path() : options_.path;
     require_same_numbers();
@@ -133,12 +119,12 @@ class MonteCarloStudy::Work {
 
   std::uint64_t expected_draws() const {
     if (options_.draws > 0) return options_.draws;
-    if (sums_.sequences() < 2) return 0;
     double worst = 0.0;
+    if (sums_.sequences() < 2) return expected_by_normal_theory();
     for (std::size_t i = 0; i < set_.items.size(); ++i)
       worst = std::max(worst, scatter(i) / tolerance_of_draws(i));
     const double draws = static_cast<double>(sums_.draws()) * std::max(1.0, worst * worst);
-    return static_cast<std::uint64_t>(std::min(draws, static_cast<double>(options_.most_draws)));
+    return whole_sequences(draws);
   }
 
   MonteCarloResult result() const {
@@ -151,6 +137,7 @@ class MonteCarloStudy::Work {
     result.digits = options_.digits;
     result.adaptive = options_.draws == 0;
     result.settled = sums_.sequences() >= 2 && settled();
+    result.would_settle = result.adaptive ? expected_draws() : 0;
     result.check = check_;
     result.steps = tally_.steps;
     result.refitted = tally_.refitted;
@@ -162,13 +149,13 @@ class MonteCarloStudy::Work {
   }
 
   std::uint64_t fingerprint() const {
-    Fnv1a hash;
-    hash.add(repeated_.identified());
-    hash.add(repeated_.predicted());
-    hash.add(repeated_.gain());
-    hash.add(repeated_.linear_root());
-    hash.add(repeated_.response());
-    hash.add(projection_.unit().matrix());
+    ContentHash hash;
+    add(repeated_.identified(), hash);
+    add(repeated_.predicted(), hash);
+    add(repeated_.gain(), hash);
+    add(repeated_.linear_root(), hash);
+    add(repeated_.response(), hash);
+    add(projection_.unit().matrix(), hash);
     hash.add(options_.seed);
     hash.add(static_cast<std::uint64_t>(path_));
     hash.add(static_cast<std::uint64_t>(options_.sources.functions));
@@ -347,7 +334,7 @@ class MonteCarloStudy::Work {
       if (quantity.unit == "um" || quantity.unit == "mm")
         check.largest_length = std::max(check.largest_length, largest);
       if (quantity.unit == "urad") check.largest_angle = std::max(check.largest_angle, largest);
-      const double share = largest / tolerance_[i];
+      const double share = largest / tolerance_of_paths(static_cast<std::size_t>(i));
       if (!(share <= check.largest_share)) {
         check.largest_share = share;
         check.where = quantity.words();
@@ -377,11 +364,44 @@ class MonteCarloStudy::Work {
     return 2.0 * worst * projection_.unit()[static_cast<Eigen::Index>(i)];
   }
 
+  static bool is_length_or_angle(const Quantity& quantity) {
+    return quantity.unit == "um" || quantity.unit == "mm" || quantity.unit == "urad";
+  }
+
+  /// Delta of a standard uncertainty, SI.
+  double tolerance_of(std::size_t i, double u) const {
+    const Quantity& quantity = set_.items[i];
+    const double by_digits =
+        numerical_tolerance(u / quantity.si_per_unit, options_.digits) * quantity.si_per_unit;
+    return is_length_or_angle(quantity) ? std::max(by_digits, kPracticalTolerance) : by_digits;
+  }
+
+  /// By a share of which a path may differ from refits.
+  double tolerance_of_paths(std::size_t i) const {
+    const double of_draws = tolerance_[static_cast<Eigen::Index>(i)];
+    return is_length_or_angle(set_.items[i]) ? std::max(of_draws, kPracticalTolerance / kShareOfTolerance)
+                                             : of_draws;
+  }
+
+  static constexpr std::uint64_t kFewestDraws = 2 * StudySums::kSequence;
+
+  std::uint64_t whole_sequences(double draws) const {
+    const double most = static_cast<double>(options_.most_draws);
+    const auto sequences = static_cast<std::uint64_t>(
+        std::ceil(std::min(draws, most) / static_cast<double>(StudySums::kSequence)));
+    return std::min(options_.most_draws, std::max(kFewestDraws, sequences * StudySums::kSequence));
+  }
+
+  std::uint64_t expected_by_normal_theory() const {
+    double worst = 0.0;
+    for (Eigen::Index i = 0; i < tolerance_.size(); ++i)
+      worst = std::max(worst, 2.0 * kEndScatter * projection_.unit()[i] / tolerance_[i]);
+    return whole_sequences(worst * worst);
+  }
+
   double tolerance_of_draws(std::size_t i) const {
-    const double per_unit = set_.items[i].si_per_unit;
     const double u = sums_.deviation(i) * projection_.unit()[static_cast<Eigen::Index>(i)];
-    return u > 0.0 ? numerical_tolerance(u / per_unit, options_.digits) * per_unit
-                   : tolerance_[static_cast<Eigen::Index>(i)];
+    return u > 0.0 ? tolerance_of(i, u) : tolerance_[static_cast<Eigen::Index>(i)];
   }
 
   CoverageInterval from_t(const CoverageInterval& t, std::size_t i) const {

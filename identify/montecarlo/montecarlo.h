@@ -41,12 +41,17 @@ struct MonteCarloOptions {
   DrawTeam* team = nullptr;  ///< that shares the draws; must outlive the study; none = this process alone
 };
 
+/// What differs by less is the same in practice, m or rad: a twentieth of the finest increment of
+/// controllers.
+inline constexpr double kPracticalTolerance = 5e-9;
+
 /// How far a path is from refits of the same draws.
 struct PathCheck {
   int draws = 0;
   double largest_length = 0.0;  ///< m, over all quantities in m
   double largest_angle = 0.0;   ///< rad, over those in rad
-  double largest_share = 0.0;   ///< of the numerical tolerance of a quantity
+  double largest_share = 0.0;   ///< of the numerical tolerance of a quantity, a fifth of which is allowed and
+                                ///< is at least kPracticalTolerance
   std::string where;            ///< the quantity of largest_share
   double seconds = 0.0;         ///< per draw
 };
@@ -77,7 +82,7 @@ struct QuantityResult {
   CoverageInterval linear;  ///< estimate + bias_linear -+ k u_linear
   CoverageInterval symmetric;
   CoverageInterval shortest;
-  double tolerance = 0.0;   ///< delta of u for the digits asked for
+  double tolerance = 0.0;   ///< delta of u for the digits asked for, at least kPracticalTolerance
   double difference = 0.0;  ///< larger of d_low and d_high (8.1)
   double end_error = 0.0;   ///< larger standard error of the two ends
   double scatter = 0.0;     ///< 2 s of the least settled of mean, u and ends (7.9.4)
@@ -92,7 +97,8 @@ struct MonteCarloResult {
   std::uint64_t seed = 0;
   int digits = 2;
   bool adaptive = false;
-  bool settled = false;  ///< 2 s < delta for all quantities
+  bool settled = false;            ///< 2 s < delta for all quantities
+  std::uint64_t would_settle = 0;  ///< draws that would settle all of them, as far as is known
   RefitCheck check;
   std::uint64_t steps = 0;          ///< of the chord path or iterations of refits
   std::uint64_t refitted = 0;       ///< draws that chord steps did not solve
@@ -113,7 +119,7 @@ class MonteCarloStudy {
 
   DrawPath path() const;
   std::uint64_t draws() const;
-  /// Draws that the study will take as far as is known: given, or by the scatter so far; 0 = not known yet.
+  /// Draws that the study will take: given; or by the scatter so far, of the first by normal theory.
   std::uint64_t expected_draws() const;
   bool done() const;
   void run_block();

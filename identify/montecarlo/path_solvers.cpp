@@ -16,12 +16,10 @@ void SolverTally::add(const SolverTally& other) {
 Eigen::MatrixXd PathSolvers::by_chord(const std::vector<CampaignDraw>& draws, SolverTally& tally) {
   Eigen::MatrixXd deviations = repeated_.linear_estimates(draws);
   auto work = workspaces_.take([this] { return std::make_unique<ChordSolver::Workspace>(chord_); });
-  const Eigen::MatrixXd gradients = chord_.first_gradients(draws, deviations, *work);
+  const std::vector<ChordSolver::Outcome> outcomes = chord_.solve(draws, deviations, *work);
   std::vector<std::size_t> left;
   for (std::size_t k = 0; k < draws.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const ChordSolver::Outcome outcome =
-        chord_.solve(draws[k], gradients.col(column), deviations.col(column), *work);
+    const ChordSolver::Outcome& outcome = outcomes[k];
     tally.steps += static_cast<std::uint64_t>(outcome.gradients);
     if (outcome.converged) {
       tally.to_come = std::max(tally.to_come, outcome.to_come);

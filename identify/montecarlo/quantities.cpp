@@ -127,6 +127,7 @@ QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per
 
 void add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_axis, QuantityList& list) {
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
+  const std::size_t before = list.items.size();
   for (std::size_t point = 0; point < positions.size(); ++point) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>(3 * point + k);
@@ -139,7 +140,7 @@ void add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_ax
       list.add(std::move(quantity), derivatives);
     }
   }
-  add_sizes(volume, list);
+  if (list.items.size() > before) add_sizes(volume, list);
 }
 
 double edge_position(AxisName axis, double q) {

@@ -18,28 +18,9 @@ namespace {
 
 constexpr double kNoEigenvalue = 1e-12;  // of the largest
 
-/// The noise that the weights of the fit stand for, per group of `groups`.
-std::vector<NoiseParameters> noise_of(const FitResult& result, const std::vector<std::string>& groups) {
-  std::vector<NoiseParameters> noise(groups.size());
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const auto component =
-        std::ranges::find(result.variance_components, groups[g], &VarianceComponent::instrument);
-    if (component != result.variance_components.end()) noise[g].white = component->scale;
-  }
-  if (!result.noise.more_than_white) return noise;
-  for (const NoiseRow& row : result.noise.rows) {
-    const auto group = std::ranges::find(groups, result.noise.groups.at(row.instrument));
-    NoiseParameters& own = noise.at(static_cast<std::size_t>(group - groups.begin()));
-    if (row.term == "wander") own.wander = row.value;
-    if (row.term == "tau" && row.value > 0.0) own.tau = row.value;
-    if (row.term == "line") own.line = row.value;
-    if (row.term == "per_metre") own.per_metre = row.value;
-  }
-  return noise;
-}
-
 /// Root of a positive semidefinite covariance, columns of the eigenvalues that are not zero.
 Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
+  if (covariance.size() == 0) return Eigen::MatrixXd(0, 0);
   const SymmetricEigen eigen = eigen_decomposition(covariance);
   const double floor = kNoEigenvalue * std::max(eigen.values.tail(1).value(), 0.0);
   const auto kept = static_cast<Eigen::Index>((eigen.values.array() > floor).count());
@@ -69,7 +50,7 @@ RepeatedCampaign::RepeatedCampaign(const Campaign& campaign, const FitResult& re
       linear_(campaign, result),
       datum_(linear_.model().layout(), campaign.machine, result.parameters),
       identified_(result.adjustment->reduced),
-      noise_(noise_of(result, linear_.noise_groups())),
+      noise_(fitted_noise(result, linear_.noise_groups())),
       whitener_(linear_.problem().data, noise_),
       sampler_(linear_.problem().data, noise_) {
   require_determined();

@@ -71,6 +71,7 @@ void use_single_threaded_blas() {
 std::optional<Eigen::MatrixXd> cholesky_lower(const Eigen::MatrixXd& symmetric) {
   use_single_threaded_blas();
   const int n = static_cast<int>(symmetric.rows());
+  if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::MatrixXd upper = symmetric;
   int info = 0;
   dpotrf_("U", &n, upper.data(), &n, &info);
@@ -84,6 +85,7 @@ std::optional<Eigen::MatrixXd> cholesky_lower(const Eigen::MatrixXd& symmetric) 
 Eigen::MatrixXd inverse_from_cholesky(const Eigen::MatrixXd& lower) {
   use_single_threaded_blas();
   const int n = static_cast<int>(lower.rows());
+  if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::MatrixXd inverse = lower;
   int info = 0;
   dpotri_("L", &n, inverse.data(), &n, &info);
@@ -147,6 +149,7 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, d
 }
 
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows) {
+  if (rows.cols() == 0) return Eigen::MatrixXd(0, 0);
   const SymmetricEigen eigen = eigen_decomposition(rows.transpose() * rows);
   const double dependent = kDependent * std::max(0.0, eigen.values.tail(1).sum());
   return eigen.vectors.leftCols((eigen.values.array() <= dependent).count());
@@ -155,6 +158,7 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows) {
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
   const double one = 1.0, zero = 0.0;
   const int ldc = static_cast<int>(c.rows());
+  if (n == 0) return;
   dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 /// Dense symmetric linear algebra by LAPACK and BLAS. Matrices are column-major; "upper" means only the upper
 /// triangle is read or written. BLAS runs on one thread: volcal brings its own, and results must not depend
-/// on their number.
+/// on their number. Matrices without rows or columns are allowed everywhere; LAPACK, which writes a message
+/// to standard output for them, is not called.
 
 #include <Eigen/Core>
 #include <optional>

@@ -89,9 +89,11 @@ std::vector<SmoothingTerm> assumed_smoothing(const MeasurementModel& model, cons
   for (SmoothingTerm& term : terms) {
     const auto& shapes = term.family->shapes();
     double nearest = std::numeric_limits<double>::infinity();
+    const double travel = model.campaign().machine.axis(term.symbol.axis).travel();
+    const double length = guess.length * travel / term.family->stretch_length();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       if (shapes[i]->roughness != Roughness::SquaredExponential) continue;
-      const double miss = std::abs(std::log(shapes[i]->length / guess.length));
+      const double miss = std::abs(std::log(shapes[i]->length / length));
       if (miss >= nearest) continue;
       nearest = miss;
       term.shape = i;
@@ -172,7 +174,7 @@ void PlanProblem::learn_machine() {
     if (!comes_from_setups(at.model.layout().blocks[block.block])) continue;
     machine_size_ = std::min<Eigen::Index>(machine_size_, block.offset);
   }
-  GaussianPrior prior = wide_prior(at.model, at.datum, at.datum.reduced(at.parameters));
+  GaussianPrior prior = wide_prior(at.model, at.datum, at.datum.reduced(at.parameters), {});
   add_smoothing(assumed_smoothing(at.model, at.datum, settings_.roughness), prior);
   prior.precision += stated_priors(at.model.layout(), at.datum).precision;
   machine_precision_ = prior.precision.topLeftCorner(machine_size_, machine_size_);

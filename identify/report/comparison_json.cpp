@@ -163,14 +163,22 @@ Json breakdowns_json(const Comparison& comparison) {
 }
 
 Json model_json(const Campaign& campaign, const ComparedModel& model) {
-  return {{"name", model.name},
-          {"where_it_fails", failure_sentence(model)},
-          {"total", cell_json(model.comparison.total)},
-          {"removed", model.comparison.removed},
-          {"cells_tested", model.comparison.cells},
-          {"by", breakdowns_json(model.comparison)},
-          {"worst_readings", worst_json(campaign, model)},
-          {"standards", figures_json(model.figures)}};
+  Json json = {{"name", model.name},
+               {"where_it_fails", failure_sentence(model)},
+               {"total", cell_json(model.comparison.total)},
+               {"removed", model.comparison.removed},
+               {"cells_tested", model.comparison.cells},
+               {"by", breakdowns_json(model.comparison)},
+               {"worst_readings", worst_json(campaign, model)},
+               {"standards", figures_json(model.figures)}};
+  if (model.screening) {
+    json["scans"] = {{"tests", model.screening->tests},
+                     {"contradict", model.screening->contradicts},
+                     {"leading", model.screening->leading},
+                     {"log10_p", model.screening->log10_p},
+                     {"rms_um", model.screening->rms * 1e6}};
+  }
+  return json;
 }
 
 }  // namespace

@@ -2,10 +2,12 @@
 /// What `compare` says: where a model fails, first in a sentence, then in tables, then as the standards' own
 /// figures of the readings and of the model. Edge units (um, urad, mm, deg).
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/identify/stats/comparison.h"
 #include "volcal/identify/stats/standard_figures.h"
@@ -19,6 +21,7 @@ struct ComparedModel {
   std::vector<ResidualRecord> records;
   Comparison comparison;
   StandardFigures figures;
+  std::optional<Screening> screening;  ///< of an identified model: scans of its residuals
 };
 
 /// Breaks the residuals down and evaluates the standards' figures.
@@ -32,6 +35,8 @@ struct ComparisonTextOptions {
 
 /// "where does the model fail", one to three sentences.
 std::string failure_sentence(const ComparedModel& model);
+/// Whether a diagnosis pays.
+bool fails(const ComparedModel& model);
 
 /// A model on lines that its fit has not seen.
 struct HeldOutModel {

@@ -292,13 +292,15 @@ std::string against_sentence(const Comparison& a, const Comparison& b, const std
 
 ComparedModel compared_model(std::string name, const Campaign& campaign, std::vector<ResidualRecord> records,
                              const ComparisonOptions& options) {
-  ComparedModel model{std::move(name), std::move(records), {}, {}};
+  ComparedModel model{std::move(name), std::move(records), {}, {}, {}};
   model.comparison = compare(campaign, model.records, options);
   model.figures = standard_figures(campaign, model.records);
   return model;
 }
 
-std::string failure_sentence(const ComparedModel& model) {
+namespace {
+
+std::string where_it_fails(const ComparedModel& model) {
   const Comparison& comparison = model.comparison;
   const ComparisonCell& total = comparison.total;
   const std::string overall = fmt::format("chi2/dof {} over {}", short_number(total.reduced_chi2(), 3),
@@ -323,6 +325,18 @@ std::string failure_sentence(const ComparedModel& model) {
   }
   return fmt::format("{}: does not explain the readings, {}; worst: {}.", model.name, overall,
                      list_of(outstanding));
+}
+
+}  // namespace
+
+std::string failure_sentence(const ComparedModel& model) {
+  const std::string scanned = model.screening ? screening_sentence(*model.screening) : "";
+  return where_it_fails(model) + (scanned.empty() ? "" : " But " + scanned + ".");
+}
+
+bool fails(const ComparedModel& model) {
+  return model.comparison.total.significant || (model.screening && model.screening->contradicts) ||
+         !worst_places(model.comparison, &ComparisonCell::significant, 0.0).empty();
 }
 
 std::string comparison_text(const Campaign& campaign, std::span<const ComparedModel> models,

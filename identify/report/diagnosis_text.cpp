@@ -10,6 +10,7 @@
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/solve/result.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -90,13 +91,13 @@ std::string evidence_table(const std::vector<EffectFinding>& findings,
                    {"MDB"},
                    {"MIB"},
                    {"rival", Align::Left},
-                   {"visible [%]"},
+                   {"visible fraction"},
                    {"log10 p"}},
                   title);
   for (std::size_t i = 0; i < std::min(most, findings.size()); ++i) {
     const EffectFinding& finding = findings[i];
     const std::string rank = rank_of(finding, ranked);
-    const std::string visible = fixed_number(100.0 * finding.visible_fraction, 1);
+    const std::string visible = fixed_number(finding.visible_fraction, 3);
     const std::string p = fixed_number(finding.log10_p, 1);
     if (finding.amplitudes.empty() || finding.amplitudes.size() > kMostAmplitudes) {
       table.add_row({rank, finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
@@ -105,8 +106,8 @@ std::string evidence_table(const std::vector<EffectFinding>& findings,
     for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
       const AmplitudeFigure& each = finding.amplitudes[k];
       table.add_row({k == 0 ? rank : "", each.label, k == 0 ? finding.name.kind : "",
-                     edge(each.value, each.si_per_unit), edge(1.96 * each.u, each.si_per_unit, 2), each.unit,
-                     edge(each.mdb, each.si_per_unit, 2), mib_text(each), each.mib_rival,
+                     edge(each.value, each.si_per_unit), edge(kCoverageFactor * each.u, each.si_per_unit, 2),
+                     each.unit, edge(each.mdb, each.si_per_unit, 2), mib_text(each), each.mib_rival,
                      k == 0 ? visible : "", k == 0 ? p : ""});
     }
   }
@@ -202,6 +203,10 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += "\n" + evidence_table(*set, ranked, "Not told apart", set->size());
   if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
+  text +=
+      "  MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also told apart from "
+      "every "
+      "other effect, the worst of which is the rival\n";
   text += confounding_table(diagnosis.confounding);
   if (!diagnosis.next_measurement.empty()) {
     text += "\nWhich measurement next\n";

@@ -1,20 +1,17 @@
 #include "volcal/identify/report/finding_json.h"
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/solve/result.h"
 
 namespace volcal::report {
-namespace {
-
-constexpr double kU95 = 1.96;
-
-}  // namespace
+namespace {}  // namespace
 
 Json finding_json(const EffectFinding& effect) {
   Json amplitudes = Json::array();
   for (const AmplitudeFigure& each : effect.amplitudes) {
     amplitudes.push_back({{"label", each.label},
                           {"value", rounded(each.value / each.si_per_unit, 4)},
-                          {"U95", rounded(kU95 * each.u / each.si_per_unit, 3)},
+                          {"U95", rounded(kCoverageFactor * each.u / each.si_per_unit, 3)},
                           {"mdb", rounded(each.mdb / each.si_per_unit, 3)},
                           {"unit", shown_unit(each.unit)}});
   }

@@ -64,10 +64,11 @@ std::string errors_table(const FitResult& result) {
        {"max"},
        {"U95 mean"},
        {"U95 max"},
-       {"seen"},
+       {"visible fraction"},
        {"param."},
        {"", Align::Left}},
-      "Error motions and squareness (U95 = 1.96 u; seen = share of the signal that nothing else imitates)");
+      "Error motions and squareness (U95 = 1.96 u; visible fraction = share of its signal that nothing else "
+      "imitates)");
   const auto table = error_table(result);
   for (const Observability& error : result.rank.errors) {
     if (result.layout.find_block(error.symbol) == nullptr) add_function_row(result, table, error, text);

@@ -93,6 +93,19 @@ std::string refit_table(const RefitCheck& check) {
   return table.text();
 }
 
+std::string tolerance_words(const MonteCarloResult& result) {
+  std::string text = fmt::format(
+      "  tolerance  {} significant digits of u, and no finer than {:.0f} nm or nrad: ", result.digits,
+      kPracticalTolerance * 1e9);
+  if (result.settled) return text + "reached for every value\n";
+  const auto settled = std::ranges::count_if(
+      result.quantities, [](const QuantityResult& value) { return value.scatter < value.tolerance; });
+  text += fmt::format("reached for {} of {} values\n", settled, result.quantities.size());
+  return text +
+         fmt::format("             about {} draws would settle all: --resume goes on where this ended\n",
+                     count_number(static_cast<long long>(result.would_settle)));
+}
+
 std::string head(const MonteCarloResult& result) {
   static constexpr const char* kPathWords[] = {"", "linear: one matrix product, drawn among the parameters",
                                                "chord: readings drawn, steps with an exact gradient",
@@ -106,8 +119,7 @@ std::string head(const MonteCarloResult& result) {
   for (const std::string& disturbance : result.disturbances)
     text += "  disturbed  by " + disturbance + ", which the fit knows nothing of\n";
   if (result.adaptive) {
-    text += fmt::format("  tolerance  {} significant digits of u: {}\n", result.digits,
-                        result.settled ? "reached for every value" : "not reached for every value");
+    text += tolerance_words(result);
   }
   if (result.path == DrawPath::Chord) {
     text += fmt::format(

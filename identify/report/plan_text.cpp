@@ -10,6 +10,7 @@
 #include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
+#include "volcal/identify/solve/result.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
@@ -18,7 +19,6 @@ namespace {
 
 constexpr double kPerMicrometre = 1e6;
 constexpr double kPerMillimetre = 1e3;
-constexpr double kCoverageOfU = 2.0;
 
 std::string joined_words(const std::vector<std::string>& words) {
   std::string text;
@@ -154,12 +154,14 @@ const Observability* error_of(const ExpectedCampaign& campaign, const std::strin
 std::string errors_table(const CampaignPlan& plan) {
   std::vector<TextColumn> columns = {{"error", Align::Left}, {"unit", Align::Left}};
   const std::vector<const ExpectedCampaign*> all = compared(plan);
-  for (const ExpectedCampaign* each : all) columns.push_back({"U " + each->name});
+  for (const ExpectedCampaign* each : all) columns.push_back({"U95 " + each->name});
   columns.push_back({"less by [%]"});
   columns.push_back({"visible fraction"});
-  columns.push_back({"parameters seen"});
+  columns.push_back({"effective parameters"});
   TextTable table(columns,
-                  "Every error: U (k = 2), root mean square over the travel; observability with the plan");
+                  "Every error: U95 = 1.96 u, root mean square over the travel; visible fraction (share of "
+                  "its signal that "
+                  "nothing else imitates) and effective parameters with the plan");
   for (const Observability& error : plan.plan.result.rank.errors) {
     const auto symbol = ErrorSymbol::parse(error.symbol);
     const auto location = LocationSymbol::parse(error.symbol);
@@ -172,7 +174,7 @@ std::string errors_table(const CampaignPlan& plan) {
       const Observability* own = error_of(*each, error.symbol);
       cells.push_back(own == nullptr  ? "-"
                       : !own->visible ? "not visible"
-                                      : fixed_number(kCoverageOfU * own->u_rms * kPerMicrometre, 3));
+                                      : fixed_number(kCoverageFactor * own->u_rms * kPerMicrometre, 3));
     }
     const Observability* before = error_of(*all[1], error.symbol);
     const bool both = before != nullptr && before->visible && error.visible;

@@ -132,6 +132,26 @@ LocalRows empty_local_rows(const ParameterLayout& layout, const DatumSpace& datu
 
 }  // namespace
 
+std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::vector<std::string>& groups) {
+  std::vector<NoiseParameters> noise(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto component =
+        std::ranges::find(result.variance_components, groups[g], &VarianceComponent::instrument);
+    if (component != result.variance_components.end()) noise[g].white = component->scale;
+  }
+  if (!result.noise.more_than_white) return noise;
+  for (const NoiseRow& row : result.noise.rows) {
+    const auto group = std::ranges::find(groups, result.noise.groups.at(row.instrument));
+    if (group == groups.end()) continue;
+    NoiseParameters& own = noise.at(static_cast<std::size_t>(group - groups.begin()));
+    if (row.term == "wander") own.wander = row.value;
+    if (row.term == "tau" && row.value > 0.0) own.tau = row.value;
+    if (row.term == "line") own.line = row.value;
+    if (row.term == "per_metre") own.per_metre = row.value;
+  }
+  return noise;
+}
+
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
                const std::vector<ObservationPlace>& places, NoiseProblem& problem) {
   const auto count = static_cast<Eigen::Index>(places.size());

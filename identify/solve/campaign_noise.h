@@ -8,6 +8,7 @@
 #include "volcal/identify/noise/local_rows.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/solve/datum.h"
+#include "volcal/identify/solve/result.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -36,6 +37,9 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
 /// least. A sequence that alone is longer than the limit gives its first readings in time. All when there are
 /// no more.
 CampaignNoise sampled(const CampaignNoise& all, std::size_t limit);
+
+/// The noise that the weights of a fit stand for, per group of `groups`; as stated where it knows none of it.
+std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::vector<std::string>& groups);
 
 /// Fills derivatives to the reduced parameters and residuals (reading minus prediction, m or rad) of the
 /// observations at `places`.

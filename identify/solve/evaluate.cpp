@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/minimise.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/stated_sigma.h"
@@ -13,6 +14,7 @@
 namespace volcal {
 namespace {
 
+constexpr double kHeld = 1e-12;          // m or rad: the model's errors stay as they are
 constexpr double kUnheldNuisance = 1.0;  // m or rad: far wider than anything a setup can be wrong by
 
 bool is_frozen_with_the_model(const ParameterBlock& block) {
@@ -82,6 +84,25 @@ std::vector<double> prediction_uncertainty(const ReadingIndex& index, const Datu
   return u;
 }
 
+/// With the model's errors held.
+std::shared_ptr<const Adjustment> adjustment_of(const MeasurementModel& model, const Machine& machine,
+                                                const Eigen::VectorXd& parameters,
+                                                const GaussianPrior& of_nuisance, const DatumSpace& nuisance,
+                                                const std::vector<double>& sigma) {
+  const DatumSpace all(model.layout(), machine, parameters);
+  GaussianPrior prior = GaussianPrior::none(all.size());
+  prior.mean = all.reduced(parameters);
+  prior.precision.diagonal().setConstant(1.0 / (kHeld * kHeld));
+  for (const auto& block : nuisance.blocks()) {
+    const auto own = std::ranges::find(all.blocks(), block.block, &DatumSpace::BlockCoordinates::block);
+    prior.precision.diagonal().segment(own->offset, own->size) =
+        of_nuisance.precision.diagonal().segment(block.offset, block.size);
+    prior.mean.segment(own->offset, own->size) = of_nuisance.mean.segment(block.offset, block.size);
+  }
+  const Eigen::VectorXd reduced = all.reduced(parameters);
+  return std::make_shared<const Adjustment>(Adjustment{model.spec(), reduced, std::move(prior), {}, sigma});
+}
+
 }  // namespace
 
 ModelSpec nominal_model() {
@@ -145,11 +166,30 @@ Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec,
     evaluation.chi2 += setup.chi2;
     evaluation.dof += setup.redundancy;
   }
+  evaluation.layout = model.layout();
+  evaluation.parameters = parameters;
+  evaluation.adjustment = adjustment_of(model, campaign.machine, parameters, prior, datum, sigma);
   evaluation.model_u.assign(index.observations(), 0.0);
   if (identified != nullptr) {
     evaluation.model_u = prediction_uncertainty(index, datum, sums, prior, parameters, *identified);
   }
   return evaluation;
+}
+
+FitResult as_fitted(const Evaluation& evaluation, const FitResult& identified) {
+  FitResult result;
+  result.machine = identified.machine;
+  result.identified = identified.identified;
+  result.layout = evaluation.layout;
+  result.parameters = evaluation.parameters;
+  result.setups = evaluation.setups;
+  result.residuals = evaluation.residuals;
+  result.chi2 = evaluation.chi2;
+  result.dof = evaluation.dof;
+  result.variance_components = identified.variance_components;
+  result.noise = identified.noise;
+  result.adjustment = evaluation.adjustment;
+  return result;
 }
 
 namespace {
@@ -220,7 +260,7 @@ Validation validate(const Campaign& campaign, const FitResult& result, int threa
     const double variance = record.sigma * record.sigma + std::pow(validation.after.model_u[i], 2);
     const double square = record.residual() * record.residual() / variance;
     chi2 += square;
-    if (square <= 1.96 * 1.96) ++inside;
+    if (square <= kCoverageFactor * kCoverageFactor) ++inside;
   }
   figures.reduced_chi2 = chi2 / std::max(1.0, validation.after.dof);
   figures.coverage95 = static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(1, judged));

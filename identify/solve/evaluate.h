@@ -2,6 +2,7 @@
 /// A given model on readings that did not make it: error functions frozen, only the campaign's nuisance
 /// parameters (stations, dead paths, alignments, tool and scale errors with priors) re-estimated.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -23,12 +24,19 @@ struct Evaluation {
   std::vector<SetupSummary> setups;
   double chi2 = 0.0;
   double dof = 0.0;
+  ParameterLayout layout;
+  Eigen::VectorXd parameters;  ///< raw
+  std::shared_ptr<const Adjustment> adjustment;
 };
 
 /// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
 /// Throws InputError when the campaign does not fit the model's machine.
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,
                           const FitResult* identified = nullptr, int threads = 0);
+
+/// An identified model on a campaign as if a fit had ended there, with the noise of `identified`: what
+/// criticises a fit can then criticise it. Of its errors nothing is open.
+FitResult as_fitted(const Evaluation& evaluation, const FitResult& identified);
 
 /// Figures of `volcal validate`. Vectors count as one value, |e|; angles apart.
 struct ValidationFigures {

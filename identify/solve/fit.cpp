@@ -9,6 +9,7 @@
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
+#include "volcal/identify/solve/fitted_readings.h"
 #include "volcal/identify/solve/plausibility.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
@@ -181,7 +182,7 @@ class Identification {
     const NormalEquations& sums = accumulator.accumulate(parameters_);
     result_.initial_cost = sums.cost;
     base_prior_ = stated_priors(model_.layout(), *datum_);
-    const GaussianPrior wide = wide_prior(model_, *datum_, z_);
+    const GaussianPrior wide = wide_prior(model_, *datum_, z_, stated_sigma_);
     rank_ = analyse_rank(model_, *datum_, datum_->reduce_matrix(sums.matrix) + base_prior_.precision, wide);
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = smoothing_terms(model_, *datum_);
@@ -361,6 +362,8 @@ class Identification {
     result_.layout = model_.layout();
     result_.covariance += datum_->expand_covariance(amplitude_covariance(terms_, reduced_covariance_, z_));
     result_.setups = setup_summaries(campaign_, result_.residuals, stated_sigma_);
+    for (std::size_t i = 0; i < result_.setups.size(); ++i)
+      result_.setups[i].fingerprint = readings_fingerprint(campaign_.setups[i]);
     for (const SetupSummary& setup : result_.setups) {
       result_.chi2 += setup.chi2;
       result_.dof += setup.redundancy;

@@ -16,6 +16,8 @@ constexpr int kHighestDegree = 30;
 constexpr int kAnalysisPoints = 64;
 constexpr int kDegrees = kHighestDegree - 1;  // beyond straight lines
 constexpr double kNugget = 1e-7;  // of the mean variance: keeps the covariance of smooth shapes invertible
+constexpr double kEdge = 1e-9;    // in t
+constexpr double kBridge = 0.25;  // in t: length of what leads a Legendre series out of the stretch
 
 struct LengthRange {
   double shortest;
@@ -49,6 +51,40 @@ Eigen::MatrixXd projection(const Basis& basis, const Eigen::VectorXd& points) {
   return solve_positive_definite(values.transpose() * values, values.transpose());
 }
 
+/// How far outside of [-1, 1].
+double beyond(double t) { return std::max(0.0, std::abs(t) - 1.0); }
+bool is_outside(double t) { return beyond(t) > kEdge; }
+
+double squared_exponential(double distance) { return std::exp(-0.5 * distance * distance); }
+
+/// Rows of columns outside of [-1, 1]: what value and slope at the edge lead to.
+void lead_out(const Eigen::ArrayXd& t, Eigen::MatrixXd& columns) {
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    if (!is_outside(t[i])) continue;
+    const double sense = t[i] > 0.0 ? 1.0 : -1.0, away = beyond(t[i]);
+    for (Eigen::Index n = 0; n < columns.cols(); ++n) {
+      const auto degree = static_cast<double>(n);
+      const double value = std::sqrt(2.0 * degree + 1.0) * (n % 2 == 0 ? 1.0 : sense);
+      const double slope_outwards = value * 0.5 * degree * (degree + 1.0);
+      columns(i, n) = squared_exponential(away / kBridge) * (value + slope_outwards * away);
+    }
+  }
+}
+
+/// Covariance of what is free outside, of a variance of 1 far away, either side by itself.
+Eigen::MatrixXd free_outside(const Eigen::ArrayXd& t) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(t.size(), t.size());
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    for (Eigen::Index j = 0; j < t.size(); ++j) {
+      if (!is_outside(t[i]) || !is_outside(t[j]) || t[i] * t[j] < 0.0) continue;
+      const double a = beyond(t[i]) / kBridge, b = beyond(t[j]) / kBridge;
+      covariance(i, j) =
+          squared_exponential(a - b) - squared_exponential(a) * squared_exponential(b) * (1.0 + a * b);
+    }
+  }
+  return covariance;
+}
+
 /// Columns sqrt(2n + 1) P_n(t), n = 0, 1, ...
 Eigen::MatrixXd legendre_columns(const Eigen::ArrayXd& t) {
   Eigen::MatrixXd columns(t.size(), kHighestDegree + 1);
@@ -62,6 +98,7 @@ Eigen::MatrixXd legendre_columns(const Eigen::ArrayXd& t) {
     current = next;
     columns.col(n) = std::sqrt(2.0 * n + 1.0) * current;
   }
+  lead_out(t, columns);
   return columns;
 }
 
@@ -75,7 +112,7 @@ Eigen::MatrixXd legendre_covariance(Roughness roughness, double length, const Ei
 }
 
 double correlation(Roughness roughness, double distance) {
-  if (roughness == Roughness::SquaredExponential) return std::exp(-0.5 * distance * distance);
+  if (roughness == Roughness::SquaredExponential) return squared_exponential(distance);
   const double s = std::sqrt(5.0) * distance;
   return (1.0 + s + s * s / 3.0) * std::exp(-s);
 }
@@ -89,18 +126,33 @@ Eigen::MatrixXd stationary_covariance(Roughness roughness, double length, const 
   return covariance;
 }
 
-/// Of the deviation from the least-squares line, mean variance 1.
-Eigen::MatrixXd shape_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
-  const bool is_series = roughness == Roughness::Geometric || roughness == Roughness::Heat;
-  const Eigen::MatrixXd covariance =
-      is_series ? legendre_covariance(roughness, length, t) : stationary_covariance(roughness, length, t);
+/// Of the deviation from the least-squares line.
+Eigen::MatrixXd deviation_covariance(const Eigen::MatrixXd& covariance, const Eigen::ArrayXd& t) {
   Eigen::MatrixXd lines(t.size(), 2);
   lines.col(0).setOnes();
   lines.col(1) = t;
   const Eigen::MatrixXd along = lines * solve_positive_definite(lines.transpose() * lines, lines.transpose());
   const Eigen::MatrixXd across = Eigen::MatrixXd::Identity(t.size(), t.size()) - along;
-  const Eigen::MatrixXd deviation = across * covariance * across;
-  return deviation * (static_cast<double>(t.size()) / deviation.trace());
+  return across * covariance * across;
+}
+
+/// Up to straight lines; mean variance of the deviation from the least-squares line 1, within [-1, 1].
+Eigen::MatrixXd shape_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
+  const bool is_series = roughness == Roughness::Geometric || roughness == Roughness::Heat;
+  Eigen::MatrixXd covariance =
+      is_series ? legendre_covariance(roughness, length, t) : stationary_covariance(roughness, length, t);
+  std::vector<Eigen::Index> inside;
+  for (Eigen::Index i = 0; i < t.size(); ++i) {
+    if (!is_outside(t[i])) inside.push_back(i);
+  }
+  if (static_cast<Eigen::Index>(inside.size()) == t.size()) {
+    const Eigen::MatrixXd deviation = deviation_covariance(covariance, t);
+    return deviation * (static_cast<double>(t.size()) / deviation.trace());
+  }
+  covariance *= static_cast<double>(inside.size()) /
+                deviation_covariance(covariance(inside, inside), t(inside)).trace();
+  if (is_series) covariance += free_outside(t);
+  return covariance;
 }
 
 /// Of all shapes, in their order; of an axis or a basis they know nothing.
@@ -125,9 +177,17 @@ const std::vector<Eigen::VectorXd>& spectra() {
   return all;
 }
 
-Eigen::MatrixXd with_nugget(Eigen::MatrixXd covariance) {
-  covariance.diagonal().array() += kNugget * covariance.diagonal().mean();
-  return covariance;
+/// Columns: combinations of three neighbouring coefficients that vanish for straight lines. Outside the
+/// stretch coefficients are free by far more than inside, which combinations of all would mix.
+Eigen::MatrixXd contrasts_of_neighbours(const Eigen::MatrixXd& straight) {
+  const Eigen::Index count = std::max<Eigen::Index>(0, straight.cols() - 2);
+  Eigen::MatrixXd contrasts = Eigen::MatrixXd::Zero(straight.cols(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d constant = straight.block<1, 3>(0, i).transpose();
+    const Eigen::Vector3d slope = straight.block<1, 3>(1, i).transpose();
+    contrasts.col(i).segment<3>(i) = constant.cross(slope).normalized();
+  }
+  return contrasts;
 }
 
 }  // namespace
@@ -155,19 +215,26 @@ double PriorShape::correlation_length() const {
   return 0.5 * std::sqrt(spectrum.sum() * 2.0 / 3.0 / slope);
 }
 
-FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen::MatrixXd& datum_basis) {
+FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen::MatrixXd& datum_basis)
+    : FunctionPriors(basis, ResolvedStretch{axis.travel_min, axis.travel_max, 1}, datum_basis) {}
+
+FunctionPriors::FunctionPriors(const Basis& basis, const ResolvedStretch& stretch,
+                               const Eigen::MatrixXd& datum_basis)
+    : stretch_length_(stretch.max - stretch.min) {
   const Eigen::VectorXd points = collocation_points(basis);
-  const Eigen::ArrayXd t =
-      (2.0 * points.array() - axis.travel_min - axis.travel_max) / (axis.travel_max - axis.travel_min);
+  const Eigen::ArrayXd t = (2.0 * points.array() - stretch.min - stretch.max) / stretch_length_;
+  reaches_beyond_ = t.unaryExpr([](double each) { return beyond(each); }).maxCoeff() > kEdge;
   const Eigen::MatrixXd project = projection(basis, points);
   Eigen::MatrixXd straight(2, basis.size());
   straight.row(0) = project.rowwise().sum().transpose();
   straight.row(1) = (project * t.matrix()).transpose();
-  const Eigen::MatrixXd contrasts = null_space(straight);
+  const Eigen::MatrixXd contrasts =
+      reaches_beyond_ ? contrasts_of_neighbours(straight) : null_space(straight);
   if (contrasts.cols() == 0) return;
   const Eigen::MatrixXd of_values = contrasts.transpose() * project;
   of_reduced_ = contrasts.transpose() * datum_basis;
   of_legendre_ = of_values * legendre_columns(t).rightCols(kDegrees);
+  if (reaches_beyond_) of_outside_ = of_values * free_outside(t) * of_values.transpose();
   for (int kind = 0; kind < kRoughnessKinds; ++kind) {
     const auto roughness = static_cast<Roughness>(kind);
     for (int place = 0; place < kPriorLengths; ++place) {
@@ -180,6 +247,15 @@ FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen
       shapes_.push_back(std::make_shared<const PriorShape>(std::move(shape)));
     }
   }
+}
+
+Eigen::MatrixXd FunctionPriors::with_nugget(Eigen::MatrixXd of_contrasts) const {
+  if (reaches_beyond_) {
+    of_contrasts.diagonal() *= 1.0 + kNugget;
+  } else {
+    of_contrasts.diagonal().array() += kNugget * of_contrasts.diagonal().mean();
+  }
+  return of_contrasts;
 }
 
 PriorShape FunctionPriors::with_covariance(const Eigen::MatrixXd& of_contrasts) const {
@@ -196,7 +272,9 @@ PriorShape FunctionPriors::with_covariance(const Eigen::MatrixXd& of_contrasts) 
 
 PriorShape FunctionPriors::with_spectrum(const PriorShape& like, const Eigen::VectorXd& variances) const {
   const Eigen::VectorXd spectrum = variances / variances.sum();
-  PriorShape shape = with_covariance(of_legendre_ * spectrum.asDiagonal() * of_legendre_.transpose());
+  Eigen::MatrixXd covariance = of_legendre_ * spectrum.asDiagonal() * of_legendre_.transpose();
+  if (reaches_beyond_) covariance += of_outside_;
+  PriorShape shape = with_covariance(covariance);
   shape.roughness = like.roughness;
   shape.length = like.length;
   shape.spectrum = spectrum;
@@ -207,7 +285,9 @@ Eigen::VectorXd FunctionPriors::expected_squares(const PriorShape& prior, double
                                                  const Eigen::VectorXd& mean,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& covariance) const {
   const Eigen::MatrixXd across = prior.spectrum.asDiagonal() * of_legendre_.transpose();
-  const Eigen::MatrixXd of_contrasts = with_nugget(of_legendre_ * across);
+  Eigen::MatrixXd of_contrasts = of_legendre_ * across;
+  if (reaches_beyond_) of_contrasts += of_outside_;
+  of_contrasts = with_nugget(std::move(of_contrasts));
   const Eigen::MatrixXd gain = solve_positive_definite(of_contrasts, across.transpose()).transpose();
   const Eigen::MatrixXd coefficients = gain * of_reduced_;
   const Eigen::VectorXd known = (coefficients * mean).cwiseAbs2() +

@@ -12,6 +12,10 @@
 /// scaled to a mean variance of 1 over the travel, projected on the basis by least squares and expressed in
 /// the coordinates of the datum (Z of datum.h).
 ///
+/// Of an axis that was measured on a part of its travel, t runs from -1 to 1 over that part. Stationary
+/// covariances go on outside; Legendre series continue from value and slope at the edge as a squared
+/// exponential covariance of a fixed length would: with the same variance, and ever less bound to the part.
+///
 /// The spectrum of the chosen one, the variance of each Legendre coefficient, is then corrected degree by
 /// degree by the functions that share it, and the corrected one is taken where its evidence is higher
 /// (smoothing.h).
@@ -21,6 +25,7 @@
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/solve/resolution.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/functions/basis.h"
 
@@ -34,7 +39,7 @@ std::string_view to_string(Roughness roughness);
 
 struct PriorShape {
   Roughness roughness = Roughness::Geometric;
-  /// Share of the travel: correlation length, or 1 / degree at which Legendre coefficients have fallen by e.
+  /// Share of the stretch: correlation length, or 1 / degree at which Legendre coefficients have fallen by e.
   double length = 0.0;
   /// Variances of the coefficients of sqrt(2n + 1) P_n, n = 2, 3, ..., of unit amplitude.
   Eigen::VectorXd spectrum;
@@ -43,7 +48,7 @@ struct PriorShape {
   int rank = 0;
 
   /// Standard deviation of the deviation from a straight line over that of its slope, weighted by 1 - t^2, a
-  /// share of the travel: about the length of a squared exponential covariance, less where that is long.
+  /// share of the stretch: about the length of a squared exponential covariance, less where that is long.
   double correlation_length() const;
 };
 
@@ -51,6 +56,10 @@ struct PriorShape {
 class FunctionPriors {
  public:
   FunctionPriors(const Basis& basis, const Axis& axis, const Eigen::MatrixXd& datum_basis);
+  FunctionPriors(const Basis& basis, const ResolvedStretch& stretch, const Eigen::MatrixXd& datum_basis);
+
+  /// Of the stretch that the lengths are shares of, m or rad.
+  double stretch_length() const { return stretch_length_; }
 
   /// What evidence chooses from: kind by kind, lengths ascending, lengths with the same index being about as
   /// smooth. Empty when the basis holds straight lines only.
@@ -67,9 +76,13 @@ class FunctionPriors {
  private:
   /// Precision, determinant and rank alone.
   PriorShape with_covariance(const Eigen::MatrixXd& of_contrasts) const;
+  Eigen::MatrixXd with_nugget(Eigen::MatrixXd of_contrasts) const;
 
+  double stretch_length_ = 0.0;
+  bool reaches_beyond_ = false;  ///< the basis, beyond the stretch
   Eigen::MatrixXd of_reduced_;   ///< contrasts (combinations that vanish for straight lines) x reduced
   Eigen::MatrixXd of_legendre_;  ///< contrasts x degrees
+  Eigen::MatrixXd of_outside_;   ///< covariance of contrasts by what is free outside the stretch; or empty
   std::vector<std::shared_ptr<const PriorShape>> shapes_;
 };
 

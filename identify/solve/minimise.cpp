@@ -332,12 +332,21 @@ MinimiseSummary minimise_per_reading(const ReadingIndex& index, const std::vecto
   return summarise(summary);
 }
 
+MinimiseSummary nothing_to_estimate(const ReadingIndex& index, const std::vector<double>& weight,
+                                    const DatumSpace& datum, const MinimiseOptions& options,
+                                    const Eigen::VectorXd& z) {
+  const auto loss = make_loss(options);
+  NormalAccumulator accumulator(index, weight, loss.get(), options.threads);
+  const double cost = accumulator.accumulate(datum.raw(z), nullptr, Sums::AllButMatrix).cost;
+  return {true, 0, cost, cost, "nothing to estimate"};
+}
+
 }  // namespace
 
 MinimiseSummary minimise(const ReadingIndex& index, const std::vector<double>& weight,
                          const DatumSpace& datum, const GaussianPrior& prior, const MinimiseOptions& options,
                          Eigen::VectorXd& z) {
-  if (datum.size() == 0) return {true, 0, 0.0, 0.0, "nothing to estimate"};
+  if (datum.size() == 0) return nothing_to_estimate(index, weight, datum, options, z);
   return options.solver == SolverKind::Compressed
              ? minimise_compressed(index, weight, datum, prior, options, z)
              : minimise_per_reading(index, weight, datum, prior, options, z);

@@ -20,6 +20,7 @@ constexpr double kUnseenAmplitude = 1e-4;
 constexpr double kWideDisplacement = 1e-3;
 constexpr double kWideRotation = 1e-3;
 constexpr double kWideSquareness = 1e-3;
+constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
 constexpr double kWideNuisance = 1.0;
 constexpr double kCurvatureShare =
     1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
@@ -29,16 +30,36 @@ constexpr double kMostlyHidden = 0.5;  // share of its variance, for a partner
 constexpr std::size_t kMostPartners = 5;
 constexpr int kPositions = 33;
 
-double wide_sigma(ErrorSymbol symbol) {
-  return is_rotation(symbol.component) ? kWideRotation : kWideDisplacement;
-}
+/// Standard deviations of the wide prior.
+class WideSigma {
+ public:
+  WideSigma(const PriorWidths& stated, std::vector<double> sigma) : stated_(stated) {
+    std::erase_if(sigma, [](double each) { return !std::isfinite(each); });
+    if (sigma.empty()) return;
+    const auto middle = sigma.begin() + static_cast<std::ptrdiff_t>(sigma.size() / 2);
+    std::ranges::nth_element(sigma, middle);
+    wider_ = std::max(1.0, *middle / kNoiseOfMachineTools);
+  }
 
-double wide_sigma(const ParameterBlock& block) {
-  if (block.location) return is_rotation(block.location->component) ? kWideSquareness : kWideDisplacement;
-  if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return 1e-3;
-  if (block.kind == ParameterKind::EffectShape) return 10.0 * block.prior_sigma[0];
-  return kWideNuisance;
-}
+  double of(ErrorSymbol symbol) const {
+    return is_rotation(symbol.component) ? stated_.rotation.value_or(wider_ * kWideRotation)
+                                         : stated_.displacement.value_or(wider_ * kWideDisplacement);
+  }
+  double of(const ParameterBlock& block) const {
+    if (block.location) {
+      return is_rotation(block.location->component)
+                 ? stated_.squareness.value_or(wider_ * kWideSquareness)
+                 : stated_.displacement.value_or(wider_ * kWideDisplacement);
+    }
+    if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return wider_ * 1e-3;
+    if (block.kind == ParameterKind::EffectShape) return 10.0 * block.prior_sigma[0];
+    return kWideNuisance;
+  }
+
+ private:
+  PriorWidths stated_;
+  double wider_ = 1.0;
+};
 
 const Basis& basis_of(const ParameterLayout& layout, ErrorSymbol symbol) {
   return *layout.groups[static_cast<std::size_t>(layout.find(symbol)->group)].basis;
@@ -248,6 +269,8 @@ class RankAnalyser {
     analysis_.report.rank = static_cast<int>((eigen.values.array() > kGainOfVisible).count());
     const int hidden = datum_.size() - analysis_.report.rank;
     hidden_.resize(datum_.size(), hidden);
+    const Eigen::MatrixXd held = lower * eigen.vectors.leftCols(hidden);
+    analysis_.on_invisible = held * held.transpose();
     if (hidden == 0) return;
     const Eigen::ArrayXd shrink = (1.0 + eigen.values.head(hidden).array().max(0.0)).rsqrt();
     hidden_ = root->transpose().triangularView<Eigen::Upper>().solve(eigen.vectors.leftCols(hidden) *
@@ -411,7 +434,9 @@ class RankAnalyser {
 
 }  // namespace
 
-GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z) {
+GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
+                         const std::vector<double>& sigma) {
+  const WideSigma wide_sigma(model.spec().priors, sigma);
   GaussianPrior prior = GaussianPrior::none(datum.size());
   prior.mean = z;
   for (const auto& function : datum.functions()) {
@@ -424,13 +449,13 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
                    gram(basis, basis.roughness_order());
     }
     prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
-        function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma(function.symbol), 2);
+        function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma.of(function.symbol), 2);
     prior.mean.segment(function.offset, function.size()).setZero();
   }
   for (const auto& block : datum.blocks()) {
     const ParameterBlock& source = model.layout().blocks[block.block];
     for (int k = 0; k < block.size; ++k) {
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma(source), 2);
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma.of(source), 2);
     }
     if (source.location || source.kind == ParameterKind::Effect)
       prior.mean.segment(block.offset, block.size).setZero();
@@ -461,7 +486,7 @@ GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& dat
 void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior) {
   if (rank.report.rank >= rank.report.parameters) return;
   prior.mean = (prior.precision.diagonal().array() > 0.0).select(prior.mean, wide.mean);
-  prior.precision += wide.precision;
+  prior.precision += rank.deficient ? rank.on_invisible : wide.precision;
 }
 
 void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {

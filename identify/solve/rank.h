@@ -1,11 +1,16 @@
 #pragma once
 /// What the data can determine, found before any covariance is asked for.
 ///
-/// Every error gets a very wide prior (1 mm, 1 mrad over the travel and of squareness; nuisance parameters
-/// 1 m, 1 rad). A direction of the parameter space is invisible when the data improve that prior by less than
-/// a factor of ten in standard uncertainty. An error is not visible when the mean of its posterior variance
+/// Every error gets a very wide prior (1 mm, 1 mrad over the travel and of squareness, each wider by as much
+/// as the readings are noisier than 2 um or 2 urad, or what the model states; nuisance parameters 1 m, 1
+/// rad). A direction of the parameter space is invisible when the data improve that prior by less than a
+/// factor of ten in standard uncertainty. An error is not visible when the mean of its posterior variance
 /// over the measured travel is more than a hundredth of its prior variance. Both are free of the choice of
-/// units.
+/// units, and of the noise where this is more than 2 um.
+///
+/// Where an error is not visible the prior stands on the invisible directions alone and pulls nothing that
+/// the readings determine. Where all are, it also stands, for the detail that smoothing holds, on directions
+/// that the readings determine, and changes their estimates by less than a hundredth of u.
 
 #include <Eigen/Core>
 #include <vector>
@@ -19,8 +24,9 @@
 namespace volcal {
 
 /// Wide prior on everything, reduced coordinates; keeps an invisible direction at zero with a stated, useless
-/// uncertainty instead of letting it take any value.
-GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z);
+/// uncertainty instead of letting it take any value. `sigma`: stated, of all readings.
+GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
+                         const std::vector<double>& sigma);
 
 /// Priors that the files, or an instrument's weak default, give to the blocks' parameters; none elsewhere.
 GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum);
@@ -28,7 +34,8 @@ GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& dat
 struct RankAnalysis {
   RankReport report;
   std::vector<ErrorSymbol> invisible_functions;
-  bool deficient = false;  ///< an error is not visible
+  bool deficient = false;        ///< an error is not visible
+  Eigen::MatrixXd on_invisible;  ///< precision of the wide prior on the invisible directions alone
 };
 
 /// `data`: normal matrix of the readings plus the user's priors on nuisance parameters, reduced coordinates.

@@ -3,6 +3,8 @@
 /// apart, with the smoothing prior of smoothing.h deciding by evidence how much of that resolution the data
 /// support.
 
+#include <vector>
+
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
 
@@ -10,8 +12,23 @@ namespace volcal {
 
 inline constexpr int kMaxAutomaticIntervals = 24;
 
-/// Pieces for one axis: measured positions that differ by more than 1/200 of the travel, less one, at most
+/// The stretch of an axis that is resolved: the travel, or the measured part where this ends more than one
+/// interval before the travel does; m or rad. Outside, pieces double in length.
+struct ResolvedStretch {
+  double min = 0.0;
+  double max = 0.0;
+  int intervals = 1;
+
+  bool is_whole(const Axis& axis) const { return min == axis.travel_min && max == axis.travel_max; }
+  std::vector<double> breakpoints(const Axis& axis) const;
+};
+
+/// Intervals: measured positions that differ by more than 1/200 of the stretch, less one, at most
 /// kMaxAutomaticIntervals, at least 1.
+ResolvedStretch resolved_stretch(const Campaign& campaign, AxisName axis);
+/// The same of an axis whose functions have these breakpoints: the whole travel where they are others.
+ResolvedStretch resolved_stretch(const Campaign& campaign, AxisName axis,
+                                 const std::vector<double>& breakpoints);
 int automatic_intervals(const Campaign& campaign, AxisName axis);
 
 /// The spec with breakpoints for every function that uses knots. `smoothed` functions keep

@@ -17,6 +17,8 @@
 
 namespace volcal {
 
+inline constexpr double kCoverageFactor = 1.96;  ///< U95 = 1.96 u: 95 % of a normal distribution
+
 enum class FitStatus { Ok, LackOfFit, RankDeficient, NotConverged };
 std::string_view to_string(FitStatus status);
 
@@ -49,6 +51,7 @@ struct SetupSummary {
   double redundancy = 0.0;    ///< sum of redundancy numbers
   double rms_residual = 0.0;  ///< SI
   double max_residual = 0.0;  ///< SI
+  std::string fingerprint;    ///< of its readings (fitted_readings.h); empty in older results
 };
 
 /// Variance component of one instrument: the stated sigma must be multiplied by `scale` (1 = as stated). With
@@ -143,7 +146,7 @@ struct FitResult {
   double sigma0 = 0.0;  ///< sqrt(chi2 / dof) with the stated sigma
   double chi2 = 0.0;
   double dof = 0.0;
-  double coverage_factor = 1.96;  ///< U95 = coverage_factor u
+  double coverage_factor = kCoverageFactor;  ///< U95 = coverage_factor u
   int iterations = 0;
   double initial_cost = 0.0;
   double final_cost = 0.0;

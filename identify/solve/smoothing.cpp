@@ -414,8 +414,9 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
     if (spec.knots != KnotChoice::Automatic || basis.roughness_order() == 0 || function.size() == 0) continue;
     auto& family = family_of[{group, function.symbol.is_straightness()}];
     if (!family) {
-      const Axis& axis = model.campaign().machine.axis(function.symbol.axis);
-      family = std::make_shared<const FunctionPriors>(basis, axis, function.basis);
+      const ResolvedStretch stretch =
+          resolved_stretch(model.campaign(), function.symbol.axis, spec.breakpoints);
+      family = std::make_shared<const FunctionPriors>(basis, stretch, function.basis);
     }
     if (family->shapes().empty()) continue;
     terms.push_back({function.symbol, function.offset, family, kStartPlace,

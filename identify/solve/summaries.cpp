@@ -25,8 +25,7 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
       if (term.symbol != function.symbol) continue;
       summary.smoothed = true;
       summary.prior = to_string(term.prior->roughness);
-      summary.correlation_length =
-          term.prior->correlation_length() * campaign.machine.axis(function.symbol.axis).travel();
+      summary.correlation_length = term.prior->correlation_length() * term.family->stretch_length();
       const auto n = term.precision().rows();
       summary.effective_parameters -=
           term.lambda * covariance.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();

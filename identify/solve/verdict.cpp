@@ -9,7 +9,9 @@
 #include <sstream>
 #include <string>
 
+#include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
@@ -20,6 +22,11 @@ constexpr double kUnitSlip = 100.0;
 constexpr double kContradicted = 5.0;       // standard deviations of a prior
 constexpr double kFarGuess = 0.1;           // m, of a station: cm accuracy is enough
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
+constexpr double kSeveralTimes = 3.0;       // the stated sigma: hardly the instrument's noise
+
+constexpr const char* kHardlyNoise =
+    "; that is hardly the instrument: an effect that the model lacks looks like noise, or the noise table is "
+    "wrong";
 
 void report_stated_sigma(FitResult& result) {
   for (const VarianceComponent& component : result.variance_components) {
@@ -36,8 +43,25 @@ void report_stated_sigma(FitResult& result) {
           << "; is its noise stated in a unit 1000 times too small (nm for um)? check the noise table of its "
              "setups and the unit of the readings";
     }
+    if (component.scale > kSeveralTimes && component.scale <= kUnitSlip) text << kHardlyNoise;
     result.messages.push_back(text.str());
   }
+}
+
+/// Noise of all kinds together over the stated one, in root mean square; per noise group.
+std::map<std::string, double> noise_over_stated(const Campaign& campaign, const FitResult& result) {
+  std::map<std::string, double> estimated, stated;
+  const std::vector<double>& sigma = result.adjustment->stated_sigma;
+  for (std::size_t i = 0; i < result.residuals.size(); ++i) {
+    const ResidualRecord& record = result.residuals[i];
+    if (record.removed) continue;
+    const std::string group =
+        noise_group(campaign.setups[record.setup], static_cast<std::size_t>(record.channel));
+    estimated[group] += record.sigma * record.sigma;
+    stated[group] += sigma[i] * sigma[i];
+  }
+  for (auto& [group, squares] : estimated) squares = std::sqrt(squares / stated[group]);
+  return estimated;
 }
 
 /// "slow wander of 0.41 um over 580 s", empty for what stands in no sentence of its own.
@@ -53,7 +77,9 @@ std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
          (tau == noise.rows.end() ? "" : fmt::format(" over {:.0f} s", tau->value));
 }
 
-void report_noise(FitResult& result) {
+void report_noise(const Campaign& campaign, FitResult& result) {
+  if (!result.noise.more_than_white) return;
+  const std::map<std::string, double> over_stated = noise_over_stated(campaign, result);
   for (std::size_t g = 0; g < result.noise.groups.size(); ++g) {
     std::string phrases;
     for (const NoiseRow& row : result.noise.rows) {
@@ -64,6 +90,10 @@ void report_noise(FitResult& result) {
     if (phrases.empty()) continue;
     result.messages.push_back(result.noise.groups[g] + ": its noise is not independent (" + phrases +
                               "); weights and uncertainties allow for it");
+    const auto times = over_stated.find(result.noise.groups[g]);
+    if (times == over_stated.end() || times->second < kSeveralTimes) continue;
+    result.messages.push_back(fmt::format("{}: all its noise together is {:.3g} times what is stated{}",
+                                          times->first, times->second, kHardlyNoise));
   }
 }
 
@@ -184,7 +214,7 @@ void judge(const Campaign& campaign, const CampaignBinding& binding, const Adjus
            FitResult& result) {
   result.messages.insert(result.messages.end(), campaign.notes.begin(), campaign.notes.end());
   report_stated_sigma(result);
-  report_noise(result);
+  report_noise(campaign, result);
   const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
   for (const std::string& sentence : result.rank.invisible) result.messages.push_back(sentence);

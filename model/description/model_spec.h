@@ -3,6 +3,7 @@
 /// Plain data as a model file holds it; SI units.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,15 @@ struct FunctionSpec {
   std::vector<double> coefficients;  ///< an identified function: m or rad, one per basis function; else empty
 };
 
+/// How large errors may be before any reading is seen, standard deviations. They hold what the readings do
+/// not determine, and what is visible is known ten times better. Absent = the program's
+/// (identify/solve/rank.h).
+struct PriorWidths {
+  std::optional<double> displacement;  ///< of an error motion over the travel, m
+  std::optional<double> rotation;      ///< the same, rad
+  std::optional<double> squareness;    ///< and other location angles, rad
+};
+
 struct EffectSpec {
   std::string kind;
   int source_line = 0;
@@ -36,6 +46,7 @@ struct ModelSpec {
   std::map<LocationSymbol, double> locations;     ///< known values, rad or m (an identified model)
   std::vector<LocationSymbol> locations_off;      ///< left out of the model: held at zero
   std::vector<EffectSpec> effects;
+  PriorWidths priors;
 
   const FunctionSpec& function(ErrorSymbol symbol) const {
     const auto found = functions.find(symbol);

@@ -239,5 +239,44 @@ TEST_F(MonteCarloCommand, BadOptionsAreNamed) {
   EXPECT_THAT(errors("-n 10 --disturb 'moonlight:EXX=1'"), HasSubstr("\"moonlight\" is no kind of effect"));
 }
 
+/// Two digits of every u take 20,000 draws at least; the limit comes first.
+TEST_F(MonteCarloCommand, EndsAtItsLimitWithWhatItHasReached) {
+  const std::string options = "--path chord --refits 2 --checkpoint-every 0 -o " + path("limited");
+  const testing::ProgramRun run = montecarlo("--minutes 0.0001 " + options);
+  EXPECT_EQ(run.exit_code, 1) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("reached for "));
+  EXPECT_THAT(run.output, HasSubstr("draws would settle all: --resume goes on where this ended"));
+  const auto json = nlohmann::json::parse(content(path("limited/montecarlo.json")));
+  EXPECT_FALSE(json.at("settled").get<bool>());
+  EXPECT_LT(json.at("draws").get<int>(), 20000);
+  ASSERT_TRUE(fs::exists(path("limited.checkpoint")));
+  const testing::ProgramRun more = montecarlo("--resume --minutes 0.0001 " + options);
+  EXPECT_EQ(more.exit_code, 1) << more.errors;
+  EXPECT_GT(nlohmann::json::parse(content(path("limited/montecarlo.json"))).at("draws").get<int>(),
+            json.at("draws").get<int>());
+}
+
+TEST_F(MonteCarloCommand, InterruptedStudyNamesResume) {
+  const std::string output = path("stopped"), said = path("said");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nowhere = ::open("/dev/null", O_RDWR);
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::dup2(::open(said.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    ::execl(VOLCAL_PROGRAM, "volcal", "montecarlo", campaign().c_str(), "-m", model_.c_str(), "--noise",
+            "white", "--path", "chord", "-n", "1000000", "--refits", "2", "--threads", "1",
+            "--checkpoint-every", "0", "-o", output.c_str(), static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  while (!fs::exists(output + ".checkpoint")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ::kill(child, SIGINT);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_THAT(content(said), HasSubstr("the same command with --resume goes on"));
+  EXPECT_TRUE(fs::exists(output + ".checkpoint"));
+}
+
 }  // namespace
 }  // namespace volcal

@@ -4,6 +4,7 @@
 
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/solve/result.h"
 
 namespace volcal::report {
 
@@ -19,7 +20,7 @@ Json added_variable_page(const DiagnosisInput& input) {
           {"accepted", leading.accepted},
           {"alternative", alternative},
           {"amplitude", rounded(leading.slope / unit, 4)},
-          {"U95", rounded(1.96 * leading.u / unit, 3)},
+          {"U95", rounded(kCoverageFactor * leading.u / unit, 3)},
           {"driver", rounded_array(leading.driver, unit, 4)},
           {"residual", rounded_array(leading.residual, 1.0, 3)},
           {"mean", binned_json(leading.mean, unit, 1.0)}};

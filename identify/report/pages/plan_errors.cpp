@@ -1,14 +1,9 @@
 /// U and observability of every error with the plan and with what it is compared with.
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/solve/result.h"
 
 namespace volcal::report {
-namespace {
-
-constexpr double kExpanded = 2.0;  // k
-
-}  // namespace
-
 Json plan_errors_page(const PlanPageInput& input) {
   const CampaignPlan& plan = input.plan;
   std::vector<const ExpectedCampaign*> campaigns = {&plan.plan};
@@ -24,7 +19,7 @@ Json plan_errors_page(const PlanPageInput& input) {
     for (const ExpectedCampaign* each : campaigns) {
       const Observability* own = find_observability(each->result, error.symbol);
       const bool visible = own != nullptr && own->visible;
-      expanded.push_back(visible ? rounded(kExpanded * own->u_rms * kPerMicro, 3) : Json(nullptr));
+      expanded.push_back(visible ? rounded(kCoverageFactor * own->u_rms * kPerMicro, 3) : Json(nullptr));
     }
     rows.push_back(
         {{"symbol", error.symbol},

@@ -79,9 +79,9 @@ std::string before_text(const LadderStep& given) {
 
 std::string how_known(const EffectFinding& effect, const LadderStep* step) {
   std::string text = fmt::format(
-      "chance of so much in a right model 10^{:.0f} over all effects tested; {:.0f} % of "
-      "it is visible in these readings",
-      effect.log10_p, 100.0 * effect.visible_fraction);
+      "chance of so much in a right model 10^{:.0f} over all effects tested; visible "
+      "fraction {:.2f}",
+      effect.log10_p, effect.visible_fraction);
   if (step != nullptr && std::isfinite(step->heldout_loglik_gain)) {
     text += fmt::format("; log-likelihood of the held-out lines {:+.1f}", step->heldout_loglik_gain);
   }

@@ -18,9 +18,23 @@ struct StatusWords {
   const char* meaning;
 };
 
-StatusWords status_words(FitStatus status) {
-  switch (status) {
+constexpr double kSeveralTimes = 3.0;   // the stated sigma
+constexpr double kNoMoreScatter = 1.1;  // sigma0: the readings scatter as stated
+
+bool is_noisier_than_stated(const FitResult& result) {
+  return std::ranges::any_of(result.variance_components, [](const VarianceComponent& component) {
+    return component.scale > kSeveralTimes;
+  });
+}
+
+StatusWords status_words(const FitResult& result) {
+  switch (result.status) {
     case FitStatus::LackOfFit:
+      if (result.sigma0 <= kNoMoreScatter) {
+        return {"warning", "The residuals hold something that the model lacks.",
+                "They scatter no more than stated, and yet follow something that was recorded: the messages "
+                "below say what. Uncertainties do not cover it; volcal diagnose tells which effect it is."};
+      }
       return {"warning", "The readings scatter more than their stated noise allows.",
               "Either the stated noise is too small or the model lacks an effect. Uncertainties rest on the "
               "noise found in the readings; systematic structure in the residuals is not covered by them."};
@@ -32,6 +46,12 @@ StatusWords status_words(FitStatus status) {
       return {"bad", "The adjustment did not converge.",
               "Do not use these tables: check the station guesses and the suspect readings first."};
     default:
+      if (is_noisier_than_stated(result)) {
+        return {
+            "warning", "The model explains the readings only with far more noise than stated.",
+            "An instrument scatters several times as much as its stated noise: the statement is wrong, or "
+            "an effect that the model lacks looks like noise."};
+      }
       return {"good", "The model explains the readings within their noise.",
               "Every error in the model is determined by the readings."};
   }
@@ -106,7 +126,7 @@ Json machine_facts(const PageInput& input) {
 }  // namespace
 
 Json summary_page(const PageInput& input) {
-  const StatusWords words = status_words(input.result.status);
+  const StatusWords words = status_words(input.result);
   return {{"status", std::string(to_string(input.result.status))},
           {"level", words.level},
           {"headline", words.headline},

@@ -135,5 +135,30 @@ TEST(Diagnosis, ItsEffectCanBeFitted) {
   EXPECT_NEAR(with.parameters[block->offset], found.simulated.hidden.at(0).amplitude, 0.3e-6);
 }
 
+/// Two axes move, the third stands still.
+Campaign circle_in(const std::string& plane) {
+  sim::Study study;
+  study.machine = sim::reference_machines()[0];
+  study.seed = 12;
+  sim::BallBarCircles circles;
+  circles.planes = {plane};
+  study.measurements.emplace_back().settings = circles;
+  study.validation.points = 5;
+  return sim::simulate(study).campaign;
+}
+
+TEST(Diagnosis, NamesNothingOfAnAxisThatStandsStill) {
+  for (const auto& [plane, still] : {std::pair("XY", "z"), std::pair("YZ", "x"), std::pair("ZX", "y")}) {
+    const Campaign campaign = circle_in(plane);
+    const FitResult result = fit(campaign, ModelSpec{});
+    const Diagnosis diagnosis = diagnose(campaign, result, DiagnoseOptions{});
+    EXPECT_FALSE(diagnosis.words.empty()) << plane;
+    const std::vector<std::string>& variables = diagnosis.figures.generic.variables;
+    EXPECT_EQ(std::ranges::find(variables, still), variables.end()) << plane;
+    EXPECT_GE(variables.size(), 2U) << plane;
+    EXPECT_EQ(static_cast<std::size_t>(diagnosis.figures.generic.given.front().rows()), variables.size());
+  }
+}
+
 }  // namespace
 }  // namespace volcal

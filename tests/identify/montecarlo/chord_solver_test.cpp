@@ -61,14 +61,13 @@ PathDifferences differences(const Campaign& campaign, const FitResult& result) {
   for (std::uint64_t number = 0; number < 5; ++number) {
     const CampaignDraw draw = repeated.draw(4, number);
     const Eigen::VectorXd linear = repeated.linear_estimates({draw});
-    Eigen::VectorXd stepped = linear;
-    const Eigen::MatrixXd gradient = chord.first_gradients({draw}, linear, work);
-    EXPECT_TRUE(chord.solve(draw, gradient.col(0), stepped, work).converged);
+    Eigen::MatrixXd stepped = linear;
+    EXPECT_TRUE(chord.solve({draw}, stepped, work).front().converged);
     const CampaignRefit::Outcome full = refit.solve(draw);
     EXPECT_TRUE(full.converged);
     EXPECT_GT(full.deviation.norm(), 0.0);
     largest.linear = std::max(largest.linear, ((linear - full.deviation).array() / u).abs().maxCoeff());
-    largest.chord = std::max(largest.chord, ((stepped - full.deviation).array() / u).abs().maxCoeff());
+    largest.chord = std::max(largest.chord, ((stepped.col(0) - full.deviation).array() / u).abs().maxCoeff());
   }
   return largest;
 }
@@ -143,6 +142,20 @@ TEST(BallBarStudy, CentreAcrossThePlaneBiasesTheBarsLength) {
   const PathDifferences paths = differences(circle.campaign, circle.result);
   EXPECT_LT(paths.chord, 3.0 * kEndOfRefits);
   EXPECT_GT(paths.linear, 0.1);
+  const RepeatedCampaign repeated(circle.campaign, circle.result, {});
+  const WeakParameters weak(repeated);
+  ASSERT_EQ(weak.size(), 1) << "the centre across the plane";
+  const ChordSolver chord(repeated);
+  ChordSolver::Workspace work(chord);
+  std::vector<CampaignDraw> draws;
+  for (std::uint64_t number = 0; number < 64; ++number) draws.push_back(repeated.draw(4, number));
+  Eigen::MatrixXd deviations = repeated.linear_estimates(draws);
+  int gradients = 0;
+  for (const ChordSolver::Outcome& outcome : chord.solve(draws, deviations, work)) {
+    EXPECT_TRUE(outcome.converged);
+    gradients += outcome.gradients;
+  }
+  EXPECT_LT(gradients, 64 * 4) << "its curvature is that of the draw";
   MonteCarloOptions options;
   options.path = DrawPath::Chord;
   options.draws = 4000;
@@ -156,6 +169,29 @@ TEST(BallBarStudy, CentreAcrossThePlaneBiasesTheBarsLength) {
       length.u_linear * length.u_linear + std::pow(s * s / (std::numbers::sqrt2 * CircleStudy::kRadius), 2);
   EXPECT_NEAR(length.u / std::sqrt(squares), 1.0, 0.1);
   EXPECT_EQ(length.verdict, LinearVerdict::NotValidated);
+}
+
+// The second-order model of a draw is that of the readings: its solution is much nearer than the linear one.
+TEST(BallBarStudy, SecondOrderSolutionIsNearTheEndOfTheSteps) {
+  const CircleStudy circle;
+  const RepeatedCampaign repeated(circle.campaign, circle.result, {});
+  const WeakParameters weak(repeated);
+  const ChordSolver chord(repeated);
+  ChordSolver::Workspace work(chord);
+  const Eigen::ArrayXd u = repeated.gain().diagonal().cwiseSqrt();
+  double of_linear = 0.0, of_second_order = 0.0;
+  for (std::uint64_t number = 0; number < 8; ++number) {
+    const CampaignDraw draw = repeated.draw(4, number);
+    const Eigen::VectorXd linear = repeated.linear_estimates({draw});
+    Eigen::MatrixXd end = linear;
+    ASSERT_TRUE(chord.solve({draw}, end, work).front().converged);
+    const auto distance = [&](const Eigen::VectorXd& from) {
+      return ((from - end.col(0)).array() / u).abs().maxCoeff();
+    };
+    of_linear = std::max(of_linear, distance(linear));
+    of_second_order = std::max(of_second_order, distance(weak.solve(draw, linear).deviation));
+  }
+  EXPECT_LT(of_second_order, 0.05 * of_linear);
 }
 
 }  // namespace

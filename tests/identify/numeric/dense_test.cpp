@@ -112,5 +112,25 @@ TEST(Dense, SolvesPositiveDefiniteSystemsAndRefusesOthers) {
   EXPECT_THROW(solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)), std::runtime_error);
 }
 
+TEST(Dense, MatricesWithoutRowsOrColumnsAreNoCase) {
+  const Eigen::MatrixXd none(0, 0);
+  ::testing::internal::CaptureStdout();
+  const auto lower = cholesky_lower(none);
+  ASSERT_TRUE(lower.has_value());
+  EXPECT_EQ(lower->size(), 0);
+  EXPECT_EQ(inverse_from_cholesky(none).size(), 0);
+  EXPECT_EQ(log_determinant(none), 0.0);
+  EXPECT_EQ(invert_precision(none).covariance.size(), 0);
+  EXPECT_EQ(eigenvalues(none).size(), 0);
+  EXPECT_EQ(null_space(Eigen::MatrixXd(2, 0)).size(), 0);
+  EXPECT_EQ(null_space(Eigen::MatrixXd(0, 2)).cols(), 2);
+  EXPECT_EQ(solve_positive_definite(none, Eigen::MatrixXd(0, 3)).cols(), 3);
+  EXPECT_EQ(least_squares(Eigen::MatrixXd(3, 0), Eigen::Vector3d::Ones()).rank, 0);
+  Eigen::MatrixXd product(0, 0), right(0, 2);
+  outer_product_upper(nullptr, 0, 3, product);
+  solve_lower(none, right);
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "LAPACK writes of what it refuses";
+}
+
 }  // namespace
 }  // namespace volcal

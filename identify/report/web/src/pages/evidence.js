@@ -14,7 +14,7 @@ const columns = [
   { name: '± U95', cell: (row) => significant(row.amplitude?.U95, 2) },
   { name: 'MDB', cell: (row) => significant(row.amplitude?.mdb, 2) },
   { name: 'Unit', align: 'left', cell: (row) => row.amplitude?.unit ?? '' },
-  { name: 'Visible', align: 'left', cell: (row) => (row.first ? bar(row.effect.visible_fraction, '') : '') },
+  { name: 'Visible fraction', align: 'left', cell: (row) => (row.first ? bar(row.effect.visible_fraction, '') : '') },
   { name: '', cell: (row) => (row.first ? fixed(row.effect.visible_fraction, 2) : '') },
   { name: 'log10 p', cell: (row) => (row.first ? fixed(row.effect.log10_p, 1) : '') },
 ];
@@ -30,7 +30,7 @@ function evidencePlot(data, effects) {
   return {
     data: [{
       x: shown.map((effect) => -effect.log10_p), y, type: 'scatter', mode: 'markers', marker: { size: 14, color: transparent(color('text'), 0) },
-      text: shown.map((effect) => `${plain(effect.label)} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible ${fixed(100 * effect.visible_fraction, 0)} %`),
+      text: shown.map((effect) => `${plain(effect.label)} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible fraction ${fixed(effect.visible_fraction, 2)}`),
       hovertemplate: '%{text}<extra></extra>',
     }],
     layout: layout2d({
@@ -58,7 +58,7 @@ export function renderEvidence(body, data) {
   const first = unique([...data.added, ...data.alternatives.flat()]);
   const known = new Set(first.map((effect) => effect.label));
   const others = data.ranking.filter((effect) => !known.has(effect.label));
-  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates.`));
+  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates. MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also told apart from every other effect, the worst of which is the rival.`));
   const node = el('div', { class: 'plot' });
   body.append(el('figure', {}, [el('figcaption', {}, caption(data)), node]));
   addPlot(node, () => evidencePlot(data, [...first, ...others]));

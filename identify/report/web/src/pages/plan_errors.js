@@ -20,6 +20,6 @@ export function renderPlanErrors(body, data) {
   ];
   body.append(
     table(columns, data.errors, { rowClass: (row) => (row.visible ? null : 'dim'), className: 'bars' }),
-    note(`U = 2 u, root mean square over the travel, by linear propagation on the nominal machine with the noise and roughness that are assumed. Less by: ${data.campaigns[0]} against ${data.campaigns[1] ?? data.campaigns[0]}. Visible fraction and effective parameters are those of the plan. Bars are relative to the largest of the same unit.`),
+    note(`U95 = 1.96 u, root mean square over the travel, by linear propagation on the nominal machine with the noise and roughness that are assumed. Less by: ${data.campaigns[0]} against ${data.campaigns[1] ?? data.campaigns[0]}. Visible fraction and effective parameters are those of the plan. Bars are relative to the largest of the same unit.`),
   );
 }

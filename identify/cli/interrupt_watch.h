@@ -1,0 +1,17 @@
+#pragma once
+/// Ctrl-C while work is under way that can be ended between two parts of it.
+
+namespace volcal::cli {
+
+/// Holds SIGINT while it lives; a second one ends the program at once. One at a time.
+class InterruptWatch {
+ public:
+  InterruptWatch();
+  ~InterruptWatch();
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+  bool was_asked_for() const;
+};
+
+}  // namespace volcal::cli

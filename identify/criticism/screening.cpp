@@ -1,0 +1,117 @@
+#include "volcal/identify/criticism/screening.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "volcal/identify/criticism/families.h"
+#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/stats/threads.h"
+
+namespace volcal {
+namespace {
+
+// log10 of the family-wise risk that a right model is contradicted
+constexpr double kRisk = -3.0;
+constexpr double kRiskOfEstimatedNoise = -6.0;
+constexpr double kFewestSpare = 5.0;  // observations beyond what the parameters take
+
+/// The most improbable of all tests so far.
+class Leading {
+ public:
+  void consider(double log10_p, const auto& describe) {
+    if (!(log10_p < screening_.log10_p)) return;
+    screening_.log10_p = log10_p;
+    describe(screening_);
+  }
+  Screening take(std::size_t tests, double risk) {
+    screening_.tests = tests;
+    screening_.contradicts = screening_.log10_p <= risk;
+    return std::move(screening_);
+  }
+
+ private:
+  Screening screening_;
+};
+
+/// A few wild readings would speak for many tests.
+std::vector<bool> flagged(const FitResult& result) {
+  std::vector<bool> flagged;
+  for (const ResidualRecord& record : result.residuals) flagged.push_back(record.flagged);
+  return flagged;
+}
+
+double root_mean_square(const Eigen::VectorXd& moved) {
+  return moved.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, moved.size())));
+}
+
+std::string words(const GenericTest& test) {
+  std::string text = fmt::format("something that depends on {}, along {}", fmt::join(test.variables, " and "),
+                                 test.direction);
+  if (!test.rotation.empty()) text += ", as " + test.rotation;
+  if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * 1e3);
+  return text;
+}
+
+void consider_families(const LinearModel& model, const std::vector<Family>& families,
+                       const std::vector<FamilyTest>& tests, Leading& leading) {
+  const double log10_count = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
+  for (const FamilyTest& test : tests) {
+    if (test.score.dof == 0) continue;
+    leading.consider(test.log10_p + log10_count, [&](Screening& found) {
+      const Family& family = families[test.family];
+      found.leading = family.label();
+      found.rms = root_mean_square(family_columns(model, family, test.shape) * test.score.amplitude);
+    });
+  }
+}
+
+void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
+  const double log10_count = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
+  for (const GenericTest& test : tests) {
+    leading.consider(test.log10_p + log10_count, [&](Screening& found) {
+      found.leading = words(test);
+      found.rms = test.rms;
+    });
+  }
+}
+
+}  // namespace
+
+Screening screen(const Campaign& campaign, const FitResult& result, int threads) {
+  if (result.dof < kFewestSpare) return {};
+  threads = thread_count(threads);
+  const LinearModel model(campaign, result);
+  const std::vector<NoiseParameters> noise = fitted_noise(result, model.noise_groups());
+  const NoiseData data = without(model.problem().data, flagged(result));
+  const Projector projector(model.problem(), data, noise, threads, model.parts());
+  const std::vector<Family> families = volcal::families(model);
+  Leading leading;
+  consider_families(model, families, test_families(model, families, projector, threads), leading);
+  std::vector<GenericTest> scans = generic_scan(model, scan_variables(model), projector, threads);
+  std::ranges::move(wave_tests(model, projector, threads), std::back_inserter(scans));
+  consider_scans(scans, leading);
+  return leading.take(families.size() + scans.size(),
+                      result.noise.more_than_white ? kRiskOfEstimatedNoise : kRisk);
+}
+
+std::string screening_sentence(const Screening& screening) {
+  if (!screening.contradicts) return {};
+  return fmt::format(
+      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
+      "tests "
+      "counted)",
+      screening.leading, screening.rms * 1e6, screening.log10_p, screening.tests);
+}
+
+void judge(const Screening& screening, FitResult& result) {
+  if (!screening.contradicts) return;
+  if (result.status == FitStatus::Ok) result.status = FitStatus::LackOfFit;
+  result.messages.push_back(screening_sentence(screening) +
+                            "; `volcal diagnose` tells which effect the model lacks");
+}
+
+}  // namespace volcal

@@ -8,7 +8,7 @@
 #include "volcal/identify/cli/fit_policies.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -57,10 +57,11 @@ int run_fit(const FitArguments& arguments) {
   FitOptions options = fit_options(arguments);
   ProgressBar bar("fit");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const FitResult result = fit(campaign, model, options);
+  FitResult result = fit(campaign, model, options);
+  result.provenance = provenance();
   bar.finish();
   std::map<std::string, std::string> more;
-  if (report_available()) more["report.html"] = report_html(result, campaign, {today()});
+  if (report_available()) more["report.html"] = report_html(result, campaign, report_options());
   write_result_folder(result, campaign, arguments.output, more);
   if (arguments.json) {
     fmt::print("{}\n", result_summary_json(result));

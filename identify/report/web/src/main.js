@@ -49,7 +49,8 @@ function start() {
   main.replaceChildren(
     el('header', {}, [
       el('h1', {}, report.title),
-      el('p', { class: 'muted' }, [report.subtitle, report.date ? `, ${report.date}` : ''].join('')),
+      el('p', { class: 'muted' }, [report.subtitle, report.date ? `, ${report.date}` : '', report.version ? `, volcal ${report.version}` : ''].join('')),
+      report.command ? el('p', { class: 'command' }, el('code', {}, report.command)) : null,
     ]),
   );
   const sections = report.pages.map(section);

@@ -33,6 +33,8 @@ function draw(plot) {
 export function addPlot(node, make, onDrawn) {
   const plot = { node, make, onDrawn, drawn: false };
   plots.push(plot);
+  // A scene takes the wheel for itself, even where it does not zoom by it.
+  node.addEventListener('wheel', (event) => event.stopPropagation(), { capture: true, passive: true });
   near.observe(node);
   return () => update(plot);
 }

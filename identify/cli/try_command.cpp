@@ -145,7 +145,7 @@ Tried try_effect(const Campaign& campaign, const ModelSpec& without, const Writt
   return tried;
 }
 
-std::string value_text(const TriedValue& value) {
+std::string tried_value_text(const TriedValue& value) {
   const std::string unit = value.unit.empty() ? "" : " " + value.unit;
   if (std::isnan(value.u))
     return fmt::format("{} {}{} (held)", value.name, short_number(value.value, 4), unit);
@@ -205,7 +205,8 @@ std::string remains_line(const Diagnosis& diagnosis) {
 
 std::string tried_text(const TryArguments& arguments, const Tried& tried) {
   std::string values;
-  for (const TriedValue& value : tried.values) values += (values.empty() ? "" : ", ") + value_text(value);
+  for (const TriedValue& value : tried.values)
+    values += (values.empty() ? "" : ", ") + tried_value_text(value);
   if (!tried.not_visible.empty()) values = "NOT VISIBLE: " + tried.not_visible;
   if (tried.status == FitStatus::NotConverged) values += " (the fit has not converged)";
   return fmt::format("{}: {}\nheld out: {}\nremains: {}\n", arguments.effect, values, heldout_line(tried),

@@ -101,7 +101,7 @@ TEST(TryProgram, RefusesWithTheColumn) {
       {"'EXX: x * p' --parameter p=1 --parameter p=2", "p is given twice", "leave one out"},
       {"'EXX: T_oil * x'", "column T_oil_degC is missing, but the expression uses T_oil at character 1",
        "channels"},
-      {"'EXA: x'", "axis A", ""},
+      {"'EXA: x'", "the machine has no axis A", "name an axis of structure"},
   };
   for (const Refusal& refusal : refusals) {
     const auto run = run_program("try " + kSmall + "/campaign.toml " + refusal.arguments);

@@ -1,5 +1,6 @@
-# Installs the libraries, their headers under include/volcal/{model,identify,sim}, the program, and a package
-# for find_package(volcal), which defines volcal::volcal and one target per layer.
+# Installs the libraries, their public headers under include/volcal/{model,identify,sim}, those that these need
+# under include/volcal-internal, the program, and a package for find_package(volcal), which defines
+# volcal::volcal and one target per layer.
 
 include(CMakePackageConfigHelpers)
 
@@ -13,10 +14,12 @@ if(TARGET volcal_program)
   install(TARGETS volcal_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
-foreach(folder model identify sim)
-  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/volcal
-          FILES_MATCHING PATTERN "*.h" PATTERN web EXCLUDE PATTERN cli EXCLUDE)
-endforeach()
+# Which headers the public ones need is found when they are installed, so that the list alone is kept by hand.
+install(CODE "
+  set(SOURCE \"${PROJECT_SOURCE_DIR}\")
+  set(INCLUDE \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}\")
+  set(INTERNAL \"\${INCLUDE}/volcal-internal\")
+  include(\"${PROJECT_SOURCE_DIR}/cmake/install_headers.cmake\")")
 install(FILES LICENSE NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(cmake/volcal-config.cmake.in ${PROJECT_BINARY_DIR}/volcal-config.cmake

@@ -54,7 +54,7 @@ function(volcal_add_report target)
   add_custom_command(
     OUTPUT ${template}
     COMMAND ${VOLCAL_NODE} ${source}/build.mjs ${work}/node_modules ${template}
-    DEPENDS ${inputs} ${source}/build.mjs ${work}/packages.sha256
+    DEPENDS ${inputs} ${source}/build.mjs ${source}/library.mjs ${work}/packages.sha256
     COMMENT "Bundling the report's page"
     VERBATIM)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/identify/report/template_data.cpp PROPERTIES

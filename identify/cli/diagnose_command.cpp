@@ -8,7 +8,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/atomic_folder.h"
@@ -76,7 +76,7 @@ void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, 
   folder.write("diagnosis.json", json);
   folder.write("diagnosis.txt", diagnosis_text(diagnosis));
   if (report_available()) {
-    folder.write("report.html", report_html(diagnosis, campaign, {today()}));
+    folder.write("report.html", report_html(diagnosis, campaign, report_options()));
   }
   folder.write("machine.toml", machine_toml(campaign.machine));
   folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",

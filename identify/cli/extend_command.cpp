@@ -10,6 +10,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
+#include "volcal/identify/cli/written_effect.h"
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
@@ -27,6 +28,8 @@ namespace {
 struct ExtendArguments {
   std::string model;
   std::vector<std::string> effects;
+  std::string custom;
+  std::vector<std::string> parameters;
   std::string diagnosis;
   int rank = 0;
   bool accepted = false;
@@ -81,6 +84,21 @@ void add_named(const std::string& text, const ExtendArguments& arguments, ModelS
   changes.added.push_back(full_name(made->name()));
 }
 
+/// Throws when the model has it already, or the machine or the campaign, where one is given, lacks what it
+/// uses.
+void add_custom(const ExtendArguments& arguments, ModelSpec& model, const Campaign& campaign,
+                Changes& changes) {
+  const WrittenEffect effect = written_effect("--custom", arguments.custom, arguments.parameters);
+  require_new(effect.made->name(), arguments.custom, "leave out --custom", arguments, model);
+  if (arguments.campaign.empty()) {
+    require_axes(effect, campaign.machine);
+  } else {
+    effect.made->check(campaign, {});
+  }
+  model.effects.push_back(effect.spec);
+  changes.added.push_back(effect.made->amplitudes().front().label);
+}
+
 /// Throws when the model has it already, or the machine cannot have it.
 void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
                const Machine& machine, Changes& changes) {
@@ -112,12 +130,15 @@ void add_found(const EffectFinding& effect, const ExtendArguments& arguments, Mo
 }
 
 void require_one_source(const ExtendArguments& arguments) {
+  if (arguments.custom.empty() && !arguments.parameters.empty())
+    throw InputError({}, "--parameter needs an expression", "give --custom \"TARGET: expression\"");
   const std::string usage = "volcal extend MODEL --diagnosis DIR --rank 1 (or --accepted) -o NEW.toml";
   const bool chooses = arguments.rank > 0 || arguments.accepted;
   if (arguments.diagnosis.empty()) {
     if (chooses) throw InputError({}, "--rank and --accepted need a diagnosis to choose from", usage);
-    if (!arguments.effects.empty()) return;
-    throw InputError({}, "nothing to add is given", "give --effect KIND:TARGET, or " + usage);
+    if (!arguments.effects.empty() || !arguments.custom.empty()) return;
+    throw InputError({}, "nothing to add is given",
+                     "give --effect KIND:TARGET, --custom \"TARGET: expression\", or " + usage);
   }
   if (arguments.rank > 0 && arguments.accepted)
     throw InputError({}, "--rank and --accepted are both given", "leave one of the two out");
@@ -178,6 +199,7 @@ int run_extend(const ExtendArguments& arguments) {
   }
   Changes changes;
   for (const std::string& effect : arguments.effects) add_named(effect, arguments, model, campaign, changes);
+  if (!arguments.custom.empty()) add_custom(arguments, model, campaign, changes);
   if (!arguments.diagnosis.empty()) {
     for (const EffectFinding& effect : chosen(arguments))
       add_found(effect, arguments, model, machine, changes);
@@ -194,6 +216,9 @@ std::function<int()> define_extend(CLI::App& app) {
   app.add_option("MODEL", arguments->model, "model.toml to extend")->required();
   app.add_option("-e,--effect", arguments->effects,
                  "KIND:TARGET[:DRIVER[:SHAPE]]; may be given several times");
+  app.add_option("--custom", arguments->custom,
+                 "an effect of your own, \"TARGET: expression\" or \"TARGET += expression\"");
+  add_parameter_option(app, arguments->parameters);
   app.add_option("--diagnosis", arguments->diagnosis,
                  "folder that volcal diagnose wrote, to choose effects from");
   app.add_option("--rank", arguments->rank,
@@ -217,6 +242,7 @@ const Command& extend_command() {
       "  volcal extend model.toml --effect reversal:EXX -o model-1.toml\n"
       "  volcal extend model.toml --diagnosis diagnosis --rank 1\n"
       "  volcal extend model.toml --diagnosis diagnosis --accepted -o model-1.toml\n"
+      "  volcal extend model.toml --custom \"EZX: abs(x) / 400 * dir_x\" -o model-1.toml\n"
       "  volcal extend model.toml --effect axis-coupling:EAY:z:linear -o model-1.toml\n"
       "  volcal extend model.toml --effect thermal-drift:EAZ:T_column --campaign campaign.toml -o "
       "model-1.toml\n",

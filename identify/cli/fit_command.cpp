@@ -9,8 +9,8 @@
 #include "volcal/identify/cli/fit_policies.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
-#include "volcal/identify/cli/today.h"
 #include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
@@ -81,9 +81,10 @@ int run_fit(const FitArguments& arguments) {
     bar.update("scans of the residuals", 0.95);
     add_screening(campaign, options.threads, result);
   }
+  result.provenance = provenance();
   bar.finish();
   std::map<std::string, std::string> more;
-  if (report_available()) more["report.html"] = report_html(result, campaign, {today()});
+  if (report_available()) more["report.html"] = report_html(result, campaign, report_options());
   write_result_folder(result, campaign, arguments.output, more);
   if (arguments.json) {
     fmt::print("{}\n", result_summary_json(result));

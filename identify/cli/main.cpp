@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/cli/today.h"
 #include "volcal/identify/io/nearest_name.h"
 #include "volcal/identify/io/text_encoding.h"
 #include "volcal/model/description/errors.h"
@@ -101,6 +103,7 @@ int run(int argc, char** argv) {
                  shown(explain(app, error, argc, argv)).c_str());
     return volcal::cli::kBadInput;
   }
+  volcal::cli::present_time();  // a wrong SOURCE_DATE_EPOCH is refused before the work, not after it
   return work.at(app.get_subcommands().front())();
 }
 
@@ -121,6 +124,7 @@ int flushed(int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  volcal::cli::remember_command_line(argc, argv);
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
   try {
     return flushed(run(argc, argv));

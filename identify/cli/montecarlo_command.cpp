@@ -16,6 +16,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
@@ -200,7 +201,7 @@ void write_study(const MonteCarloArguments& arguments, const std::string& json,
   folder.write("montecarlo.json", json);
   folder.write("montecarlo.csv", montecarlo_csv(result));
   folder.write("montecarlo.txt", montecarlo_text(result));
-  if (report_available()) folder.write("report.html", report_html(result, machine));
+  if (report_available()) folder.write("report.html", report_html(result, machine, report_options()));
   folder.commit();
 }
 

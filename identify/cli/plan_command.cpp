@@ -11,7 +11,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/progress.h"
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/machine_reader.h"
@@ -191,7 +191,7 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
   folder.write("plan.txt", plan_text(plan));
   write_plan_campaign(plan, folder);
   if (report_available()) {
-    folder.write("report.html", report_html(plan, {today()}));
+    folder.write("report.html", report_html(plan, report_options()));
   }
   folder.commit();
 }

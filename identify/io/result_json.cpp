@@ -141,11 +141,16 @@ RecordedConditions conditions_from(const Json& json) {
   return conditions;
 }
 
+Json provenance_json(const Provenance& provenance) {
+  return {{"version", provenance.version}, {"date", provenance.date}, {"command", provenance.command}};
+}
+
 Json head_json(const FitResult& result) {
   return {{"format", kResultFormat},
           {"units", "m, rad, s, K; an error is actual minus nominal, tool relative to workpiece"},
           {"status", std::string(to_string(result.status))},
           {"messages", result.messages},
+          {"provenance", provenance_json(result.provenance)},
           {"sigma0", number(result.sigma0)},
           {"chi2", number(result.chi2)},
           {"dof", number(result.dof)},
@@ -208,9 +213,16 @@ NoiseSummary noise_from(const Json& json) {
   return noise;
 }
 
+Provenance provenance_from(const Json& json) {
+  return {.version = json.at("version").get<std::string>(),
+          .date = json.at("date").get<std::string>(),
+          .command = json.at("command").get<std::string>()};
+}
+
 void read_head(const Json& json, FitResult& result) {
   result.status = status_from(json.at("status").get<std::string>());
   result.messages = json.at("messages").get<std::vector<std::string>>();
+  if (json.contains("provenance")) result.provenance = provenance_from(json.at("provenance"));
   result.sigma0 = number(json.at("sigma0"));
   result.chi2 = number(json.at("chi2"));
   result.dof = number(json.at("dof"));

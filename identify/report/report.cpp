@@ -64,6 +64,8 @@ std::string document(const std::string& title, const std::string& subtitle, cons
   document["title"] = title;
   document["subtitle"] = subtitle;
   document["date"] = options.date;
+  document["version"] = options.provenance.version;
+  document["command"] = options.provenance.command;
   document["pages"] = report::Json::array();
   for (const report::PageOf<Input>& page : pages) {
     if (page.of_readings && !has_readings) continue;

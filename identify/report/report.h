@@ -18,7 +18,8 @@
 namespace volcal {
 
 struct ReportOptions {
-  std::string date;  ///< as printed in the header; empty = none
+  std::string date = {};       ///< as printed in the header; empty = none
+  Provenance provenance = {};  ///< of this page; empty = not known
 };
 
 /// False when the library was built without Node.js; results are complete without the report.

@@ -128,9 +128,19 @@ struct Timing {
 
 struct Adjustment;
 
+/// Which program made a result, when and how; empty where it is not known, as in a program of one's own.
+struct Provenance {
+  std::string version;  ///< of volcal
+  std::string date;     ///< UTC, ISO 8601: "2026-01-31T14:05:09Z"
+  std::string command;  ///< as it can be typed again
+
+  bool empty() const { return version.empty() && date.empty() && command.empty(); }
+};
+
 struct FitResult {
   FitStatus status = FitStatus::Ok;
   std::vector<std::string> messages;  ///< warnings and explanations for the user, one per line
+  Provenance provenance;
 
   Machine machine;
   ModelSpec identified;  ///< model with breakpoints, coefficients and squareness; can be loaded again

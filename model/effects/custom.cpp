@@ -1,4 +1,6 @@
 // What a user writes: a target and a formula of what was recorded, its amplitude unknown.
+#include "volcal/model/effects/custom.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -6,7 +8,6 @@
 #include <optional>
 
 #include "volcal/model/description/units.h"
-#include "volcal/model/effects/expression.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -122,11 +123,6 @@ bool is_variable(const std::string& name) {
   if (std::ranges::find(plain_variables(), name) != plain_variables().end()) return true;
   if (std::ranges::find(kParameters, name) != kParameters.end()) return true;
   return axis_of(name.starts_with("dir_") ? name.substr(4) : name).has_value();
-}
-
-std::string names_that_may_be_used() {
-  return "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()) +
-         ", p, q; functions are " + listed_names(Expression::function_names());
 }
 
 template <class Values>
@@ -252,9 +248,9 @@ class CustomFormula {
   static Expression expression_of(const EffectTable& table) {
     const std::string text = table.text("expression", "add expression = \"z * (T_column - 20)\"");
     try {
-      return {text, is_variable};
+      return custom_expression(text);
     } catch (const ExpressionError& error) {
-      table.fail("the expression \"" + text + "\": " + error.what(), names_that_may_be_used());
+      table.fail("the expression \"" + text + "\": " + error.what(), custom_expression_names());
     }
   }
 
@@ -297,7 +293,8 @@ class CustomFormula {
       remedy += "; channels of the campaign: " + listed_names(temperature_channels(campaign));
     }
     throw InputError(place_,
-                     what() + ": column " + column_of(name) + " is missing, but the expression uses " + name,
+                     what() + ": column " + column_of(name) + " is missing, but the expression uses " + name +
+                         " at character " + std::to_string(expression_.character_of(name)),
                      remedy);
   }
 
@@ -393,6 +390,13 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
 }
 
 }  // namespace
+
+Expression custom_expression(const std::string& formula) { return {formula, is_variable}; }
+
+std::string custom_expression_names() {
+  return "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()) +
+         ", p, q; functions are " + listed_names(Expression::function_names());
+}
 
 const EffectKind& custom_effect() {
   static const FormulaKind kind(

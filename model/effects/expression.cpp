@@ -97,6 +97,7 @@ void refuse_assignment(const std::string& text) {
 ExpressionError::ExpressionError(const std::string& problem, std::size_t character, std::string token)
     : std::runtime_error(problem + ", at character " + std::to_string(character) +
                          (token.empty() ? " (the end)" : ", \"" + token + "\"")),
+      problem_(problem),
       character_(character),
       token_(std::move(token)) {}
 
@@ -109,7 +110,9 @@ Expression::Expression(std::string text, const IsVariable& is_variable) : text_(
     if (!is_variable(name.text)) {
       throw ExpressionError("a variable of this name is not known", name.at + 1, name.text);
     }
-    if (!uses(name.text)) variables_.push_back(name.text);
+    if (uses(name.text)) continue;
+    variables_.push_back(name.text);
+    characters_.push_back(name.at + 1);
   }
   refuse_assignment(text_);
   double anything = 1.0;
@@ -129,6 +132,11 @@ Expression::Expression(std::string text, const IsVariable& is_variable) : text_(
 
 bool Expression::uses(const std::string& variable) const {
   return std::ranges::find(variables_, variable) != variables_.end();
+}
+
+std::size_t Expression::character_of(const std::string& variable) const {
+  const auto found = std::ranges::find(variables_, variable);
+  return found == variables_.end() ? 0 : characters_[static_cast<std::size_t>(found - variables_.begin())];
 }
 
 Eigen::VectorXd Expression::evaluate(const Eigen::MatrixXd& values) const {

@@ -14,10 +14,12 @@ namespace volcal {
 class ExpressionError : public std::runtime_error {
  public:
   ExpressionError(const std::string& problem, std::size_t character, std::string token);
+  const std::string& problem() const { return problem_; }  ///< without the place
   std::size_t character() const { return character_; }
   const std::string& token() const { return token_; }
 
  private:
+  std::string problem_;
   std::size_t character_;
   std::string token_;
 };
@@ -34,6 +36,8 @@ class Expression {
   /// Variables of the formula, each once, in the order in which they first appear.
   const std::vector<std::string>& variables() const { return variables_; }
   bool uses(const std::string& variable) const;
+  /// Where a variable first stands, from 1; 0 when the formula does not use it.
+  std::size_t character_of(const std::string& variable) const;
   /// One value per row; columns of `values` are the variables(). A value may be infinite or not a number.
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& values) const;
 
@@ -43,6 +47,7 @@ class Expression {
  private:
   std::string text_;
   std::vector<std::string> variables_;
+  std::vector<std::size_t> characters_;  ///< of the variables
 };
 
 }  // namespace volcal

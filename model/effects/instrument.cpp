@@ -251,7 +251,7 @@ const EffectKind& tool_offset_effect() {
   static const FormulaKind kind(
       {.kind = "tool-offset",
        .summary = "the offset of a tool (or its reflector) is not what the machine file says",
-       .source = "ISO/TR 16907:2015, 7.3 (functional point)",
+       .source = "ISO/TR 16907:2015, 3.2 and 7.1 (functional point)",
        .keys = joined({{text_key("tool", "name of the tool")},
                        vector_amplitude_keys("um", "actual less stated offset, tool coordinates")})},
       make_tool_offset, tool_offsets);

@@ -1,7 +1,8 @@
 #include "volcal/model/effects/registry.h"
 
-#include <algorithm>
-#include <array>
+#include <utility>
+
+#include "volcal/model/description/registration.h"
 
 namespace volcal {
 
@@ -41,16 +42,23 @@ namespace volcal {
 #define VOLCAL_ADDRESS(name) &(name)(),
 VOLCAL_EFFECTS(VOLCAL_DECLARE)
 
-std::span<const EffectKind* const> effect_kinds() {
-  static const auto kinds = std::to_array<const EffectKind*>({VOLCAL_EFFECTS(VOLCAL_ADDRESS)});
-  return kinds;
+namespace {
+
+Registration<EffectKind>& registered_effects() {
+  static Registration<EffectKind> effects(
+      {VOLCAL_EFFECTS(VOLCAL_ADDRESS)},
+      [](const EffectKind& kind) -> std::string_view { return kind.schema().kind; });
+  return effects;
 }
 
-const EffectKind* find_effect(std::string_view kind) {
-  const auto kinds = effect_kinds();
-  const auto found =
-      std::ranges::find_if(kinds, [&](const EffectKind* each) { return each->schema().kind == kind; });
-  return found == kinds.end() ? nullptr : *found;
+}  // namespace
+
+std::span<const EffectKind* const> effect_kinds() { return registered_effects().all(); }
+
+const EffectKind* find_effect(std::string_view kind) { return registered_effects().find(kind); }
+
+const EffectKind& register_effect(std::unique_ptr<const EffectKind> kind) {
+  return registered_effects().add(std::move(kind));
 }
 
 }  // namespace volcal

@@ -99,7 +99,7 @@ const EffectKind& tool_load_effect() {
       {.kind = "tool-load",
        .summary =
            "the weight of a tool tilts what carries it: an error motion is larger by this with the tool",
-       .source = "ISO/TR 16907:2015, 7.4.2 (load)",
+       .source = "ISO/TR 16907:2015, 8.6 (workpiece and tool mass)",
        .keys =
            joined({{symbol_key("error motion that changes: EAZ ..."), text_key("tool", "name of the tool")},
                    motion_amplitude_keys({""}, "change with the tool")})},

@@ -215,7 +215,7 @@ const EffectKind& scale_expansion_effect() {
   static const FormulaKind kind(
       {.kind = "scale-expansion",
        .summary = "the scale of an axis expands with a temperature: alpha (T - 20 degC) per metre from home",
-       .source = "ISO/TR 16907:2015, 7.4.3; ISO 230-3 (thermal effects)",
+       .source = "ISO/TR 16907:2015, 8.3; ISO 230-3 (thermal effects)",
        .keys = {axis_key("axis", "axis whose scale expands"),
                 text_key("temperature", "channel: column T_<channel>_degC"),
                 amplitude_key("amplitude_um_per_m_K", "coefficient of expansion")}},

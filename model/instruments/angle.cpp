@@ -9,7 +9,7 @@ const InstrumentSchema kAngleSchema = {
     .name = "angle",
     .summary = "Electronic level or angular interferometer: rotation about one axis.",
     .equation = "angle = O.axis + offset",
-    .source = "ISO 230-1, angular error motions; ISO/TR 16907, 7.4",
+    .source = "ISO 230-1, angular error motions; ISO/TR 16907, 7.5",
     .keys = {{.key = "axis",
               .type = KeyType::Vector3,
               .required = true,

@@ -12,7 +12,7 @@ const InstrumentSchema kBallBarSchema = {
     .name = "ball-bar",
     .summary = "Telescoping ball-bar: distance between a ball at the table and one at the tool.",
     .equation = "length = |P - centre| + bar length error",
-    .source = "ISO 230-4; ISO/TR 16907, 7.4",
+    .source = "ISO 230-4; ISO/TR 16907, 7.6",
     .keys = {{.key = "centre_mm",
               .type = KeyType::Vector3,
               .required = true,

@@ -14,7 +14,7 @@ const InstrumentSchema kDisplacementSchema = {
     .summary =
         "Linear displacement along a fixed direction: axis lines, body and face diagonals, step diagonals.",
     .equation = "displacement = u.(P - P_first) (1 + scale) + offset",
-    .source = "ISO 230-2 (lines), ISO 230-6 (diagonals); ISO/TR 16907, 7.4",
+    .source = "ISO 230-2 (lines), ISO 230-6 (diagonals); ISO/TR 16907, 7.5",
     .keys =
         [] {
           std::vector<KeySchema> keys = {

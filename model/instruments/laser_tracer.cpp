@@ -13,7 +13,7 @@ const InstrumentSchema kLaserTracerSchema = {
     .equation = "length = |P - S| (1 + scale) - L0",
     .source =
         "Schwenke et al., CIRP Annals 54 (2005): multilateration with tracking interferometers; ISO/TR "
-        "16907, 7.4",
+        "16907, 7.6",
     .keys =
         [] {
           std::vector<KeySchema> keys = {

@@ -13,7 +13,7 @@ const InstrumentSchema kLaserTrackerSchema = {
     .name = "laser-tracker",
     .summary = "Laser tracker: distance, azimuth and elevation of the reflector at the tool.",
     .equation = "length, azimuth (from +x to +y), elevation (from the xy plane) of P in the station's frame",
-    .source = "ISO 10360-10; ISO/TR 16907, 7.4",
+    .source = "ISO 10360-10; ISO/TR 16907, 7.6",
     .keys =
         [] {
           std::vector<KeySchema> keys = {

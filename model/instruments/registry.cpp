@@ -1,7 +1,8 @@
 #include "volcal/model/instruments/registry.h"
 
-#include <algorithm>
-#include <array>
+#include <utility>
+
+#include "volcal/model/description/registration.h"
 
 namespace volcal {
 
@@ -19,15 +20,23 @@ namespace volcal {
 #define VOLCAL_ADDRESS(name) &(name)(),
 VOLCAL_INSTRUMENTS(VOLCAL_DECLARE)
 
-std::span<const Instrument* const> instruments() {
-  static const auto kInstruments = std::to_array<const Instrument*>({VOLCAL_INSTRUMENTS(VOLCAL_ADDRESS)});
-  return kInstruments;
+namespace {
+
+Registration<Instrument>& registered_instruments() {
+  static Registration<Instrument> all(
+      {VOLCAL_INSTRUMENTS(VOLCAL_ADDRESS)},
+      [](const Instrument& instrument) -> std::string_view { return instrument.schema().name; });
+  return all;
 }
 
-const Instrument* find_instrument(std::string_view name) {
-  const auto found =
-      std::ranges::find_if(instruments(), [&](const Instrument* i) { return i->schema().name == name; });
-  return found == instruments().end() ? nullptr : *found;
+}  // namespace
+
+std::span<const Instrument* const> instruments() { return registered_instruments().all(); }
+
+const Instrument* find_instrument(std::string_view name) { return registered_instruments().find(name); }
+
+const Instrument& register_instrument(std::unique_ptr<const Instrument> instrument) {
+  return registered_instruments().add(std::move(instrument));
 }
 
 }  // namespace volcal

@@ -1,6 +1,7 @@
 #pragma once
-/// The registered instruments.
+/// The registered instruments: the library's own, and those that a program adds.
 
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -10,5 +11,9 @@ namespace volcal {
 
 std::span<const Instrument* const> instruments();
 const Instrument* find_instrument(std::string_view name);
+
+/// Adds an instrument of the program's own, which campaigns, fits and diagnoses then know like those of the
+/// library; before the library is used. Throws std::invalid_argument when its name is empty or taken.
+const Instrument& register_instrument(std::unique_ptr<const Instrument> instrument);
 
 }  // namespace volcal

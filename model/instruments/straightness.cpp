@@ -11,7 +11,7 @@ const InstrumentSchema kStraightnessSchema = {
     .summary =
         "Deviation across a line of motion against a straight reference (straightedge, laser, square).",
     .equation = "deviation = v.(P - P_first) + offset + slope s",
-    .source = "ISO 230-1, straightness and squareness; ISO/TR 16907, 7.4",
+    .source = "ISO 230-1, straightness and squareness; ISO/TR 16907, 7.5",
     .keys =
         {{.key = "direction",
           .type = KeyType::Vector3,

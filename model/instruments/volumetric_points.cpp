@@ -25,7 +25,7 @@ const InstrumentSchema kVolumetricPointsSchema = {
     .equation =
         "e = P - P_nominal + t + rotation x (P_nominal - pivot), of which one, two or three components "
         "are read; pivot: centroid of the points, or the origin with `artefact`",
-    .source = "ISO/TR 16907, 7.4",
+    .source = "ISO/TR 16907, 7.6",
     .keys = {{.key = "alignment",
               .type = KeyType::Text,
               .help = "rigid: the artefact's position and orientation are free; none: they are the machine's",

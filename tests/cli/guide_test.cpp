@@ -1,5 +1,5 @@
-/// Guides quote the program: their lines are those that the program prints, and the code of
-/// docs/guides/from-a-campaign-to-tables.md is the one that tests/consumer runs.
+/// What pages name exists, and the code of docs/guides/from-a-campaign-to-tables.md is the one that
+/// tests/consumer runs. What the pages' commands print is compared by scripts/check-guides.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -48,108 +48,6 @@ std::vector<std::string> block_of_guide(const std::string& fence, const std::str
     }
   }
   return {};
-}
-
-void expect_quoted(const std::vector<std::string>& block, const std::string& text) {
-  const auto printed = lines_of(text);
-  ASSERT_FALSE(block.empty());
-  for (const std::string& line : block) {
-    if (line == "  ...") continue;
-    const auto quoted = [&](const std::string& each) { return each.starts_with(line); };
-    EXPECT_TRUE(std::ranges::any_of(printed, quoted))
-        << "the guide quotes \"" << line << "\", the program prints\n"
-        << text;
-  }
-}
-
-std::string run(const std::string& arguments) {
-  const auto outcome = testing::run_program(arguments);
-  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-  return outcome.output;
-}
-
-TEST(Guide, QuotesWhatTheProgramPrints) {
-  const testing::ScratchFolder scratch;
-  const std::string demo = (kSource / "datasets/demo/campaign").string();
-  const std::string result = (scratch.path() / "result").string();
-  expect_quoted(block_of_guide("```", "Demo: cross-table"),
-                run("fit " + demo + "/campaign.toml --model " + demo + "/model.toml -o " + result));
-  const std::string validation = run("validate " + result + " " + demo + "/truth/campaign.toml");
-  expect_quoted(block_of_guide("```", "RMS before"), validation);
-  std::string comparison = run("compare " + demo + "/campaign.toml " + result);
-  ASSERT_TRUE(comparison.starts_with(result));
-  comparison.replace(0, result.size(), "out/demo/result");
-  expect_quoted(block_of_guide("```", "no failure found"), comparison);
-  expect_quoted(block_of_guide("```", "Circular tests"), comparison);
-}
-
-TEST(Guide, PlansTheCampaignThatItQuotes) {
-  const testing::ScratchFolder scratch;
-  const std::string guide = "plan-a-campaign.md", machine = (kSource / "datasets/demo/machine.toml").string();
-  expect_quoted(block_of_guide("```", "may be off", guide),
-                run("plan " + machine + " --stations 4 --readings 960"));
-  const auto one_tool = testing::run_program("plan " + machine + " --tools short --readings 480");
-  EXPECT_EQ(one_tool.exit_code, 1) << one_tool.errors;
-  expect_quoted(block_of_guide("```", "makes visible", guide), one_tool.output);
-}
-
-TEST(Guide, PlansTheBallBarCampaignThatItQuotes) {
-  const testing::ScratchFolder scratch;
-  const std::string guide = "plan-a-campaign.md", machine = (kSource / "datasets/demo/machine.toml").string();
-  const std::string model = (scratch.path() / "quadratic.toml").string();
-  std::ofstream file(model);
-  for (const std::string& line : block_of_guide("```toml", "legendre", guide))
-    file << (line.starts_with("machine") ? "machine = \"" + machine + "\"" : line) << "\n";
-  file.close();
-  const std::string bar =
-      "plan " + machine + " --model " + model + " --instrument ball-bar --bar-mm 150 --bar-sigma-um 0.5";
-  expect_quoted(block_of_guide("```", "3 places of ball-bar", guide),
-                run(bar + " --stations 3 --readings 1200"));
-  const auto two_places = testing::run_program(bar + " --stations 2 --readings 1200");
-  EXPECT_EQ(two_places.exit_code, 1) << two_places.errors;
-  expect_quoted(block_of_guide("```", "a further place", guide), two_places.output);
-}
-
-/// A command of a guide and the lines that it quotes of what is printed.
-struct Quotation {
-  std::string command;
-  std::vector<std::string> lines;
-};
-
-/// Commands of volcal in the fenced blocks, in their order; those of other programs are left out.
-std::vector<Quotation> quotations_of(const std::string& guide) {
-  const std::string prompt = "$ ";
-  std::vector<Quotation> all;
-  bool open = false, ours = false;
-  for (const std::string& line : lines_of(content(kSource / "docs/guides" / guide))) {
-    if (line.starts_with("```")) {
-      open = !open;
-      ours = false;
-    } else if (open && line.starts_with(prompt)) {
-      const std::string command = line.substr(0, line.find(" #")).substr(prompt.size());
-      ours = command.starts_with("volcal ");
-      if (ours) all.push_back({command.substr(std::string("volcal ").size()), {}});
-    } else if (ours && !line.empty()) {
-      all.back().lines.push_back(line);
-    }
-  }
-  return all;
-}
-
-/// Every command of the story, one after another in one folder, prints what the guide quotes.
-TEST(Guide, FindsTheMissingEffectAsItTells) {
-  const testing::ScratchFolder scratch;
-  fs::create_directory_symlink(kSource / "datasets", scratch.path() / "datasets");
-  const fs::path before = fs::current_path();
-  fs::current_path(scratch.path());
-  const std::vector<Quotation> story = quotations_of("find-the-missing-effect.md");
-  EXPECT_GE(story.size(), 9U);
-  for (const auto& [command, lines] : story) {
-    const auto outcome = testing::run_program(command);
-    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.errors;
-    if (!lines.empty()) expect_quoted(lines, outcome.output);
-  }
-  fs::current_path(before);
 }
 
 /// Suites and tests that the sources define: "Suite.Test".

@@ -3,6 +3,9 @@
 //
 // The paper counts x and z against our axes: x = -q_X and z = -q_Z in the Abbe offsets (eq. 4 and 6), and
 // only there; displacements and angles keep our signs.
+//
+// Misprint: eq. 2, row 2, column 1 has Z. It is -Z: the matrix is that of the cross product of angles and
+// point.
 
 #include <gtest/gtest.h>
 
@@ -104,6 +107,23 @@ TEST(AbbeOffsets, VolumetricErrorIsEquations5To10) {
     const Vector3d total = chain.first_order(position, m.tool, all).displacement_w;
     EXPECT_LT((total - equation_5 - equation_7 - equation_9).norm(), 1e-18);  // eq. 10
   }
+}
+
+/// Angles about the origin displace the point (X, Y, Z) by their cross product with it; with +Z in row 2, as
+/// printed, a roll would move the point along +Y where it moves along -Y.
+TEST(AbbeOffsets, Equation2NeedsMinusZInRow2) {
+  const Vector3d point(0.3, -0.2, 0.4), angles(20e-6, -30e-6, 10e-6);
+  const auto equation_2 = [&](double row_2_column_1) -> Vector3d {
+    Eigen::Matrix3d matrix;
+    matrix << 0, point.z(), -point.y(), row_2_column_1, 0, point.x(), point.y(), -point.x(), 0;
+    return matrix * angles;
+  };
+  PoseErrors<double> errors;
+  set_angles(errors, AxisName::X, angles);
+  const Vector3d displacement =
+      KinematicChain(machine_of("w Y' b X Z t")).first_order({}, point, errors).displacement_w;
+  EXPECT_LT((displacement - equation_2(-point.z())).norm(), 1e-18);
+  EXPECT_NEAR((displacement - equation_2(point.z())).norm(), 2.0 * 0.4 * 20e-6, 1e-18);
 }
 
 /// What the paper argues: with the cutter's coordinates instead of its offset from the read head (eq. 2) the

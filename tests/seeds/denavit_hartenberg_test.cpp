@@ -3,7 +3,8 @@
 // elements.
 //
 // Misprint: Table 1 gives T14 the link length b4. Eq. 3 and 11 need -b4: after T13 (180 degrees) and the 90
-// degrees of T14 itself its x axis points along -y.
+// degrees of T14 itself its x axis points along -y. Table 3 gives Z a mean error of 63 um above its maximum of
+// 38 um; no test uses that row.
 
 #include <gtest/gtest.h>
 

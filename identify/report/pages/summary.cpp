@@ -120,6 +120,10 @@ Json machine_facts(const PageInput& input) {
   add("Uncertainty", fmt::format("U95 = {:.3g} u (95 % interval)", result.coverage_factor));
   if (!input.campaign.file.empty()) add("Campaign", input.campaign.file);
   if (!input.options.date.empty()) add("Date", input.options.date);
+  if (!result.provenance.version.empty())
+    add("Identified by", "volcal " + result.provenance.version +
+                             (result.provenance.date.empty() ? "" : ", " + result.provenance.date));
+  if (!result.provenance.command.empty()) add("Command", result.provenance.command);
   return facts;
 }
 

@@ -3,6 +3,7 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { addressesIn, offline } from './library.mjs';
 
 const [modules, output] = process.argv.slice(2).map((argument) => path.resolve(argument));
 const source = path.join(path.dirname(fileURLToPath(import.meta.url)), 'src');
@@ -23,7 +24,7 @@ const bundle = await esbuild.build({
 });
 const parts = {
   STYLE: await readFile(path.join(source, 'report.css'), 'utf8'),
-  LIBRARY: forScript(await readFile(requireFrom.resolve('plotly.js-gl3d-dist-min'), 'utf8')),
+  LIBRARY: forScript(offline(await readFile(requireFrom.resolve('plotly.js-gl3d-dist-min'), 'utf8'))),
   CODE: forScript(bundle.outputFiles[0].text),
 };
 
@@ -34,4 +35,6 @@ for (const [name, content] of Object.entries(parts)) {
 for (const slot of ['@VOLCAL_REPORT_TITLE@', '@VOLCAL_REPORT_DATA@']) {
   if (page.split(slot).length !== 2) throw new Error(`the page must hold ${slot} once`);
 }
+const addresses = addressesIn(page);
+if (addresses.length > 0) throw new Error(`the page names addresses: ${addresses.join(', ')}`);
 await writeFile(output, page);

@@ -270,6 +270,33 @@ TEST_F(ReportTest, NeedsNoNetwork) {
   }
 }
 
+/// The page names no address but namespaces of XML, and holds nothing that could send a plot away.
+TEST_F(ReportTest, NamesNoAddress) {
+  if (!report_available()) GTEST_SKIP() << how_to_get_report();
+  const std::string page = report_html(fit_->result, fit_->campaign);
+  for (const std::string scheme : {"http://", "https://", "ws://", "wss://"}) {
+    for (std::size_t at = page.find(scheme); at != std::string::npos; at = page.find(scheme, at + 1)) {
+      EXPECT_EQ(page.compare(at + scheme.size(), 11, "www.w3.org/"), 0) << page.substr(at, 80);
+    }
+  }
+  for (const char* cloud : {"Plotly Cloud", "plotly-cloud", "cloud.plotly", "cdn.plot.ly"})
+    EXPECT_EQ(page.find(cloud), std::string::npos) << cloud;
+  EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
+}
+
+TEST_F(ReportTest, ItsHeadSaysWhatMadeIt) {
+  const Provenance provenance{"9.8.7", "2024-05-17T10:00:00Z", "volcal fit c.toml -o r"};
+  FitResult result = fit_->result;
+  result.provenance = provenance;
+  const json page =
+      json::parse(report_json(result, fit_->campaign, {.date = "2024-05-17", .provenance = provenance}));
+  EXPECT_EQ(page.at("version"), "9.8.7");
+  EXPECT_EQ(page.at("command"), "volcal fit c.toml -o r");
+  const json facts = page_data(page, "summary").at("facts");
+  EXPECT_THAT(facts, ::testing::Contains(json({"Identified by", "volcal 9.8.7, 2024-05-17T10:00:00Z"})));
+  EXPECT_THAT(facts, ::testing::Contains(json({"Command", "volcal fit c.toml -o r"})));
+}
+
 /// EAX has no function, but a reversal of 8 urad: half of it either way.
 TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
   test::SyntheticFit fit = test::synthetic_fit();

@@ -82,6 +82,18 @@ TEST(ResultJson, ReturnsEveryBit) {
   EXPECT_EQ(result_json(read), result_json(written));
 }
 
+TEST(ResultJson, ReturnsWhatMadeIt) {
+  FitResult written = small_result();
+  written.provenance = {"1.2.3", "2026-01-31T14:05:09Z", "volcal fit 'my campaign.toml' -o result"};
+  const FitResult read = result_from_json(result_json(written), "result.json");
+  EXPECT_EQ(read.provenance.version, written.provenance.version);
+  EXPECT_EQ(read.provenance.date, written.provenance.date);
+  EXPECT_EQ(read.provenance.command, written.provenance.command);
+  auto older = nlohmann::json::parse(result_json(written));
+  older.erase("provenance");
+  EXPECT_TRUE(result_from_json(older.dump(), "result.json").provenance.empty());
+}
+
 TEST(ResultJson, ReturnsTheSameErrorFunctions) {
   const FitResult& written = small_result();
   const FitResult read = result_from_json(result_json(written), "result.json");

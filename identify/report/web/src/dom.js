@@ -41,6 +41,7 @@ export const count = (value) => value.toLocaleString('en-US');
 
 /** Header cell: name, unit below it in a lighter shade. */
 function headerCell(column) {
+  if (column.name === '') return el('td', {});
   return el('th', { class: column.align ?? 'right', scope: 'col', title: column.title }, [
     column.name,
     column.unit ? el('span', { class: 'unit' }, column.unit) : null,
@@ -49,22 +50,27 @@ function headerCell(column) {
 
 /**
  * Table from rows of data. Columns: { name, unit, align: 'left' | 'right' (default), cell: row => text or node,
- * title }. `rowClass`: row => class or null.
+ * title }; the first heads its row. `rowClass`: row => class or null. Without `caption` a table is named after its heading.
  */
-export function table(columns, rows, { rowClass = () => null, className = '' } = {}) {
+export function table(columns, rows, { rowClass = () => null, className = '', caption = null } = {}) {
   const body = rows.map((row) =>
-    el('tr', { class: rowClass(row) }, columns.map((column) => el('td', { class: column.align ?? 'right' }, column.cell(row)))));
+    el('tr', { class: rowClass(row) }, columns.map((column, k) =>
+      (k === 0 ? el('th', { class: column.align ?? 'right', scope: 'row' }, column.cell(row)) : el('td', { class: column.align ?? 'right' }, column.cell(row))))));
   return el('div', { class: 'table-frame' }, el('table', { class: className }, [
+    caption ? el('caption', { class: 'hidden' }, caption) : null,
     el('thead', {}, el('tr', {}, columns.map(headerCell))),
     el('tbody', {}, body),
   ]));
 }
 
-/** Table that scrolls on the screen when it is long; whole on paper. */
+const kRowsOnPaper = 20; // as in report.css
+
+/** Table that scrolls on the screen when it is long; on paper its first rows. */
 export function longTable(columns, rows, options) {
   const node = table(columns, rows, options);
-  if (rows.length > 24) node.classList.add('long');
-  return node;
+  if (rows.length <= kRowsOnPaper + 4) return node;
+  node.classList.add('long');
+  return el('div', {}, [node, el('p', { class: 'note paper-only' }, `The first ${kRowsOnPaper} of ${count(rows.length)} rows; the others are on the screen.`)]);
 }
 
 /** Row of buttons of which one is chosen. */

@@ -1,18 +1,20 @@
 // Builds the page from the JSON document: section list at the side, one section per entry of `pages`.
 import { el } from './dom.js';
 import { renderers } from './pages.js';
-import { drawAll, redrawAll } from './plot.js';
+import { nameParts, watchFrames } from './names.js';
+import { drawForPaper, redrawAll, wakeScenes } from './plot.js';
 import { onPrint, onThemeChange, themeSwitch } from './theme.js';
 
 function section(page, index) {
   const body = el('div', { class: 'body' });
   const node = el('section', { id: page.kind, class: `page page-${page.kind}` }, [
-    index === 0 ? null : el('h2', {}, page.title),
+    el('h2', { class: index === 0 ? 'hidden' : null }, page.title),
     body,
   ]);
   const render = renderers[page.kind];
   if (!render) throw new Error(`no renderer for section "${page.kind}"`);
   render(body, page.data);
+  nameParts(body, page.title);
   return node;
 }
 
@@ -47,14 +49,17 @@ function start() {
   main.replaceChildren(
     el('header', {}, [
       el('h1', {}, report.title),
-      el('p', { class: 'muted' }, [report.subtitle, report.date ? `, ${report.date}` : ''].join('')),
+      el('p', { class: 'muted' }, [report.subtitle, report.date ? `, ${report.date}` : '', report.version ? `, volcal ${report.version}` : ''].join('')),
+      report.command ? el('p', { class: 'command' }, el('code', {}, report.command)) : null,
     ]),
   );
   const sections = report.pages.map(section);
   main.append(...sections);
   markCurrentSection(nav, sections);
+  watchFrames(main);
+  wakeScenes(main);
   onThemeChange(redrawAll);
-  onPrint(drawAll);
+  onPrint(drawForPaper);
 }
 
 start();

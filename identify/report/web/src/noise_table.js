@@ -1,9 +1,10 @@
 import { fixed, significant, table } from './dom.js';
+import { instrumentMark } from './theme.js';
 
 /** Terms of a noise model: value, interval and evidence, those that are off in a lighter tone. */
 export function noiseTable(rows) {
   return table([
-    { name: 'Instrument', align: 'left', cell: (row) => row.instrument },
+    { name: 'Instrument', align: 'left', cell: (row) => instrumentMark(row.instrument) },
     { name: 'Term', align: 'left', cell: (row) => row.term },
     { name: '', align: 'left', cell: (row) => row.meaning.replace('sigma', 'σ') },
     { name: 'Value', cell: (row) => (row.value === 0 ? 'off' : significant(row.value)) },

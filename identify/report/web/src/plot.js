@@ -2,43 +2,66 @@
 import { color } from './theme.js';
 
 const plots = [];
-const config = { responsive: true, displaylogo: false, displayModeBar: true,
+/** The wheel scrolls the page, also over a picture in space; nothing is sent anywhere. */
+const config = { responsive: true, displaylogo: false, displayModeBar: true, scrollZoom: false,
+  showSendToCloud: false, showEditInChartStudio: false, plotlyServerURL: '',
   modeBarButtonsToRemove: ['select2d', 'lasso2d', 'autoScale2d', 'resetCameraLastSave3d'] };
+
+const kPaperHeight = 0.62; // of the height on the screen
+let onPaper = false;
 
 const near = new IntersectionObserver((entries) => {
   for (const entry of entries) if (entry.isIntersecting) draw(plots.find((plot) => plot.node === entry.target));
 }, { rootMargin: '600px' });
 
+/** What is drawn: on paper lower, and as wide as its place without waiting for a resize. */
+function figureOf(plot) {
+  const { data, layout, paperHeight = kPaperHeight } = plot.make();
+  if (onPaper) Object.assign(layout, { height: Math.round(paperHeight * layout.height), width: plot.node.clientWidth });
+  return { data, layout };
+}
+
 function draw(plot) {
   if (plot.drawn) return;
   plot.drawn = true;
   near.unobserve(plot.node);
-  const { data, layout } = plot.make();
+  const { data, layout } = figureOf(plot);
   Plotly.newPlot(plot.node, data, layout, config).then(() => plot.onDrawn?.(plot.node));
 }
 
-/** Registers a plot in `node`; `make` returns { data, layout }. Returns a function that draws it again. */
+/** Registers a plot in `node`; `make` returns { data, layout } and, where its lines of text ask for it, paperHeight. Returns a function that draws it again. */
 export function addPlot(node, make, onDrawn) {
   const plot = { node, make, onDrawn, drawn: false };
   plots.push(plot);
+  // A scene takes the wheel for itself, even where it does not zoom by it.
+  node.addEventListener('wheel', (event) => event.stopPropagation(), { capture: true, passive: true });
   near.observe(node);
   return () => update(plot);
 }
 
 function update(plot) {
   if (!plot.drawn) return;
-  const { data, layout } = plot.make();
+  const { data, layout } = figureOf(plot);
   Plotly.react(plot.node, data, layout, config);
 }
 
-/** Draws every plot and fits it to the present width of its place. */
-export function drawAll() {
+/** Draws every plot for paper, or for the screen again. */
+export function drawForPaper(paper) {
+  onPaper = paper;
   for (const plot of plots) {
-    if (plot.drawn) Plotly.Plots.resize(plot.node);
+    plot.node.style.minHeight = paper ? '0' : '';
+    if (plot.drawn) update(plot);
     else draw(plot);
   }
 }
 export const redrawAll = () => plots.forEach(update);
+
+/** On a touch screen a picture in space turns only after a tap on it: before that, fingers scroll the page. */
+export function wakeScenes(main) {
+  addEventListener('click', ({ target }) => {
+    for (const scene of main.querySelectorAll('.scene')) scene.classList.toggle('awake', scene === target.closest?.('.scene'));
+  });
+}
 
 const axisLine = () => ({
   color: color('muted'),

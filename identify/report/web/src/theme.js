@@ -21,13 +21,26 @@ system.addEventListener('change', () => setTheme(systemTheme()));
 /** Value of a custom property of the style sheet, e.g. color('axis-X'). */
 export const color = (name) => getComputedStyle(root).getPropertyValue(`--${name}`).trim();
 
+const channels = (hex) => [16, 8, 0].map((shift) => (Number.parseInt(hex.slice(1), 16) >> shift) & 255);
+
+/** Relative luminance of sRGB, WCAG 2. */
+const luminance = (rgb) => rgb.map((v) => v / 255).map((v) => (v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+  .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0);
+
+/** Style of a cell in a shade over the page, its text black or white, whichever is read better. */
+export function shaded(hex, alpha) {
+  const page = channels(color('page'));
+  const light = luminance(channels(hex).map((v, i) => alpha * v + (1 - alpha) * page[i]));
+  return `background:${transparent(hex, alpha)};color:${light > 0.179 ? '#000000' : '#ffffff'}`;
+}
+
 export function transparent(hex, alpha) {
   const value = Number.parseInt(hex.slice(1), 16);
   return `rgba(${value >> 16}, ${(value >> 8) & 255}, ${value & 255}, ${alpha})`;
 }
 
-/** Colours for things that are neither axes nor verdicts: instruments. Colour-blind safe. */
-export const series = (index) => color(`series-${index % 7}`);
+/** Colours for things that are neither axes nor verdicts: instruments, tools, sources. */
+export const series = (index) => color(`series-${index % kSeries}`);
 
 /** Button that switches between light and dark. */
 export function themeSwitch() {
@@ -39,14 +52,26 @@ export function themeSwitch() {
   return button;
 }
 
-/** Before printing the page turns light and as wide as the paper, then `redraw` is called; afterwards it turns back. */
+const kInstruments = ['laser-tracer', 'ball-bar', 'displacement', 'straightness', 'angle', 'laser-tracker', 'volumetric-points', 'r-test', 'probed-sphere'];
+const kSeries = 10;
+
+/** Index of the colour of an instrument: the same in every section and in every report. */
+export function instrumentIndex(instrument) {
+  if (!kInstruments.includes(instrument)) kInstruments.push(instrument);
+  return kInstruments.indexOf(instrument) % kSeries;
+}
+
+/** Name of an instrument behind a dot of its colour. */
+export const instrumentMark = (instrument) => el('span', { class: 'key' }, [el('i', { class: `dot series-${instrumentIndex(instrument)}` }), instrument]);
+
+/** Before printing the page turns light and as wide as the paper, then `redraw(true)` is called; afterwards it turns back. */
 export function onPrint(redraw) {
   let shown;
   const turn = (printing) => {
     if (printing) shown = root.dataset.theme;
     root.classList.toggle('printing', printing);
     setTheme(printing ? 'light' : shown);
-    redraw();
+    redraw(printing);
   };
   addEventListener('beforeprint', () => turn(true));
   addEventListener('afterprint', () => turn(false));

@@ -14,6 +14,26 @@ for (const section of drawn) {
   if (section.textContent.length < 40) throw new Error(`section ${section.id} is empty`);
 }
 
+/** Whoever does not see the page is told what every table and plot is. */
+function checkNames() {
+  for (const table of view.pages.querySelectorAll('table')) {
+    if (table.querySelectorAll('tr').length === 0) continue;
+    const captions = table.querySelectorAll('caption');
+    if (captions.length !== 1 || captions[0].textContent.trim() === '') throw new Error(`a table has no caption: ${table.textContent.slice(0, 60)}`);
+    for (const head of table.querySelectorAll('th')) {
+      if (!head.getAttribute('scope')) throw new Error(`a heading cell has no scope: ${head.textContent}`);
+    }
+  }
+  for (const plot of view.pages.querySelectorAll('.plot')) {
+    if (!(plot.getAttribute('aria-label') ?? '').startsWith('Plot: ')) throw new Error('a plot has no label');
+  }
+}
+checkNames();
+
+/** Headings go down one level at a time. */
+const levels = view.pages.querySelectorAll('h1, h2, h3').map((node) => Number(node.tag[1]));
+levels.forEach((level, k) => { if (k > 0 && level > levels[k - 1] + 1) throw new Error('a heading skips a level'); });
+
 const chosen = view.pages.querySelectorAll('option').filter((option) => option.getAttribute('selected') !== null);
 
 for (const node of view.pages.descendants()) {
@@ -27,5 +47,6 @@ for (const node of view.pages.descendants()) {
 for (const button of view.sections.querySelectorAll('button')) button.dispatch('click');
 for (const name of ['scroll', 'beforeprint', 'afterprint']) view.page.dispatch(name);
 await new Promise((resolve) => setTimeout(resolve, 0));
+checkNames();
 console.log(`${drawn.length} sections, ${view.plots.length} plots`);
 for (const option of chosen) console.log(`opens on ${option.textContent}`);

@@ -36,7 +36,7 @@ class ClassList {
 
 /** "td[data-a='1'].here" of one element. */
 function matchesOne(node, selector) {
-  const tag = selector.match(/^[a-z]+/)?.[0];
+  const tag = selector.match(/^[a-z][a-z0-9]*/)?.[0];
   if (tag && node.tag !== tag) return false;
   const classes = [...selector.matchAll(/\.([\w-]+)/g)].every(([, name]) => node.classList.contains(name));
   return classes && [...selector.matchAll(/\[([\w-]+)(?:='([^']*)')?\]/g)].every(([, name, value]) =>
@@ -63,6 +63,7 @@ class Element {
   }
 
   get id() { return this.getAttribute('id'); }
+  style = {};
   get textContent() { return this.children.map((child) => child.textContent ?? child).join(''); }
   set textContent(text) { this.replaceChildren(text); }
 
@@ -81,6 +82,10 @@ class Element {
       else throw new Error(`a ${this.tag} is given ${child} to hold`);
       this.children.push(child instanceof Element ? child : String(child));
     }
+  }
+  prepend(child) {
+    child.parent = this;
+    this.children.unshift(child);
   }
   replaceChildren(...children) {
     this.children = [];

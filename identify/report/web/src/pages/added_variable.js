@@ -1,6 +1,6 @@
 import { el, note, significant } from '../dom.js';
 import { addPlot, layout2d, legendAbove, plain } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color, transparent } from '../theme.js';
 
 function partialPlot(data) {
   const { mean } = data;
@@ -11,7 +11,7 @@ function partialPlot(data) {
   const per = unit === '' ? '' : ` per ${unit}`;
   return {
     data: [
-      { x: data.driver, y: data.residual, type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.4, color: series(0) }, name: 'readings', hovertemplate: `partial driver %{x:.3g}<br>partial residual %{y:.2f} σ<extra></extra>` },
+      { x: data.driver, y: data.residual, type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.4, color: color('data') }, name: 'readings', hovertemplate: `partial driver %{x:.3g}<br>partial residual %{y:.2f} σ<extra></extra>` },
       {
         x: [...ends, ...[...ends].reverse()], y: [...line(data.amplitude - data.U95), ...line(data.amplitude + data.U95).reverse()],
         type: 'scatter', mode: 'lines', fill: 'toself', fillcolor: transparent(color('bad'), 0.18), line: { width: 0 }, hoverinfo: 'skip', name: '± U95',

@@ -1,6 +1,6 @@
 import { el, note, significant } from '../dom.js';
 import { addPlot, layout2d, legendAbove } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color, instrumentIndex, instrumentMark, series, transparent } from '../theme.js';
 
 function correlationPlot(one) {
   const gap = one.gap_s.map((seconds) => (seconds === null ? '' : `, ${seconds < 120 ? `${significant(seconds, 2)} s` : `${significant(seconds / 60, 2)} min`} apart`));
@@ -13,7 +13,7 @@ function correlationPlot(one) {
       { x: [...one.lag, ...[...one.lag].reverse()], y: [...one.band, ...one.band.map((b) => -b).reverse()], type: 'scatter', mode: 'lines', fill: 'toself', fillcolor: transparent(color('muted'), 0.16), line: { width: 0 }, hoverinfo: 'skip', name: 'white noise, ± 2 standard deviations' },
       trace('residual', 'residuals', color('bad'), {}),
       { ...trace('expected', 'noise model', color('text'), { dash: 'dot', width: 1.2 }), mode: 'lines' },
-      trace('whitened', 'after whitening', series(0), {}),
+      trace('whitened', 'after whitening', series(instrumentIndex(one.instrument)), {}),
     ],
     layout: layout2d({
       height: 350, margin: { t: 34 }, ...legendAbove(), hovermode: 'closest',
@@ -31,7 +31,7 @@ export function renderAutocorrelation(body, data) {
   const grid = el('div', { class: data.instruments.length > 1 ? 'pair' : '' });
   for (const one of data.instruments) {
     const node = el('div', { class: 'plot' });
-    grid.append(el('figure', {}, [el('figcaption', {}, one.instrument), node]));
+    grid.append(el('figure', {}, [el('figcaption', {}, instrumentMark(one.instrument)), node]));
     addPlot(node, () => correlationPlot(one));
   }
   body.append(grid);

@@ -28,6 +28,7 @@ function stackedBars(data) {
   });
   return {
     data: traces,
+    paperHeight: 0.85,
     layout: layout2d({
       height: 110 + kLineHeight * groups.length, margin: { t: 60 }, hovermode: 'closest', ...legendAbove(),
       x: { title: 'share of the variance [%]', range: [0, 100], zeroline: false },

@@ -1,5 +1,6 @@
 import { choice, el, fixed, note, significant, table } from '../dom.js';
-import { color, onThemeChange, transparent } from '../theme.js';
+import { caption } from '../names.js';
+import { color, onThemeChange, shaded } from '../theme.js';
 
 const kLeading = 12; // rows of the short map
 const kBesideMap = 14; // rows up to which text stands beside the map; above them in the map's empty corner
@@ -50,20 +51,20 @@ function cell(hypotheses, a, b) {
   const value = hypotheses.cosine(a, b);
   const shade = value === null ? 0 : value ** 4;
   const near = value !== null && value > kNear;
-  const classes = [value === null ? 'unseen' : null, near ? 'strong' : null, hypotheses.proposalsFor(a, b).some((each) => each.helps) ? 'planned' : null];
+  const classes = [value === null ? 'unseen' : null, hypotheses.proposalsFor(a, b).some((each) => each.helps) ? 'planned' : null];
   return el('td', {
     'data-a': a, 'data-b': b, class: classes.filter(Boolean).join(' ') || null,
-    style: `background:${transparent(color(near ? 'bad' : 'heat'), shade)}`,
+    style: value === null ? null : shaded(color(near ? 'bad' : 'heat'), shade),
   }, value === null ? '–' : value >= kPrinted ? cosineText(value) : '');
 }
 
 /** Lower triangle; the diagonal numbers the columns. */
 function map(hypotheses, rows) {
-  return el('table', { class: `heat confounding${rows > 24 ? ' dense' : ''}` }, el('tbody', {}, hypotheses.effects.slice(0, rows).map((effect, a) => el('tr', { 'data-a': a }, [
+  return el('table', { class: `heat confounding${rows > 24 ? ' dense' : ''}` }, [caption('Cosines between effects'), el('tbody', {}, hypotheses.effects.slice(0, rows).map((effect, a) => el('tr', { 'data-a': a }, [
     el('th', { scope: 'row', class: `role-${effect.role}`, title: effect.name }, [el('span', { class: 'name' }, effect.label), ' ', el('span', { class: 'number' }, a + 1)]),
     ...hypotheses.effects.slice(0, a).map((_, b) => cell(hypotheses, a, b)),
     el('td', { class: 'own', 'data-b': a }, a + 1),
-  ]))));
+  ])))]);
 }
 
 const limitText = (limit) => {

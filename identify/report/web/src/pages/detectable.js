@@ -1,4 +1,4 @@
-import { bar, choice, el, fixed, note, significant, table } from '../dom.js';
+import { bar, choice, el, fixed, longTable, note, significant } from '../dom.js';
 
 const columns = [
   { name: 'Effect', align: 'left', cell: (row) => row.label },
@@ -21,9 +21,7 @@ export function renderDetectable(body, data) {
   let kind = 'all';
   const redraw = () => {
     const rows = data.rows.filter((row) => (kind === 'all' || row.kind === kind) && (visible === 'all' || row.visible === (visible === 'visible')));
-    const node = table(columns, rows, { rowClass: (row) => (row.visible ? null : 'dim') });
-    if (rows.length > 24) node.classList.add('long');
-    frame.replaceChildren(node);
+    frame.replaceChildren(longTable(columns, rows, { rowClass: (row) => (row.visible ? null : 'dim'), caption: 'Smallest detectable effects' }));
   };
   const menu = el('select', { 'aria-label': 'Kind', onchange: (event) => { kind = event.target.value; redraw(); } },
     ['all', ...kinds].map((name) => el('option', { value: name }, name === 'all' ? 'all kinds' : name)));

@@ -33,6 +33,7 @@ function evidencePlot(data, effects) {
       text: shown.map((effect) => `${plain(effect.label)} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible fraction ${fixed(effect.visible_fraction, 2)}`),
       hovertemplate: '%{text}<extra></extra>',
     }],
+    paperHeight: 0.85,
     layout: layout2d({
       height: 76 + 20 * shown.length, margin: { l: 10, t: 26 }, hovermode: 'closest',
       x: { title: '−log10 p, family-wise', range: [0, 1.05 * most], zeroline: false },

@@ -1,5 +1,6 @@
 import { choice, el, fixed, note } from '../dom.js';
-import { color, onThemeChange, transparent } from '../theme.js';
+import { caption } from '../names.js';
+import { color, onThemeChange, shaded } from '../theme.js';
 
 const kSaturated = 30; // −log10 p of the strongest shade
 
@@ -21,15 +22,15 @@ function cell(view, a, b) {
   const above = value < threshold;
   const title = `${variables[a]}${a === b ? '' : ` and ${variables[b]}`}, along ${view.direction.name}: log10 p ${fixed(value, 1)}${above ? ', above the noise' : ''}`;
   return el('td', {
-    title, class: [above ? 'above' : null, shade > 0.55 ? 'strong' : null].filter(Boolean).join(' ') || null,
-    style: `background:${transparent(color(above ? 'bad' : 'heat'), above ? 0.25 + 0.75 * shade : shade)}`,
+    title, class: above ? 'above' : null, style: shaded(color(above ? 'bad' : 'heat'), above ? 0.25 + 0.75 * shade : shade),
   }, value < -1 ? fixed(-value, 0) : '');
 }
 
 function map(view) {
   const { variables } = view.data;
   return el('table', { class: 'heat generic' }, [
-    el('thead', {}, el('tr', {}, [el('th'), ...variables.map((name) => el('th', { scope: 'col' }, el('span', {}, name)))])),
+    caption('Tests of variables and of their pairs'),
+    el('thead', {}, el('tr', {}, [el('td'), ...variables.map((name) => el('th', { scope: 'col' }, el('span', {}, name)))])),
     el('tbody', {}, variables.map((name, a) => el('tr', {}, [
       el('th', { scope: 'row' }, name),
       ...variables.map((_, b) => (b > a ? el('td', { class: 'empty' }) : cell(view, a, b))),

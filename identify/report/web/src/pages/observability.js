@@ -1,5 +1,6 @@
 import { bar, el, fixed, note, significant, symbolMark, table } from '../dom.js';
-import { color, transparent } from '../theme.js';
+import { caption } from '../names.js';
+import { color, onThemeChange, shaded } from '../theme.js';
 
 function errorBars(errors) {
   const largest = {};
@@ -18,20 +19,21 @@ function errorBars(errors) {
   ], errors, { rowClass: (row) => (row.visible ? null : 'dim'), className: 'bars' });
 }
 
-/** Shade of a cell; the stronger, the less the two errors can be told apart. */
-const shadeOf = (value) => transparent(color('heat'), Math.round(value * value * 100) / 100);
+/** The stronger the shade of a cell, the less the two errors can be told apart. */
+const shadeOf = (value) => shaded(color('heat'), Math.round(value * value * 100) / 100);
 
 function heatCell(correlation, a, b) {
   if (a === b) return el('td', { class: 'own' });
   const value = correlation.value[a][b];
   const title = `${correlation.symbol[a]} and ${correlation.symbol[b]}: ${fixed(value, 3)}`;
-  return el('td', { title, style: `background:${shadeOf(value)}`, class: value > 0.75 ? 'strong' : null }, value >= 0.3 ? fixed(value, 2).slice(1) : '');
+  return el('td', { title, style: shadeOf(value) }, value >= 0.3 ? fixed(value, 2).slice(1) : '');
 }
 
 function heatMap(correlation) {
   const { symbol } = correlation;
   return el('div', { class: 'table-frame' }, el('table', { class: 'heat' }, [
-    el('thead', {}, el('tr', {}, [el('th'), ...symbol.map((name) => el('th', { scope: 'col', class: `axis-${name.at(-1)}` }, el('span', {}, name)))])),
+    caption('Correlation between errors'),
+    el('thead', {}, el('tr', {}, [el('td'), ...symbol.map((name) => el('th', { scope: 'col', class: `axis-${name.at(-1)}` }, el('span', {}, name)))])),
     el('tbody', {}, symbol.map((name, a) => el('tr', {}, [
       el('th', { scope: 'row', class: `axis-${name.at(-1)}` }, name),
       ...symbol.map((other, b) => heatCell(correlation, a, b)),
@@ -40,6 +42,8 @@ function heatMap(correlation) {
 }
 
 export function renderObservability(body, data) {
+  const map = el('div', {}, heatMap(data.correlation));
+  onThemeChange(() => map.replaceChildren(heatMap(data.correlation)));
   body.append(el('p', {}, data.rank_text));
   if (data.invisible.length > 0) {
     body.append(el('ul', { class: 'messages' }, data.invisible.map((text) => el('li', {}, text))));
@@ -48,7 +52,7 @@ export function renderObservability(body, data) {
     errorBars(data.errors),
     note('Visible fraction: share of the error’s signal in the readings that no other parameter can imitate; 1 is ideal, 0 is invisible. Bars of u are relative to the largest of the same unit.'),
     el('h3', {}, 'Correlation between errors'),
-    heatMap(data.correlation),
+    map,
     note('0 … 1: square root of the RV coefficient of the two functions’ covariances, sampled along the travel; |correlation| for squareness. Values of 0.30 and more are printed. Strong correlation: the sum or the difference of the two is known much better than each.'),
   );
 }

@@ -1,4 +1,5 @@
 import { count, fixed, longTable, note } from '../dom.js';
+import { instrumentMark } from '../theme.js';
 
 export function renderOutliers(body, data) {
   body.append(note(
@@ -9,7 +10,7 @@ export function renderOutliers(body, data) {
   if (data.rows.length === 0) return;
   body.append(longTable([
     { name: 'Setup', align: 'left', cell: (row) => row.setup },
-    { name: 'Instrument', align: 'left', cell: (row) => row.instrument },
+    { name: 'Instrument', align: 'left', cell: (row) => instrumentMark(row.instrument) },
     { name: 'Line of the file', cell: (row) => row.file_line },
     { name: 'Channel', cell: (row) => row.channel + 1 },
     { name: 'Residual', cell: (row) => fixed(row.residual, 2) },

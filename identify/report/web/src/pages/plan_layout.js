@@ -73,7 +73,7 @@ function stationTable(data, campaign) {
     ...['x', 'y', 'z'].map((name, i) => ({ name, unit: 'mm', cell: (row) => fixed(row.place[i], 0) })),
     { name: 'May be off', unit: 'mm', title: 'along any axis, until the target is 1 % worse', cell: (row) => (row.off === 0 ? '< 10' : fixed(row.off, 0)) },
     { name: 'Readings by tool', align: 'left', cell: (row) => row.runs },
-  ], rows);
+  ], rows, { caption: data.heading });
 }
 
 const figures = (campaigns) => table([
@@ -117,7 +117,7 @@ export function renderPlanLayout(body, data) {
   describe();
   body.append(
     el('div', { class: 'controls' }, controls), node, el('h3', {}, data.heading), stations,
-    note(`Workpiece coordinates. Dots: functional points where readings are taken, every one from both directions; lines: some of the beams or bars. Click a name in the legend to show or hide it; drag to turn, wheel to zoom. ${data.checked}`),
+    note(`Workpiece coordinates. Dots: functional points where readings are taken, every one from both directions; lines: some of the beams or bars. Click a name in the legend to show or hide it; drag to turn; the buttons above the picture move and zoom it. ${data.checked}`),
   );
   if (data.options.length > 0) body.append(el('h3', {}, 'What one setup more would bring'), optionTable(data.options));
 }

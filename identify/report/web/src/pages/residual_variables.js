@@ -1,6 +1,6 @@
 import { choice, count, el, fixed, note } from '../dom.js';
 import { addPlot, jitter, layout2d, legendAbove, plain } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color, transparent } from '../theme.js';
 
 const kKinds = { length: 'lengths', angle: 'angles', X: 'displacement along X', Y: 'displacement along Y', Z: 'displacement along Z' };
 
@@ -60,7 +60,7 @@ function points(view, model) {
   const spread = isDiscrete(view.variable) ? 0.3 : 0;
   return {
     x: rows.map((i) => view.variable.x[i] + spread * jitter(i)), y: rows.map((i) => view.data.records[model][i]), text: rows.map((i) => view.hover(i)),
-    type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.35, color: series(0) }, showlegend: false, hovertemplate: '%{text}<extra></extra>',
+    type: 'scatter', mode: 'markers', marker: { size: 3, opacity: 0.35, color: color('data') }, showlegend: false, hovertemplate: '%{text}<extra></extra>',
   };
 }
 

@@ -1,6 +1,6 @@
 import { choice, count, el, fixed, note } from '../dom.js';
 import { addPlot, jitter, layout2d, plain } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color, instrumentIndex, series, transparent } from '../theme.js';
 
 const kJitter = 0.32;
 
@@ -54,8 +54,8 @@ function pointTraces(view, x) {
     x: chosen.map((i) => x[i]), y: chosen.map((i) => view.ordinate(i)), text: chosen.map((i) => view.hover(i)),
     type: 'scatter', mode: 'markers', marker, name, hovertemplate: '%{text}<extra></extra>',
   });
-  const traces = view.instruments.map((instrument, k) =>
-    trace(rows.filter((i) => setups[records.setup[i]].instrument === instrument), { size: 3, opacity: 0.55, color: series(k) }, instrument));
+  const traces = view.instruments.map((instrument) =>
+    trace(rows.filter((i) => setups[records.setup[i]].instrument === instrument), { size: 3, opacity: 0.55, color: series(instrumentIndex(instrument)) }, instrument));
   const suspect = rows.filter((i) => records.flag[i] > 0);
   traces.push(trace(suspect, { size: 9, symbol: 'circle-open', color: color('bad'), line: { width: 1.6 } }, 'suspect'));
   return traces;
@@ -130,7 +130,7 @@ const key = (className, text) => el('span', { class: 'key' }, [el('i', { class: 
 
 function legend(view) {
   return el('div', { class: 'legend' }, [
-    ...view.instruments.map((name, k) => key(`dot series-${k % 7}`, name)),
+    ...view.instruments.map((name) => key(`dot series-${instrumentIndex(name)}`, name)),
     key('ring', 'suspect (w-test)'),
     key('band', '± 2σ'),
     key('line', 'mean without suspects, ± 2 standard deviations; RMS by setup'),

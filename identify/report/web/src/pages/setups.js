@@ -1,5 +1,6 @@
 import { count, el, fixed, longTable, note, table } from '../dom.js';
 import { noiseTable } from '../noise_table.js';
+import { instrumentMark } from '../theme.js';
 
 function noiseVerdict(row) {
   const distance = Math.abs(row.scale - 1) / Math.max(row.u, 1e-12);
@@ -20,7 +21,7 @@ export function renderSetups(body, data) {
   body.append(
     el('h3', {}, 'Noise found in the readings'),
     table([
-      { name: 'Instrument', align: 'left', cell: (row) => row.instrument },
+      { name: 'Instrument', align: 'left', cell: (row) => instrumentMark(row.instrument) },
       { name: 'Observations', cell: (row) => count(row.observations) },
       { name: 'Redundancy', cell: (row) => fixed(row.redundancy, 1) },
       { name: 'Found / stated σ', cell: (row) => fixed(row.scale, 3) },
@@ -32,7 +33,7 @@ export function renderSetups(body, data) {
     el('h3', {}, 'Setups'),
     longTable([
       { name: 'Setup', align: 'left', cell: (row) => row.name },
-      { name: 'Instrument', align: 'left', cell: (row) => row.instrument },
+      { name: 'Instrument', align: 'left', cell: (row) => instrumentMark(row.instrument) },
       { name: 'Tool', align: 'left', cell: (row) => row.tool },
       { name: 'Observations', cell: (row) => count(row.observations) },
       { name: 'Redundancy', cell: (row) => fixed(row.redundancy, 1) },

@@ -1,6 +1,6 @@
 import { choice, el, fixed, note, table } from '../dom.js';
 import { addPlot, colorBar, column, commonLayout, norm, plain, plainInScene, sceneHeight, segments, sizeShades } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color, instrumentIndex, series, transparent } from '../theme.js';
 
 const kComponents = ['x', 'y', 'z'];
 
@@ -48,13 +48,13 @@ const afterTraces = (tool, magnification) => vectorTraces(tool, tool.example_um,
 
 function setupTraces(data) {
   const instruments = [...new Set(data.setups.map((setup) => setup.instrument))];
-  return instruments.flatMap((instrument, k) => {
+  return instruments.flatMap((instrument) => {
     const own = data.setups.filter((setup) => setup.instrument === instrument);
     return ['path', 'points'].flatMap((form) => {
       const points = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm, null]);
       if (points.length === 0) return [];
       const names = own.filter((setup) => setup.form === form).flatMap((setup) => [...setup.point_mm.map(() => plain(setup.name)), '']);
-      const shade = series(k);
+      const shade = series(instrumentIndex(instrument));
       return [{
         x: column(points, 0), y: column(points, 1), z: column(points, 2), text: names, type: 'scatter3d', name: instrument, legendgroup: instrument,
         mode: form === 'path' ? 'lines' : 'markers', line: { color: shade, width: 3 }, marker: { color: transparent(shade, 0.5), size: 1.6 },
@@ -131,7 +131,7 @@ const componentTable = (tool) => table([
   { name: 'Max', unit: 'µm', cell: (row) => fixed(row.max, 1) },
   { name: 'Range', unit: 'µm', cell: (row) => fixed(row.range, 1) },
   { name: 'u (RMS)', unit: 'µm', cell: (row) => fixed(row.u_rms, 2) },
-], tool.components);
+], tool.components, { caption: `Errors in the work volume, tool ${tool.name}` });
 
 function slider(view, redraw) {
   const output = el('output', {});
@@ -188,7 +188,7 @@ export function renderVolume(body, data) {
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
     el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
     note('Left: identified error of the functional point, each line from the nominal point to the magnified actual one (dot). Right, at the same magnification and with the same shades: one of the error fields that the readings leave possible once the identified errors are corrected, drawn from their joint uncertainty; its direction is not known, its size is that of the uncertainty. It does not cover repeatability, temperature or effects that the model lacks. The best rigid motion is removed from both, as volcal validate does; volumetric_grid.csv has the errors relative to home.'),
-    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures, wheel to zoom.`),
+    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures; the buttons above a picture move and zoom it.`),
     ])]),
   );
 }

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/outcome.h"
+#include "volcal/identify/cli/process.h"
 #include "volcal/identify/io/nearest_name.h"
 #include "volcal/model/description/errors.h"
 
@@ -82,9 +84,10 @@ int run(int argc, char** argv) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "volcal: %s\nRun `volcal --help` or `volcal COMMAND --help` to see what there is.\n",
-                 explain(app, error, argc, argv).c_str());
+                 volcal::cli::shown(explain(app, error, argc, argv)).c_str());
     return volcal::cli::kBadInput;
   }
+  volcal::cli::set_current_work(app.get_subcommands().front()->get_name());
   return work.at(app.get_subcommands().front())();
 }
 
@@ -92,13 +95,6 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
-  try {
-    return run(argc, argv);
-  } catch (const volcal::InputError& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return volcal::cli::kBadInput;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return volcal::cli::kIncomplete;
-  }
+  volcal::cli::prepare_process();
+  return volcal::cli::outcome_of([&] { return run(argc, argv); });
 }

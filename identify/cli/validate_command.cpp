@@ -8,6 +8,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/text_tables.h"
@@ -96,7 +97,7 @@ int run_validate(const ValidateArguments& arguments) {
   }
   const Validation validation = validate(campaign, result, arguments.threads);
   if (arguments.json) {
-    fmt::print("{}\n", figures_json(validation.figures).dump(2));
+    fmt::print("{}\n", json_text(figures_json(validation.figures), 2));
   } else {
     fmt::print("{}", figures_text(validation));
   }
@@ -113,7 +114,7 @@ std::function<int()> define_validate(CLI::App& app) {
       ->required();
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
       ->check(positive());
-  app.add_option("--threads", arguments->threads, "0 = all")->check(not_negative());
+  app.add_option("--threads", arguments->threads, "0 = all")->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_validate(*arguments); };
 }

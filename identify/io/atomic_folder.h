@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/io/temporary_paths.h"
 #include "volcal/identify/tables/table_text.h"
 
 namespace volcal {
@@ -46,6 +47,7 @@ class AtomicFolder {
 
   std::string target_;
   std::string temporary_;
+  TemporaryPath known_temporary_;
   int lock_ = -1;
   bool committed_ = false;
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "volcal/identify/io/nesting.h"
+
 namespace volcal::detail {
 namespace {
 
@@ -72,6 +74,7 @@ TomlNode* TomlNode::find(std::string_view key) {
 }
 
 std::shared_ptr<TomlSource> parse_toml(const std::string& text, const std::string& file) {
+  require_shallow(text, NestedText::Toml, file);
   try {
     const toml::table table = toml::parse(std::string_view(text), std::string_view(file));
     auto source = std::make_shared<TomlSource>();

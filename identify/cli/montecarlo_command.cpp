@@ -83,11 +83,10 @@ Disturbance disturbance(const std::string& text, const Campaign& campaign) {
         "write KIND:TARGET=U for a standard uncertainty, KIND:TARGET=+-A for limits, in the unit "
         "that volcal diagnose --list prints");
   }
-  constexpr double kMost =
-      1e6;  // um, urad, um/m, 1/K ...: one metre or one radian of error is no disturbance
+  constexpr double kMost = 1e4;  // um, urad, um/m, 1/K: ten millimetres or 1 % are no disturbance
   if (value > kMost) {
     throw InputError({}, "--disturb " + text + ": no effect is so large",
-                     "give at most 1e6, in the unit that volcal diagnose --list prints");
+                     "give at most 1e4, in the unit that volcal diagnose --list prints");
   }
   const EffectSpec spec = named_effect("--disturb", text.substr(0, equals), campaign);
   const auto effect = find_effect(spec.kind)->make(spec, {});

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/normal_tile.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -64,6 +66,22 @@ std::vector<std::size_t> ReadingIndex::left_out() const {
   return observations;
 }
 
+namespace {
+
+/// A dense matrix of so many parameters still fits into memory, and its factors into a day.
+void require_adjustable(const MeasurementModel& model) {
+  constexpr int kMostParameters = 30000;
+  const int size = model.layout().size;
+  if (size <= kMostParameters) return;
+  throw InputError(
+      {model.campaign().file, 0},
+      "the campaign has " + std::to_string(size) + " unknown parameters, at most " +
+          std::to_string(kMostParameters) + " are adjusted together",
+      "put lines of one instrument into one setup, name shared stations alike, or fit parts of it");
+}
+
+}  // namespace
+
 NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                                      const ceres::LossFunction* loss, int threads, std::size_t share)
     : index_(index),
@@ -74,6 +92,7 @@ NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vecto
       by_pairs_(PairSums::pay(index.blocks())),
       chunks_(make_chunks()) {
   use_single_threaded_blas();
+  require_adjustable(index.model());
 }
 
 std::vector<NormalAccumulator::Chunk> NormalAccumulator::make_chunks() const {

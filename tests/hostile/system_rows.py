@@ -13,6 +13,8 @@ MEBIBYTE = 1 << 20
 def copy_demo(source):
     def prepare(folder):
         os.symlink(os.path.join(source, "datasets/demo/campaign"), os.path.join(folder, "d"))
+        os.symlink(os.path.join(source, "datasets/demo/study.toml"), os.path.join(folder, "study.toml"))
+        os.symlink(os.path.join(source, "datasets/demo/machine.toml"), os.path.join(folder, "machine.toml"))
     return prepare
 
 
@@ -70,7 +72,7 @@ def ends_of_time(source):
             stop=(signal.SIGINT, 1.5), prepare=copy_demo(source)),
         Row("plan stopped", ["plan", "c/machine.toml", "--readings", "20000", "-o", "o"], (0, 1), ".",
             stop=(signal.SIGTERM, 1.5)),
-        Row("simulation stopped", ["simulate", "d/../study.toml", "-o", "o"], (0, 1, 2), ".",
+        Row("simulation stopped", ["simulate", "study.toml", "-o", "o"], (0, 1, 2), ".",
             stop=(signal.SIGTERM, 0.3), prepare=copy_demo(source)),
         Row("SIGPIPE while it runs", DRAW, (1,), ".", stop=(signal.SIGTERM, 0.5), streams={"stdout": "null"}, **whole),
     ]
@@ -173,7 +175,7 @@ def small_disk(size):
     return prepare
 
 
-def places():
+def places(source):
     full = {"needs_root": True, "output": "disk/o"}
     demo = ["fit", "c/campaign.toml", "-o", "disk/o"]
     return [
@@ -187,8 +189,8 @@ def places():
             prepare=small_disk("16k"), **full),
         Row("model on a full disk", ["extend", "c/model.toml", "-e", "reversal:EYY", "-o", "disk/x.toml"], 2, "room|space",
             prepare=small_disk("0,nr_inodes=1"), **full),
-        Row("simulation on a full disk", ["simulate", "study.toml", "-o", "disk/o"], 2, ".", prepare=small_disk("16k"),
-            **full),
+        Row("simulation on a full disk", ["simulate", "study.toml", "-o", "disk/o"], 2, "space",
+            prepare=lambda folder: (copy_demo(source)(folder), small_disk("16k")(folder))[1], **full),
     ]
 
 
@@ -254,10 +256,10 @@ def many_setups(count, same_file):
 
 def sizes():
     return [
-        Row("a thousand setups", [*FIT, "--noise", "white"], (0, 1), ".", prepare=many_setups(1000, False)),
+        Row("a hundred setups", [*FIT, "--noise", "white"], (0, 1), ".", prepare=many_setups(100, False)),
         Row("10^5 setups", FIT, (1, 2), ".", prepare=many_setups(100_000, True)),
     ]
 
 
 def rows(source):
-    return [*limits(), *ends_of_time(source), *files(), *places(), *streams(), *environments(), *sizes()]
+    return [*limits(), *ends_of_time(source), *files(), *places(source), *streams(), *environments(), *sizes()]

@@ -4,8 +4,13 @@
 ///
 /// Usage: short_fuzz NAME CORPUS SECONDS [SEED]      SECONDS 0: the corpus alone
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -112,23 +117,59 @@ class Mutator {
   std::mt19937_64 random_;
 };
 
-/// The input is kept first, so that it is there after a crash.
+constexpr unsigned kLongestRun = 20;  // s, of one input
+
+// What a signal handler sees of the input that runs.
+const Bytes* running = nullptr;
+std::string kept;
+
+/// Async-signal-safe.
+void keep_running_input() {
+  const int file = ::open(kept.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0 || running == nullptr) return;
+  const auto written = ::write(file, running->data(), running->size());
+  static_cast<void>(written);
+  ::close(file);
+}
+
+void keep_and_end(int signal) {
+  keep_running_input();
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+/// Handlers run on a stack of their own: an input may have used up the other.
+void keep_inputs_that_crash() {
+  static std::array<char, 1 << 16> stack;
+  stack_t alternative{};
+  alternative.ss_sp = stack.data();
+  alternative.ss_size = stack.size();
+  ::sigaltstack(&alternative, nullptr);
+  struct sigaction action {};
+  action.sa_handler = keep_and_end;
+  action.sa_flags = SA_ONSTACK;
+  for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGALRM}) ::sigaction(signal, &action, nullptr);
+}
+
 class Runner {
  public:
-  Runner(Fuzzer fuzzer, std::string kept) : fuzzer_(fuzzer), kept_(std::move(kept)) {}
+  explicit Runner(Fuzzer fuzzer) : fuzzer_(fuzzer) {}
 
   void run(const Bytes& input) {
-    std::ofstream(kept_, std::ios::binary)
-        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
-    fuzzer_(input.data(), input.size());
+    running = &input;
+    ::alarm(kLongestRun);
+    try {
+      fuzzer_(input.data(), input.size());
+    } catch (...) {
+      keep_running_input();
+      throw;
+    }
     ++count_;
   }
   unsigned long count() const { return count_; }
-  const std::string& kept() const { return kept_; }
 
  private:
   Fuzzer fuzzer_;
-  std::string kept_;
   unsigned long count_ = 0;
 };
 
@@ -144,18 +185,22 @@ int fuzz(const std::string& name, const std::string& folder, double seconds, std
     std::fprintf(stderr, "short_fuzz: %s holds no input\n", folder.c_str());
     return 2;
   }
-  Runner runner(fuzzer, "last-" + name);
+  kept = "broke-" + name;
+  keep_inputs_that_crash();
+  Runner runner(fuzzer);
   try {
     for (const Bytes& input : inputs) runner.run(input);
     Mutator mutator(inputs, seed);
     const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-    while (Clock::now() < end) runner.run(mutator.next());
+    while (Clock::now() < end) {
+      const Bytes input = mutator.next();
+      runner.run(input);
+    }
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s; the input is %s\n", name.c_str(), error.what(), runner.kept().c_str());
+    std::fprintf(stderr, "%s: %s; the input is %s\n", name.c_str(), error.what(), kept.c_str());
     return 1;
   }
   std::printf("%s: %lu inputs\n", name.c_str(), runner.count());
-  std::filesystem::remove(runner.kept());
   return 0;
 }
 

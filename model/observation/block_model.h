@@ -113,9 +113,9 @@ class BlockModel {
   std::vector<ReadingBlock> blocks_;
   std::vector<std::vector<int>> own_;
   std::map<std::vector<int>, std::uint32_t> own_numbers_;  ///< places in own_
-  std::vector<int> segment_begin_;  ///< of a row, and its width
-  bool turns_ = false;              ///< the machine has rotary axes
-  bool moves_tool_ = false;         ///< some reading's tool offset is uncertain or disturbed
+  std::vector<int> segment_begin_;                         ///< of a row, and its width
+  bool turns_ = false;                                     ///< the machine has rotary axes
+  bool moves_tool_ = false;  ///< some reading's tool offset is uncertain or disturbed
 };
 
 }  // namespace volcal

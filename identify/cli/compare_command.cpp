@@ -180,7 +180,7 @@ std::function<int()> define_compare(CLI::App& app) {
       ->check(not_negative())
       ->capture_default_str();
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(not_negative());
+      ->check(number_of_threads());
   app.add_flag("--held-out", arguments->heldout,
                "fit the models anew without every fifth line and judge them on those lines");
   app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");

@@ -135,7 +135,7 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_option("-o,--output", arguments->output,
                  "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(not_negative());
+      ->check(number_of_threads());
   app.add_flag("--auto", arguments->climb,
                "tell everything that was found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,

@@ -9,6 +9,7 @@
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/generic_scan.h"
 #include "volcal/identify/criticism/left_out.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
@@ -112,7 +113,7 @@ std::string effect_list_json(const std::vector<std::string>& testable) {
   for (const WordList& list : word_lists()) json[list.key] = words_json(list.words);
   json["directions"] = kScanDirections;
   if (!testable.empty()) json["testable"] = testable;
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace volcal::cli

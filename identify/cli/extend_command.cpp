@@ -15,6 +15,7 @@
 #include "volcal/identify/criticism/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/text_file.h"
@@ -180,7 +181,7 @@ void report(const Changes& changes, const std::string& output, std::size_t effec
   if (as_json) {
     const nlohmann::ordered_json json = {
         {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
     return;
   }
   for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);

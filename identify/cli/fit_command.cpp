@@ -119,7 +119,7 @@ std::function<int()> define_fit(CLI::App& app) {
          "what is supported; white: independent readings")
       ->check(CLI::IsMember({"auto", "white"}));
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
-      ->check(not_negative());
+      ->check(number_of_threads());
   app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,
                "do not estimate variance components nor correlated noise");
   app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");

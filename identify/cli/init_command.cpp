@@ -8,6 +8,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
@@ -134,7 +135,7 @@ int run_init(const InitArguments& arguments) {
     const nlohmann::ordered_json json = {{"folder", arguments.output},
                                          {"structure", structure.code},
                                          {"files", {"machine.toml", "model.toml", "campaign.toml"}}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
     return kDone;
   }
   fmt::print(

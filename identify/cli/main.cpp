@@ -2,10 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <exception>
 #include <functional>
 #include <map>
 #include <string>
@@ -13,25 +10,13 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/outcome.h"
+#include "volcal/identify/cli/process.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/cli/today.h"
 #include "volcal/identify/io/nearest_name.h"
-#include "volcal/identify/io/text_encoding.h"
-#include "volcal/model/description/errors.h"
 
 namespace {
-
-/// What a message quotes from files and the command line must not steer the terminal.
-std::string shown(std::string_view message) {
-  std::string text;
-  while (!message.empty()) {
-    const std::size_t length = std::max<std::size_t>(volcal::utf8_length(message), 1);
-    const std::string_view character = message.substr(0, length);
-    text += character != "\n" && volcal::is_control(character) ? std::string_view("?") : character;
-    message.remove_prefix(length);
-  }
-  return text;
-}
 
 /// Nothing when `word` is one of the names.
 std::string unknown_word(const std::string& what, const std::string& word, const std::string& where,
@@ -100,25 +85,12 @@ int run(int argc, char** argv) {
     return app.exit(version);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "volcal: %s\nRun `volcal --help` or `volcal COMMAND --help` to see what there is.\n",
-                 shown(explain(app, error, argc, argv)).c_str());
+                 volcal::cli::shown(explain(app, error, argc, argv)).c_str());
     return volcal::cli::kBadInput;
   }
   volcal::cli::present_time();  // a wrong SOURCE_DATE_EPOCH is refused before the work, not after it
+  volcal::cli::set_current_work(app.get_subcommands().front()->get_name());
   return work.at(app.get_subcommands().front())();
-}
-
-int fail(const std::exception& error, int code) {
-  std::fprintf(stderr, "error: %s\n", shown(error.what()).c_str());
-  return code;
-}
-
-/// A full disk or a closed pipe shows at the end: an output that is cut off must not pass for a whole one.
-int flushed(int code) {
-  errno = 0;
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  std::fprintf(stderr, "error: standard output cannot be written%s%s: what was printed is not complete\n",
-               errno != 0 ? ": " : "", errno != 0 ? std::strerror(errno) : "");
-  return code == volcal::cli::kDone ? volcal::cli::kIncomplete : code;
 }
 
 }  // namespace
@@ -126,11 +98,6 @@ int flushed(int code) {
 int main(int argc, char** argv) {
   volcal::cli::remember_command_line(argc, argv);
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
-  try {
-    return flushed(run(argc, argv));
-  } catch (const volcal::InputError& error) {
-    return fail(error, volcal::cli::kBadInput);
-  } catch (const std::exception& error) {
-    return fail(error, volcal::cli::kIncomplete);
-  }
+  volcal::cli::prepare_process();
+  return volcal::cli::outcome_of([&] { return run(argc, argv); });
 }

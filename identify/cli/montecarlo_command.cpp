@@ -86,6 +86,11 @@ Disturbance disturbance(const std::string& text, const Campaign& campaign) {
         "write KIND:TARGET=U for a standard uncertainty, KIND:TARGET=+-A for limits, in the unit "
         "that volcal diagnose --list prints");
   }
+  constexpr double kMost = 1e4;  // um, urad, um/m, 1/K: ten millimetres or 1 % are no disturbance
+  if (value > kMost) {
+    throw InputError({}, "--disturb " + text + ": no effect is so large",
+                     "give at most 1e4, in the unit that volcal diagnose --list prints");
+  }
   const EffectSpec spec = named_effect("--disturb", text.substr(0, equals), campaign);
   const auto effect = find_effect(spec.kind)->make(spec, {});
   const EffectAmplitude& amplitude = effect->amplitudes().front();
@@ -210,14 +215,18 @@ struct Drawn {
   End end = End::Done;
 };
 
-Drawn drawn(const MonteCarloArguments& arguments, const Campaign& campaign, const FitResult& fit_result,
-            ProgressBar& bar) {
+MonteCarloOptions study_options(const MonteCarloArguments& arguments, const Campaign& campaign) {
   MonteCarloOptions options = arguments.options;
   options.path = draw_path(arguments.path);
   options.sources.functions =
       arguments.functions == "fixed" ? FunctionRoughness::Fixed : FunctionRoughness::Drawn;
   for (const std::string& text : arguments.disturbances)
     options.sources.disturbances.push_back(disturbance(text, campaign));
+  return options;
+}
+
+Drawn drawn(const MonteCarloArguments& arguments, const Campaign& campaign, const FitResult& fit_result,
+            const MonteCarloOptions& options, ProgressBar& bar) {
   bar.update("refits", 0.0);
   MonteCarloStudy study(campaign, fit_result, options);
   const std::string checkpoint = checkpoint_path(arguments);
@@ -250,13 +259,14 @@ int run_montecarlo(MonteCarloArguments arguments) {
   require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   if (!arguments.resume) require_no_checkpoint(checkpoint_path(arguments));
   const Campaign campaign = read_campaign(arguments.campaign);
+  const MonteCarloOptions options = study_options(arguments, campaign);
   ProgressBar bar("montecarlo");
   const FitResult fit_result = fitted(arguments, campaign, bar);
   if (fit_result.status == FitStatus::RankDeficient) {
     bar.finish();
     return tell_undetermined(arguments, fit_result);
   }
-  const auto [result, end] = drawn(arguments, campaign, fit_result, bar);
+  const auto [result, end] = drawn(arguments, campaign, fit_result, options, bar);
   if (end == End::Interrupted) return tell_interrupted(arguments, result);
   const bool complete = fit_result.status != FitStatus::NotConverged && result.not_converged == 0 &&
                         (!result.adaptive || result.settled);
@@ -287,7 +297,8 @@ void define_draws(CLI::App& app, MonteCarloOptions& options) {
   app.add_option("--seed", options.seed, "of the random numbers; the same seed gives the same bits")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_option("--refits", options.refits, "sample of draws on which the paths are held to full refits")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();

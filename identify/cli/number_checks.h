@@ -5,7 +5,12 @@
 
 namespace volcal::cli {
 
+/// Finite, and at most `most`; without it below any bound that a campaign could need.
 CLI::Validator not_negative();
+CLI::Validator not_negative(double most);
 CLI::Validator positive();
+CLI::Validator positive(double most);
+/// 0 to as many as thread_count() gives.
+CLI::Validator number_of_threads();
 
 }  // namespace volcal::cli

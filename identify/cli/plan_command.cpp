@@ -323,7 +323,7 @@ std::function<int()> define_plan(CLI::App& app) {
                  "of the positions between grid points; same seed, same bits")
       ->capture_default_str();
   app.add_option("--threads", arguments->settings.threads, "0 = all; results do not depend on it")
-      ->check(not_negative());
+      ->check(number_of_threads());
   app.add_flag("--force", arguments->force, "overwrite files that were edited, and those of other origin");
   app.add_flag("--json", arguments->json, "print plan.json on standard output and nothing else");
   return [arguments, &app] { return run_plan(*arguments, app); };

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "volcal/identify/cli/process.h"
+
 namespace volcal::cli {
 namespace {
 
@@ -17,11 +19,14 @@ constexpr double kPatience = 1.0;  // s
 ProgressBar::ProgressBar(std::string name)
     : name_(std::move(name)),
       terminal_(isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()) {
+  set_current_work(name_);
+}
 
 ProgressBar::~ProgressBar() { finish(); }
 
 void ProgressBar::update(const std::string& stage, double done) {
+  set_current_work(name_ + ": " + stage);
   if (!terminal_) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   if (seconds < kPatience && !drawn_) return;

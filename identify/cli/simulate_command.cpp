@@ -11,6 +11,7 @@
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/study_reader.h"
 #include "volcal/model/description/units.h"
 
@@ -52,7 +53,7 @@ int run_simulate(const SimulateArguments& arguments) {
                                          {"setups", simulated.campaign.setups.size()},
                                          {"readings", simulated.campaign.reading_count()},
                                          {"active_compensations", study.compensation.description}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
                simulated.campaign.setups.size(), study.seed, arguments.output);

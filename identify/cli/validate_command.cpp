@@ -9,6 +9,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/text_tables.h"
@@ -126,8 +127,7 @@ int run_validate(const ValidateArguments& arguments) {
   if (arguments.json) {
     auto json = figures_json(validation.figures, fitted);
     if (!campaign.notes.empty()) json["notes"] = campaign.notes;
-    fmt::print("{}
-", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}", figures_text(validation, fitted));
     for (const std::string& note : campaign.notes) fmt::print("! {}
@@ -146,7 +146,7 @@ std::function<int()> define_validate(CLI::App& app) {
       ->required();
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
       ->check(positive());
-  app.add_option("--threads", arguments->threads, "0 = all")->check(not_negative());
+  app.add_option("--threads", arguments->threads, "0 = all")->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_validate(*arguments); };
 }

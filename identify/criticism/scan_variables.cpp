@@ -84,9 +84,10 @@ class ScanVariables {
     std::map<std::string, std::size_t> readings;
     for (const Setup& setup : campaign_.setups) readings[setup.instrument] += setup.readings.size();
     const auto most = std::ranges::max_element(readings, {}, [](const auto& each) { return each.second; });
-    for (const auto& [instrument, count] : readings) {
+    for (const auto& each : readings) {
+      const std::string& instrument = each.first;
       if (instrument == most->first) continue;
-      add("instrument " + instrument, [&](const Setup& setup, std::size_t, std::size_t) {
+      add("instrument " + instrument, [&instrument](const Setup& setup, std::size_t, std::size_t) {
         return setup.instrument == instrument ? 1.0 : 0.0;
       });
     }

@@ -250,6 +250,7 @@ void AtomicFolder::create_temporary() {
       if (errno == EEXIST) continue;
       fail_system(target_, "creating the folder");
     }
+    known_temporary_ = TemporaryPath(temporary_);
     lock_ = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     struct stat status {};
     if (lock_ >= 0 && ::flock(lock_, LOCK_EX) == 0 && ::stat(temporary_.c_str(), &status) == 0) return;
@@ -324,8 +325,10 @@ void AtomicFolder::put_in_place(const char* list) {
   } catch (const fs::filesystem_error& error) {
     fail(target_, std::string("completing the result failed: ") + error.code().message());
   }
+  PuttingInPlace placing;
   exchange();
   committed_ = true;
+  placing.done();
   std::error_code error;
   fs::remove_all(temporary_, error);
   flush(fs::path(target_).parent_path().string());

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "volcal/identify/compensation/table_text.h"
+#include "volcal/identify/io/temporary_paths.h"
 
 namespace volcal {
 
@@ -53,6 +54,7 @@ class AtomicFolder {
 
   std::string target_;
   std::string temporary_;
+  TemporaryPath known_temporary_;
   int lock_ = -1;
   bool committed_ = false;
 };

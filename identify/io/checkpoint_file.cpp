@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "volcal/identify/io/temporary_paths.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/errors.h"
 
@@ -79,7 +80,12 @@ void write_checkpoint(const std::string& path, std::uint64_t fingerprint, const 
   std::error_code failure;
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder, failure);
-  if (!OutputDescriptor(temporary).write(checkpoint_bytes(fingerprint, state))) fail_to_write(path);
+  const TemporaryPath known(temporary);
+  if (!OutputDescriptor(temporary).write(checkpoint_bytes(fingerprint, state))) {
+    std::filesystem::remove(temporary, failure);
+    fail_to_write(path);
+  }
+  const PuttingInPlace placing;
   std::filesystem::rename(temporary, path, failure);
   if (failure) fail_to_write(path);
 }

@@ -5,6 +5,7 @@
 
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/criticism/left_out.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/toml_writer.h"
 #include "volcal/model/description/units.h"
@@ -200,7 +201,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["generic_tests"] = diagnosis.generic_tests;
   json["log10_p_threshold"] = log10_family_risk();
   json["detectable"] = detectable_json(diagnosis.detectable);
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace volcal

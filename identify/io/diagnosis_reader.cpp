@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/io/json_input.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/units.h"
@@ -222,18 +223,12 @@ Diagnosis diagnosis_from(const Json& json) {
 }  // namespace
 
 Diagnosis diagnosis_from_json(const std::string& text, const std::string& file) {
-  const std::string remedy = "give a folder that volcal diagnose wrote, or run the diagnosis again";
-  try {
-    const Json json = Json::parse(text);
-    json_parts::require_no_control(json);
-    return diagnosis_from(json);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw InputError({file, static_cast<int>(line)}, "the file is no complete JSON", remedy);
-  } catch (const std::exception& error) {
-    throw InputError({file, 0}, "the diagnosis cannot be used: " + printable(error.what()), remedy);
-  }
+  return read_json(text, file, "diagnosis",
+                   "give a folder that volcal diagnose wrote, or run the diagnosis again",
+                   [](const Json& json) {
+                     json_parts::require_no_control(json);
+                     return diagnosis_from(json);
+                   });
 }
 
 Diagnosis read_diagnosis(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/io/json_text.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -70,7 +71,7 @@ std::string hidden_answer_json(const sim::SimulatedCampaign& simulated) {
                                 {"channel", error.channel},
                                 {"sign", error.sign}});
   }
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace volcal

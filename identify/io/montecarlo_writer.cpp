@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/compensation/csv_cell.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -93,7 +94,7 @@ std::string montecarlo_json(const MonteCarloResult& result) {
     for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
       of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
   }
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 std::string undetermined_json(const FitResult& fit) {
@@ -103,7 +104,7 @@ std::string undetermined_json(const FitResult& fit) {
       {"draws", 0},
       {"rank",
        {{"parameters", fit.rank.parameters}, {"rank", fit.rank.rank}, {"invisible", fit.rank.invisible}}}};
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 std::string montecarlo_csv(const MonteCarloResult& result) {

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/toml_writer.h"
 #include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/model/description/units.h"
@@ -254,7 +255,7 @@ std::string plan_json(const CampaignPlan& plan) {
                                {"makes_visible", option.made_visible},
                                {"still_not_visible", option.still_invisible}});
   }
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string plan_study_toml(const CampaignPlan& plan) {

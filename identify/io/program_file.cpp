@@ -75,6 +75,7 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
   if (std::filesystem::is_directory(path_, error))
     throw InputError({path_, 0}, "the output is a directory, a file is expected", "name a file with -o");
   temporary_ = path_ + ".part-" + std::to_string(::getpid());
+  known_temporary_ = TemporaryPath(temporary_);
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (file_ == nullptr) fail("creating the file");
 }
@@ -97,7 +98,9 @@ void AtomicFile::write(std::string_view text) {
 
 void AtomicFile::commit() {
   if (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0) fail("writing");
+  PuttingInPlace placing;
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("renaming");
+  placing.done();
   std::fclose(file_);
   file_ = nullptr;
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/io/temporary_paths.h"
+
 namespace volcal {
 
 /// Lines of a text file of any size with their line ends.
@@ -55,6 +57,7 @@ class AtomicFile {
 
   std::string path_;
   std::string temporary_;
+  TemporaryPath known_temporary_;
   std::FILE* file_ = nullptr;
 };
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "volcal/identify/io/json_input.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/functions/registry.h"
@@ -317,7 +319,7 @@ std::string result_json(const FitResult& result) {
   json["model"] = json_parts::model(result.identified);
   json["layout"] = json_parts::layout(result.layout);
   json["parameters"] = json_parts::vector(result.parameters);
-  std::string text = json.dump(1);
+  std::string text = json_text(json, 1);
   text.replace(text.size() - 2, 2,
                ",\n \"covariance\": " + json_parts::covariance_text(result.covariance) + "\n}\n");
   return text;
@@ -326,22 +328,15 @@ std::string result_json(const FitResult& result) {
 std::string result_summary_json(const FitResult& result) {
   Json json = head_json(result);
   json["timings"] = timings_json(result);
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 FitResult result_from_json(const std::string& text, const std::string& file) {
-  const std::string remedy = "give a folder that volcal fit wrote, or run the fit again";
-  try {
-    const Json json = Json::parse(text);
-    json_parts::require_no_control(json);
-    return result_from(json);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    const auto line = 1 + std::count(text.begin(), end, '\n');
-    throw InputError({file, static_cast<int>(line)}, "the file is no complete JSON", remedy);
-  } catch (const std::exception& error) {
-    throw InputError({file, 0}, "the result cannot be used: " + printable(error.what()), remedy);
-  }
+  return read_json(text, file, "result", "give a folder that volcal fit wrote, or run the fit again",
+                   [](const Json& json) {
+                     json_parts::require_no_control(json);
+                     return result_from(json);
+                   });
 }
 
 }  // namespace volcal

@@ -9,6 +9,7 @@ namespace volcal {
 namespace {
 
 constexpr std::int64_t kMostPoints = 1000000;
+constexpr double kMostReadings = 2e6;  // of a measurement; a simulated campaign is held in memory
 
 void read(const TomlTable& table, const char* key, double& value) {
   if (const auto found = table.number(key, kNotNegative)) value = *found;
@@ -47,6 +48,13 @@ void read_axes(const TomlTable& table, std::vector<AxisName>& axes) {
   }
 }
 
+/// `readings` follow from the numbers beside `key`.
+void require_bounded(const TomlTable& table, const char* key, double readings) {
+  if (readings <= kMostReadings) return;
+  table.fail(key, table.path() + " asks for " + number_text(readings) + " readings",
+             "at most 2,000,000 a measurement; reduce " + std::string(key));
+}
+
 void read_grid(const TomlTable& table, Eigen::Vector3i& grid) {
   const auto counts = table.numbers("grid", {2.0, 1000.0});
   if (!counts) return;
@@ -56,6 +64,7 @@ void read_grid(const TomlTable& table, Eigen::Vector3i& grid) {
                "give positions along X, Y, Z: [9, 7, 6]");
   }
   for (int k = 0; k < 3; ++k) grid[k] = static_cast<int>((*counts)[static_cast<std::size_t>(k)]);
+  require_bounded(table, "grid", grid.cast<double>().prod());
 }
 
 /// Shares of the travel at which the other axes stand.
@@ -93,6 +102,9 @@ void read_line_settings(const TomlTable& table, Settings& settings) {
   read_at(table, settings.at);
   read(table, "points", settings.points, 2);
   read(table, "runs", settings.runs, 1);
+  constexpr double kMostLines = 8;  // both directions of the diagonals of a volume
+  require_bounded(table, table.has("runs") ? "runs" : "points",
+                  kMostLines * static_cast<double>(settings.points) * static_cast<double>(settings.runs));
   read(table, "reading_s", settings.seconds_per_reading);
 }
 
@@ -115,6 +127,9 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
   }
   read(table, "revisits", settings.revisits, 0);
   read_grid(table, settings.grid);
+  require_bounded(table, table.has("revisits") ? "revisits" : "grid",
+                  (settings.grid.cast<double>().prod() + static_cast<double>(settings.revisits)) *
+                      static_cast<double>(std::max<std::size_t>(settings.runs.size(), 1)));
   if (const auto jitter = table.number("jitter", {0.0, 0.5})) settings.jitter = *jitter;
   read(table, "guess_error_mm", settings.station_guess_error);
   read(table, "station_sigma_mm", settings.station_sigma);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "volcal/identify/io/nearest_name.h"
+#include "volcal/identify/io/temporary_paths.h"
 #include "volcal/identify/io/text_encoding.h"
 
 namespace volcal {
@@ -131,14 +132,19 @@ std::string printable(const std::string& text) {
 
 void write_text_file(const std::string& path, const std::string& text) {
   const std::string temporary = path + ".part";
+  const TemporaryPath known(temporary);
   std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();
-  std::error_code failure;
+  std::error_code failure, ignored;
+  PuttingInPlace placing;
   if (file) std::filesystem::rename(temporary, path, failure);
   if (!file || failure) {
-    throw InputError({path, 0}, "the file cannot be written", "choose a folder that exists and is writable");
+    std::filesystem::remove(temporary, ignored);
+    throw InputError({path, 0}, "the file cannot be written",
+                     "choose a folder that exists, is writable and has room");
   }
+  placing.done();
 }
 
 std::string number_text(double value, int digits) { return fmt::format("{:.{}g}", value, digits); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "volcal/identify/io/nesting.h"
 #include "volcal/identify/io/text_encoding.h"
 #include "volcal/identify/io/text_file.h"
 
@@ -98,6 +99,7 @@ TomlNode* TomlNode::find(std::string_view key) {
 
 std::shared_ptr<TomlSource> parse_toml(const std::string& text, const std::string& file) {
   require_utf8_text(text, file);
+  require_shallow(text, NestedText::Toml, file);
   try {
     const toml::table table = toml::parse(std::string_view(text), std::string_view(file));
     auto source = std::make_shared<TomlSource>();

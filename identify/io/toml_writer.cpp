@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/machine_reader.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/model/description/units.h"
@@ -138,7 +139,7 @@ std::string edge_number(double si, double si_per_unit) {
 
 std::string toml_text(const std::string& text) {
   std::string quoted = "\"";
-  for (const char c : text) {
+  for (const char c : utf8_text(text)) {
     if (c == '"' || c == '\\') {
       quoted += '\\';
       quoted += c;
@@ -169,8 +170,12 @@ std::string machine_toml(const Machine& machine) {
 
 std::string model_toml(const ModelSpec& spec, const std::string& machine_path, const std::string& comment) {
   std::string text;
-  std::istringstream lines(comment);
-  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  std::istringstream lines(utf8_text(comment));
+  for (std::string line; std::getline(lines, line);) {
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7F; };
+    std::ranges::replace_if(line, is_control, '?');
+    text += "# " + line + "\n";
+  }
   text += fmt::format("format = \"{}\"\nmachine = {}\n\n[functions]\ndefault = {}\n", kModelFormat,
                       toml_text(machine_path), function_toml(spec.default_function, std::nullopt));
   for (const auto& [symbol, function] : spec.functions) {

@@ -1,10 +1,12 @@
 #include "volcal/identify/numeric/dense.h"
 
 #include <dlfcn.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -32,6 +34,43 @@ void dtrsm_(const char* side, const char* uplo, const char* transa, const char* 
 namespace volcal {
 namespace {
 
+/// Whether the process may only have so much memory (ulimit -v, ulimit -d).
+bool memory_is_limited() {
+  static const bool limited = [] {
+    const auto limits = [](auto which) {
+      rlimit limit{};
+      return ::getrlimit(which, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+    };
+    return limits(RLIMIT_AS) || limits(RLIMIT_DATA);
+  }();
+  return limited;
+}
+
+/// Every thread inside OpenBLAS holds a buffer of 128 MiB, and where none is to be had OpenBLAS tries for
+/// ever. Under a limit of memory one thread is let in at a time, so that the first buffer serves all.
+class BlasCall {
+ public:
+  BlasCall() {
+    if (memory_is_limited()) lock_ = std::unique_lock(one_at_a_time());
+  }
+
+ private:
+  static std::mutex& one_at_a_time() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::unique_lock<std::mutex> lock_;
+};
+
+/// The first buffer, while there is room: identify/cli/memory_limit.cpp has looked.
+void fetch_buffer() {
+  const BlasCall call;
+  const int one = 1;
+  double number = 1.0;
+  int info = 0;
+  dpotrf_("U", &one, &number, &one, &info);
+}
+
 constexpr double kDependent = 1e-13;  // eigenvalue of R^T R, of the largest: (3e-7)^2
 
 /// `result.vectors` holds the matrix.
@@ -46,6 +85,7 @@ void decompose(const char* job, SymmetricEigen& result) {
   }
   int info = 0, query = -1, integer_size = 0;
   double size = 0.0;
+  const BlasCall call;
   dsyevd_(job, "U", &n, result.vectors.data(), &n, result.values.data(), &size, &query, &integer_size, &query,
           &info);
   const int work_size = static_cast<int>(size);
@@ -63,6 +103,7 @@ void use_single_threaded_blas() {
     using SetThreads = void (*)(int);
     const auto set_threads = reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
     if (set_threads != nullptr) set_threads(1);
+    if (memory_is_limited()) fetch_buffer();
     return true;
   }();
   static_cast<void>(done);
@@ -74,7 +115,10 @@ std::optional<Eigen::MatrixXd> cholesky_lower(const Eigen::MatrixXd& symmetric) 
   if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::MatrixXd upper = symmetric;
   int info = 0;
-  dpotrf_("U", &n, upper.data(), &n, &info);
+  {
+    const BlasCall call;
+    dpotrf_("U", &n, upper.data(), &n, &info);
+  }
   if (info != 0) return std::nullopt;
   Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(n, n);
   lower.triangularView<Eigen::Lower>() = upper.transpose();
@@ -88,7 +132,10 @@ Eigen::MatrixXd inverse_from_cholesky(const Eigen::MatrixXd& lower) {
   if (n == 0) return Eigen::MatrixXd(0, 0);
   Eigen::MatrixXd inverse = lower;
   int info = 0;
-  dpotri_("L", &n, inverse.data(), &n, &info);
+  {
+    const BlasCall call;
+    dpotri_("L", &n, inverse.data(), &n, &info);
+  }
   if (info != 0) throw std::runtime_error("inverse_from_cholesky: singular factor");
   inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
   return inverse;
@@ -138,6 +185,7 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, d
   std::vector<int> pivots(static_cast<std::size_t>(n), 0);
   int info = 0;
   double size = 0.0;
+  const BlasCall call;
   dgelsy_(&m, &n, &one, factors.data(), &m, right.data(), &rows, pivots.data(), &threshold, &result.rank,
           &size, &query, &info);
   const int work_size = static_cast<int>(size);
@@ -159,6 +207,7 @@ void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
   const double one = 1.0, zero = 0.0;
   const int ldc = static_cast<int>(c.rows());
   if (n == 0) return;
+  const BlasCall call;
   dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 
@@ -168,6 +217,7 @@ void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
   const int m = static_cast<int>(a.cols()), n = static_cast<int>(b.cols()), k = static_cast<int>(a.rows());
   const int lda = static_cast<int>(a.outerStride()), ldb = static_cast<int>(b.outerStride());
   if (m == 0 || n == 0 || k == 0) return;
+  const BlasCall call;
   dgemm_("T", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &one, c.data(), &m);
 }
 
@@ -176,6 +226,7 @@ void add_gram_upper(const Eigen::Ref<const Eigen::MatrixXd>& a, double factor, E
   const int n = static_cast<int>(a.cols()), k = static_cast<int>(a.rows());
   const int lda = static_cast<int>(a.outerStride());
   if (n == 0 || k == 0) return;
+  const BlasCall call;
   dsyrk_("U", "T", &n, &k, &factor, a.data(), &lda, &one, c.data(), &n);
 }
 
@@ -183,6 +234,7 @@ void solve_lower(const Eigen::MatrixXd& lower, Eigen::MatrixXd& b) {
   const double one = 1.0;
   const int m = static_cast<int>(b.rows()), n = static_cast<int>(b.cols());
   if (m == 0 || n == 0) return;
+  const BlasCall call;
   dtrsm_("L", "L", "N", "N", &m, &n, &one, lower.data(), &m, b.data(), &m);
 }
 
@@ -192,6 +244,7 @@ Eigen::MatrixXd solve_positive_definite(const Eigen::MatrixXd& a, const Eigen::M
   const int n = static_cast<int>(b.rows()), columns = static_cast<int>(b.cols());
   Eigen::MatrixXd solution = b;
   int info = 0;
+  const BlasCall call;
   if (n > 0 && columns > 0) dpotrs_("L", &n, &columns, lower->data(), &n, solution.data(), &n, &info);
   return solution;
 }

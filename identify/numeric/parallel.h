@@ -5,11 +5,36 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace volcal {
+
+/// Threads beside the calling one. Where the system gives fewer than asked for, there are fewer.
+class Workers {
+ public:
+  template <class Work>
+  Workers(int count, const Work& work) {
+    try {
+      threads_.reserve(static_cast<std::size_t>(std::max(count, 0)));
+      for (int i = 0; i < count; ++i) threads_.emplace_back(work);
+    } catch (const std::system_error&) {  // the others take what is left
+    } catch (const std::bad_alloc&) {
+    }
+  }
+  ~Workers() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+ private:
+  std::vector<std::thread> threads_;
+};
 
 /// work(0) ... work(items - 1), in any order; the first exception is thrown on.
 template <class Work>
@@ -26,12 +51,11 @@ void run_parallel(std::size_t items, int threads, const Work& work) {
       next = items;
     }
   };
-  std::vector<std::thread> workers;
-  const int extra = std::min(threads, static_cast<int>(items)) - 1;
-  workers.reserve(static_cast<std::size_t>(std::max(extra, 0)));
-  for (int i = 0; i < extra; ++i) workers.emplace_back(run);
-  run();
-  for (std::thread& worker : workers) worker.join();
+  {
+    const std::size_t most = std::min<std::size_t>(items, static_cast<std::size_t>(std::max(threads, 1)));
+    const Workers workers(static_cast<int>(most) - 1, std::cref(run));
+    run();
+  }
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/comparison_report.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"
@@ -196,7 +197,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
                                 {"total", cell_json(model.comparison.total)},
                                 {"by", breakdowns_json(model.comparison)}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return json_text(json, 2) + '\n';
 }
 
 }  // namespace volcal

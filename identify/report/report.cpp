@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/template_data.h"
 
@@ -71,7 +72,7 @@ std::string document(const std::string& title, const std::string& subtitle, cons
     if (page.of_readings && !has_readings) continue;
     document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
   }
-  return document.dump(-1, ' ', false, report::Json::error_handler_t::replace);
+  return json_text(document, -1);
 }
 
 std::string filled_page(const std::string& title, const std::string& json) {

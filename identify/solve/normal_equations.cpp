@@ -3,19 +3,21 @@
 #include <ceres/loss_function.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <thread>
+#include <string>
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/normal_tile.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
 
 constexpr std::size_t kReadingsPerChunk = 16384;
 constexpr std::size_t kMaxChunks = 16;
+constexpr std::size_t kMostNumbersOfChunks = std::size_t{1} << 27U;  // of all their matrices: 1 GiB
 
 /// Number of the stretch of coefficients that is active, over all function groups.
 std::uint64_t active_cell(const MeasurementModel& model, std::size_t setup, std::size_t row) {
@@ -64,6 +66,22 @@ std::vector<std::size_t> ReadingIndex::left_out() const {
   return observations;
 }
 
+namespace {
+
+/// A dense matrix of so many parameters still fits into memory, and its factors into a day.
+void require_adjustable(const MeasurementModel& model) {
+  constexpr int kMostParameters = 30000;
+  const int size = model.layout().size;
+  if (size <= kMostParameters) return;
+  throw InputError(
+      {model.campaign().file, 0},
+      "the campaign has " + std::to_string(size) + " unknown parameters, at most " +
+          std::to_string(kMostParameters) + " are adjusted together",
+      "put lines of one instrument into one setup, name shared stations alike, or fit parts of it");
+}
+
+}  // namespace
+
 NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vector<double>& weight,
                                      const ceres::LossFunction* loss, int threads, std::size_t share)
     : index_(index),
@@ -74,13 +92,16 @@ NormalAccumulator::NormalAccumulator(const ReadingIndex& index, const std::vecto
       by_pairs_(PairSums::pay(index.blocks())),
       chunks_(make_chunks()) {
   use_single_threaded_blas();
+  require_adjustable(index.model());
 }
 
 std::vector<NormalAccumulator::Chunk> NormalAccumulator::make_chunks() const {
   const std::size_t observations = in_share(index_.observations());
+  const auto size = static_cast<std::size_t>(index_.model().layout().size);
+  const std::size_t room = kMostNumbersOfChunks / std::max<std::size_t>(size * size, 1);
   const std::size_t count =
       std::clamp<std::size_t>(observations / kReadingsPerChunk, observations >= 2000 ? 2 : 1, kMaxChunks);
-  return std::vector<Chunk>(count);
+  return std::vector<Chunk>(std::clamp<std::size_t>(room, 1, count));
 }
 
 /// Number of the item, out of `count`, that stands for its share; scattered, so that no grid keeps step.
@@ -91,24 +112,10 @@ std::size_t NormalAccumulator::item(std::size_t of_share, std::size_t count) con
   return std::min(of_share * share_ + scattered % share_, count - 1);
 }
 
-template <class Work>
-void NormalAccumulator::for_each_chunk(const Work& work) const {
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t chunk = next++; chunk < chunks_.size(); chunk = next++) work(chunk);
-  };
-  std::vector<std::thread> workers;
-  const int extra = std::min<int>(threads_, static_cast<int>(chunks_.size())) - 1;
-  workers.reserve(chunks_.size());
-  for (int i = 0; i < extra; ++i) workers.emplace_back(run);
-  run();
-  for (std::thread& worker : workers) worker.join();
-}
-
 const NormalEquations& NormalAccumulator::accumulate(const Eigen::VectorXd& parameters,
                                                      const std::vector<bool>* include, Sums what) {
   const TabulatedFunctions tabulated = index_.model().tabulate(parameters);
-  for_each_chunk([&](std::size_t chunk) {
+  run_parallel(chunks_.size(), threads_, [&](std::size_t chunk) {
     if (what == Sums::All && !by_pairs_) {
       add_by_cell(chunk, parameters, tabulated, include, chunks_[chunk].sums);
     } else {

@@ -93,8 +93,6 @@ class NormalAccumulator {
                    const std::vector<bool>* include, NormalEquations& sums) const;
   double observe(std::size_t observation, double error, NormalEquations& sums) const;
   void collect(Sums what);
-  template <class Work>
-  void for_each_chunk(const Work& work) const;
   std::size_t begin_of(std::size_t chunk, std::size_t count) const {
     return in_share(count) * chunk / chunks_.size();
   }

@@ -121,7 +121,7 @@ std::vector<PairSums::Pair> PairSums::pairs_of(const BlockModel& model,
       const bool same = down == across || (b.is_group && groups[down].axis == groups[across].axis);
       const std::size_t blocks = same ? a.positions : a.positions * b.positions;
       pairs.push_back({down, across, same, begin, blocks});
-      begin += blocks * static_cast<std::size_t>(a.stride * b.size);
+      begin += blocks * static_cast<std::size_t>(a.stride) * static_cast<std::size_t>(b.size);
     }
   }
   return pairs;
@@ -137,8 +137,8 @@ bool PairSums::pay(const BlockModel& model) {
   std::size_t numbers = 0, work = 0, of_a_row = 0, readings = 0;
   for (const Pair& pair : pairs_of(model, segments)) {
     const std::size_t products = parameters(pair.down) * parameters(pair.across);
-    numbers +=
-        pair.blocks * static_cast<std::size_t>(segments[pair.down].stride * segments[pair.across].size);
+    numbers += pair.blocks * static_cast<std::size_t>(segments[pair.down].stride) *
+               static_cast<std::size_t>(segments[pair.across].size);
     work += pair.blocks * products;
     of_a_row += products;
   }

@@ -56,8 +56,8 @@ class PairSums {
   static std::vector<Segment> segments_of(const BlockModel& model);
   static std::vector<Pair> pairs_of(const BlockModel& model, const std::vector<Segment>& segments);
   std::size_t block_size(const Pair& pair) const {
-    const int size = segments_[pair.down].stride * segments_[pair.across].size;
-    return static_cast<std::size_t>(size);
+    return static_cast<std::size_t>(segments_[pair.down].stride) *
+           static_cast<std::size_t>(segments_[pair.across].size);
   }
   const std::uint32_t* positions_of(std::size_t segment, const ReadingBlock& block,
                                     std::uint32_t* constant) const;

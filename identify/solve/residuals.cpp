@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <thread>
 
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/normal.h"
 
@@ -88,12 +88,9 @@ std::vector<ResidualRecord> residual_records(const ReadingIndex& index, const st
     }
   };
   const std::size_t readings = index.sorted().size();
-  const auto count = static_cast<std::size_t>(std::max(1, threads));
-  std::vector<std::thread> workers;
-  for (std::size_t t = 1; t < count; ++t)
-    workers.emplace_back(work, readings * t / count, readings * (t + 1) / count);
-  work(0, readings / count);
-  for (std::thread& worker : workers) worker.join();
+  const auto parts = static_cast<std::size_t>(std::max(1, threads));
+  run_parallel(parts, threads,
+               [&](std::size_t part) { work(readings * part / parts, readings * (part + 1) / parts); });
   for (const std::size_t observation : index.left_out()) records[observation].left_out = true;
   return records;
 }

@@ -6,9 +6,13 @@
 
 namespace volcal {
 
-/// `asked`, or as many as the machine has when that is not positive; at least 1.
+/// More than any machine works faster with; every thread takes memory.
+inline constexpr int kMostThreads = 1024;
+
+/// `asked`, or as many as the machine has when that is not positive; 1 to kMostThreads.
 inline int thread_count(int asked) {
-  return asked > 0 ? asked : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return asked > 0 ? std::min(asked, kMostThreads)
+                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace volcal

@@ -105,12 +105,9 @@ void BlockModel::cut_setup(std::size_t setup) {
 }
 
 std::uint32_t BlockModel::own_number(const std::vector<int>& parameters) {
-  const auto found = std::ranges::find(own_, parameters);
-  if (found == own_.end()) {
-    own_.push_back(parameters);
-    return static_cast<std::uint32_t>(own_.size() - 1);
-  }
-  return static_cast<std::uint32_t>(found - own_.begin());
+  const auto [found, is_new] = own_numbers_.try_emplace(parameters, static_cast<std::uint32_t>(own_.size()));
+  if (is_new) own_.push_back(parameters);
+  return found->second;
 }
 
 std::span<const int> BlockModel::nuisance_of(const ReadingBlock& block) const {

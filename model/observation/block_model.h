@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -111,9 +112,10 @@ class BlockModel {
   const MeasurementModel& model_;
   std::vector<ReadingBlock> blocks_;
   std::vector<std::vector<int>> own_;
-  std::vector<int> segment_begin_;  ///< of a row, and its width
-  bool turns_ = false;              ///< the machine has rotary axes
-  bool moves_tool_ = false;         ///< some reading's tool offset is uncertain or disturbed
+  std::map<std::vector<int>, std::uint32_t> own_numbers_;  ///< places in own_
+  std::vector<int> segment_begin_;                         ///< of a row, and its width
+  bool turns_ = false;                                     ///< the machine has rotary axes
+  bool moves_tool_ = false;  ///< some reading's tool offset is uncertain or disturbed
 };
 
 }  // namespace volcal

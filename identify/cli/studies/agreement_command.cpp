@@ -11,6 +11,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/agreement.h"
 #include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/sim/reference_machines.h"
 
@@ -88,7 +89,7 @@ int run_agreement(AgreementArguments arguments) {
   const std::vector<AgreedValue> values = agreement(arguments.options);
   bar.finish();
   if (arguments.json) {
-    fmt::print("{}\n", agreement_json(arguments.options, values).dump(2));
+    fmt::print("{}\n", json_text(agreement_json(arguments.options, values), 2));
   } else {
     fmt::print("{}", agreement_text(arguments.options, values));
   }
@@ -106,7 +107,8 @@ std::function<int()> define_agreement(CLI::App& app) {
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
   app.add_option("--seed", options.seed)->check(not_negative())->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_agreement(*arguments); };
 }

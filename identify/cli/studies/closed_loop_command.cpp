@@ -10,6 +10,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/closed_loop.h"
 #include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/text_tables.h"
 
 namespace volcal::cli {
@@ -203,7 +204,7 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
   const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
   bar.finish();
   if (arguments.json) {
-    fmt::print("{}\n", json_of(arguments, campaigns).dump(2));
+    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 2));
   } else {
     fmt::print("{}", closed_loop_text(arguments, campaigns));
   }
@@ -232,7 +233,8 @@ std::function<int()> define_closed_loop_study(CLI::App& app) {
       "with a scale of the laser (0.3 um/m) and offsets of the tools (3 um) that are wrong by what the "
       "campaign states, drawn anew for every campaign");
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_closed_loop_study(*arguments); };
 }

@@ -10,6 +10,7 @@
 #include "volcal/identify/cli/studies/compensation.h"
 #include "volcal/identify/cli/studies/studies.h"
 #include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/model/description/units.h"
 
@@ -129,7 +130,7 @@ int run_compensation_study(CompensationArguments arguments) {
   const CompensationRows rows = compensation_study(arguments.options);
   bar.finish();
   if (arguments.json) {
-    fmt::print("{}\n", rows_json(arguments, rows).dump(2));
+    fmt::print("{}\n", json_text(rows_json(arguments, rows), 2));
   } else {
     fmt::print("{}", rows_text(arguments, rows));
   }
@@ -148,7 +149,8 @@ std::function<int()> define_compensation_study(CLI::App& app) {
   app.add_option("-f,--format", options.formats, "table formats; default: all")
       ->check(CLI::IsMember(table_format_names()));
   app.add_flag("--small", options.small, "1,920 readings a campaign instead of 6,048, fewer fresh points");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_compensation_study(*arguments); };
 }

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/cli/studies/criticism_campaign.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
@@ -56,7 +57,7 @@ class Archive {
 
   void append(const CampaignRecord& record) {
     if (path_.empty()) return;
-    file_ << nlohmann::json(record).dump() << '\n' << std::flush;
+    file_ << json_text(nlohmann::json(record), -1) << '\n' << std::flush;
     if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "make room on the disk");
   }
 

@@ -14,6 +14,7 @@
 #include "volcal/identify/cli/studies/studies.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/model/description/errors.h"
 
@@ -118,7 +119,7 @@ int run_criticism_study(CriticismArguments arguments) {
   const Campaigns campaigns = criticism(options);
   bar.finish();
   if (arguments.json) {
-    fmt::print("{}\n", json_of(arguments, campaigns).dump(1));
+    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 1));
   } else {
     fmt::print("{}", figures_text(arguments, campaigns));
   }
@@ -145,7 +146,8 @@ std::function<int()> define_criticism_study(CLI::App& app) {
   app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_criticism_study(*arguments); };
 }

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/io/nesting.h"
+
 namespace volcal::cli {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AmplitudeRecord, value, u, mdb, truth)
@@ -28,6 +30,7 @@ void from_json(const nlohmann::json& json, CampaignRecord& record) {
 }
 
 std::optional<CampaignRecord> record_of_line(const std::string& line, const SourcePlace& place) {
+  require_shallow(line, NestedText::Json, place.file);
   const auto json = nlohmann::json::parse(line, nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   try {

@@ -8,6 +8,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/studies/planning.h"
 #include "volcal/identify/cli/studies/studies.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/text_tables.h"
 
 namespace volcal::cli {
@@ -70,7 +71,7 @@ int run_planning_study(PlanningStudyArguments arguments) {
   const std::vector<PlannedMachine> machines = planning_study(arguments.options);
   bar.finish();
   if (arguments.json) {
-    fmt::print("{}\n", planning_json(machines).dump(2));
+    fmt::print("{}\n", json_text(planning_json(machines), 2));
   } else {
     fmt::print("{}", planning_text(arguments.options, machines));
   }
@@ -90,7 +91,8 @@ std::function<int()> define_planning_study(CLI::App& app) {
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")->check(not_negative());
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_planning_study(*arguments); };
 }

@@ -7,9 +7,9 @@
 #include <random>
 
 #include "tests/support/machines.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/tables/error_tables.h"
 
 namespace volcal {
 namespace {

@@ -8,8 +8,9 @@
 
 #include "volcal/identify/cli/alignment_options.h"
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
+#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/report/report.h"
@@ -97,7 +98,7 @@ int run_align(const AlignArguments& arguments) {
   campaign.machine = aligned.result.machine;
   campaign.file = arguments.result;
   std::map<std::string, std::string> files = kept_files(arguments.result);
-  if (report_available()) files["report.html"] = report_html(aligned.result, campaign, {today()});
+  if (report_available()) files["report.html"] = report_html(aligned.result, campaign, report_options());
   write_result_folder(aligned.result, campaign, arguments.output, files);
   if (arguments.json) {
     const nlohmann::ordered_json json = {{"folder", arguments.output},
@@ -106,7 +107,7 @@ int run_align(const AlignArguments& arguments) {
                                          {"squareness_before", angles_json(squareness_of(before))},
                                          {"squareness", angles_json(squareness_of(aligned.result))},
                                          {"invisible", before.rank.invisible}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);

@@ -17,6 +17,7 @@ namespace volcal::cli {
   COMMAND(try_command)           \
   COMMAND(extend_command)        \
   COMMAND(align_command)         \
+  COMMAND(budget_command)        \
   COMMAND(tables_command)        \
   COMMAND(compensate_command)    \
   COMMAND(study_command)

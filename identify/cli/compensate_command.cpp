@@ -10,8 +10,9 @@
 #include "volcal/identify/cli/conditions_options.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/program_setup.h"
+#include "volcal/identify/io/json_text.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/io/program_file.h"
-#include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/report/field_text.h"
 #include "volcal/identify/report/program_text.h"
@@ -111,7 +112,7 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
 
 int run_compensate(const CompensateArguments& arguments) {
   require_output(arguments);
-  const FitResult result = read_result(arguments.result);
+  const FitResult result = read_known_errors(arguments.result);
   const RewrittenProgram done = rewrite(result, arguments);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
@@ -119,7 +120,7 @@ int run_compensate(const CompensateArguments& arguments) {
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     json["invisible"] = result.rank.invisible;
     if (!arguments.output.empty()) json["file"] = arguments.output;
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     print_text(done, result, arguments);
   }
@@ -147,7 +148,9 @@ void add_setup_options(CLI::App& app, ProgramSetupArguments& setup) {
 
 std::function<int()> define_compensate(CLI::App& app) {
   auto arguments = std::make_shared<CompensateArguments>();
-  app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
+  app.add_option("RESULT", arguments->result,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv")
+      ->required();
   app.add_option("PROGRAM", arguments->program, "NC program (RS-274, ISO 6983) of X, Y and Z")->required();
   app.add_option("-o,--output", arguments->output, "rewritten program");
   add_setup_options(app, arguments->setup);

@@ -14,7 +14,8 @@
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/control_tables.h"
-#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/io/json_text.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/report/compensation_text.h"
 #include "volcal/identify/report/correction_text.h"
 #include "volcal/identify/report/field_text.h"
@@ -207,9 +208,14 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
   fmt::print("Verified: {}.\n", made.format->verified);
-  if (made.tolerance > 0.0 && !made.step.reached)
-    fmt::print("! the limits of the controller do not allow {:g} um: {}\n", made.tolerance / kMicro,
-               limits_text(made.format->limits));
+  if (made.tolerance > 0.0 && !made.step.reached) {
+    const bool limited = made.format->limits.points_per_table > 0 || made.format->limits.resolution > 1e-10;
+    fmt::print("! {} {:g} um: {}\n",
+               limited ? "the limits of the controller do not allow" : "no step that is tried reaches",
+               made.tolerance / kMicro,
+               limited ? limits_text(made.format->limits)
+                       : std::string("give --step for a finer table, or --tolerance for a coarser one"));
+  }
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
                arguments.superimpose);
@@ -252,7 +258,7 @@ FitResult aligned_result(const TablesArguments& arguments) {
   if (!arguments.output.empty() && !arguments.dry_run) {
     require_output_folder(arguments.output, {arguments.result});
   }
-  FitResult result = read_result(arguments.result);
+  FitResult result = read_known_errors(arguments.result);
   if (!arguments.alignment.any()) return result;
   return align_result(result, alignment_of(result, arguments.alignment)).result;
 }
@@ -275,7 +281,7 @@ int run_tables(const TablesArguments& arguments) {
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
     if (made && !errors.empty())
       json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     if (!made) fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
     fmt::print("{}", volumetric_text(result, errors));
@@ -322,7 +328,8 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
 
 std::function<int()> define_tables(CLI::App& app) {
   auto arguments = std::make_shared<TablesArguments>();
-  app.add_option("RESULT", arguments->result, "result folder of volcal fit");
+  app.add_option("RESULT", arguments->result,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv");
   app.add_option("-o,--output", arguments->output, "folder for the tables");
   add_compensation_options(app, *arguments);
   add_alignment_options(app, arguments->alignment);

@@ -130,8 +130,7 @@ int run_validate(const ValidateArguments& arguments) {
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}", figures_text(validation, fitted));
-    for (const std::string& note : campaign.notes) fmt::print("! {}
-", note);
+    for (const std::string& note : campaign.notes) fmt::print("! {}\n", note);
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * 1e6 > arguments.max_rms_um;

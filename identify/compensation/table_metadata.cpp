@@ -66,6 +66,11 @@ void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOpti
                           setup.tool);
   }
   out.add("identification.result", options.record.run.empty() ? kNotRecorded : options.record.run);
+  if (!result.provenance.version.empty()) {
+    out.add("identification.version", result.provenance.version);
+    out.add("identification.date", result.provenance.date);
+    out.add("identification.command", result.provenance.command);
+  }
   out.add("identification.status", to_string(result.status));
   out.add_number("identification.sigma0", result.sigma0);
   out.add("identification.readings", std::to_string(readings));

@@ -1,7 +1,7 @@
 #pragma once
 /// Tables of an identified machine: error functions with uncertainty at every position, squareness,
-/// volumetric errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR 16907, 8.2
-/// and 9).
+/// volumetric errors at any point and tool. ISO 841/230-1 signs, error = actual - nominal (ISO/TR
+/// 16907, 3.14; tables 9.2 and 9.3).
 
 #include <functional>
 #include <optional>

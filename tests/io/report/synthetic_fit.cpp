@@ -202,7 +202,11 @@ void add_residuals(SyntheticFit& fit) {
   result.outlier_critical_value = 3.29;
   for (std::size_t k = 0; k < fit.campaign.setups.size(); ++k) {
     const Setup& s = fit.campaign.setups[k];
-    SetupSummary summary{s.name, s.instrument, fit.campaign.machine.tools[s.tool].name, "um"};
+    SetupSummary summary;
+    summary.name = s.name;
+    summary.instrument = s.instrument;
+    summary.tool = fit.campaign.machine.tools[s.tool].name;
+    summary.reading_unit = "um";
     for (std::size_t row = 0; row < s.readings.size(); ++row) {
       ResidualRecord record;
       record.setup = k;

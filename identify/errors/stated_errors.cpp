@@ -1,0 +1,95 @@
+#include "volcal/identify/errors/stated_errors.h"
+
+#include <memory>
+#include <utility>
+
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
+#include "volcal/model/observation/campaign_binding.h"
+
+namespace volcal {
+namespace {
+
+/// Parameters one after the other, with their values.
+class StatedLayout {
+ public:
+  StatedLayout(const Machine& machine, const ModelSpec& model) {
+    for (const Axis& axis : machine.axes) {
+      for (const Component component : kAllComponents) add_function(axis, {component, axis.name}, model);
+    }
+    layout_.function_size = size();
+    for (const auto& [symbol, value] : model.locations) {
+      ParameterBlock& block = add_block(ParameterKind::Location, symbol.name(), value);
+      block.location = symbol;
+    }
+    for (const EffectSpec& spec : model.effects) add_effect(spec, model.file);
+    layout_.size = size();
+  }
+
+  void take(FitResult& result) {
+    result.layout = std::move(layout_);
+    result.parameters =
+        Eigen::Map<Eigen::VectorXd>(values_.data(), static_cast<Eigen::Index>(values_.size()));
+    result.covariance = Eigen::MatrixXd::Zero(result.layout.size, result.layout.size);
+  }
+
+ private:
+  int size() const { return static_cast<int>(values_.size()); }
+
+  void add_function(const Axis& axis, ErrorSymbol symbol, const ModelSpec& model) {
+    const auto found = model.functions.find(symbol);
+    if (found == model.functions.end() || found->second.coefficients.empty()) return;
+    FunctionGroup group;
+    group.axis = axis.name;
+    group.basis = find_basis(found->second.basis)->make(found->second, axis);
+    group.symbols = {symbol};
+    group.offset = size();
+    layout_.groups.push_back(group);
+    values_.insert(values_.end(), found->second.coefficients.begin(), found->second.coefficients.end());
+  }
+
+  ParameterBlock& add_block(ParameterKind kind, const std::string& name, double value) {
+    ParameterBlock block;
+    block.kind = kind;
+    block.name = name;
+    block.labels = {""};
+    block.offset = size();
+    block.guess = Eigen::VectorXd::Constant(1, value);
+    layout_.blocks.push_back(std::move(block));
+    values_.push_back(value);
+    return layout_.blocks.back();
+  }
+
+  void add_effect(const EffectSpec& spec, const std::string& file) {
+    const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, file);
+    for (const EffectAmplitude& amplitude : effect->amplitudes())
+      add_block(ParameterKind::Effect, amplitude.label, amplitude.guess);
+  }
+
+  ParameterLayout layout_;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+FitResult stated_result(const Machine& machine, const ModelSpec& model) {
+  FitResult result;
+  result.machine = machine;
+  result.identified = model;
+  result.reference_temperature_degC = kReferenceTemperature_degC;
+  StatedLayout(machine, model).take(result);
+  constexpr RecordedRange kReference = {kReferenceTemperature_degC, kReferenceTemperature_degC,
+                                        kReferenceTemperature_degC};
+  for (const Axis& axis : machine.axes) {
+    if (axis.expansion) result.conditions.temperature_degC[axis.expansion->channel] = kReference;
+  }
+  for (const EffectSpec& effect : model.effects) {
+    if (const auto channel = effect.options.text("temperature"))
+      result.conditions.temperature_degC[*channel] = kReference;
+  }
+  result.conditions.time = RecordedRange{};
+  result.conditions.feed = RecordedRange{};
+  return result;
+}
+
+}  // namespace volcal

@@ -1,0 +1,14 @@
+#pragma once
+/// Errors that are stated and not identified: the values of a model file as a result without uncertainty, so
+/// that tables, compensations and budgets can be had of them (ISO/TR 16907:2015, 9.2.4 g).
+
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+
+/// Functions with coefficients, known locations and effects with their amplitudes; what has no value is zero.
+/// Covariance zero; temperatures that effects name stand at 20 degC, time and feed at 0, until they are
+/// stated.
+FitResult stated_result(const Machine& machine, const ModelSpec& model);
+
+}  // namespace volcal

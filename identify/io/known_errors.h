@@ -1,0 +1,16 @@
+#pragma once
+/// Errors of a machine from whatever file states them.
+
+#include <string>
+
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+
+/// A result of `volcal fit`; a model.toml with values (stated_errors.h); or a folder of `volcal tables
+/// --format csv` (error_tables.csv and metadata.csv), the tables linear between their rows, with what differs
+/// between the directions of approach as a reversal and its change along the travel. Throws InputError, also
+/// for tables whose directions differ otherwise.
+FitResult read_known_errors(const std::string& path);
+
+}  // namespace volcal

@@ -1,0 +1,102 @@
+#include "volcal/identify/errors/error_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "tests/support/identified_machines.h"
+#include "tests/support/machines.h"
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/model/effects/effect_keys.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::machine_of;
+
+const BudgetLine& line_named(const std::vector<BudgetLine>& lines, const std::string& name) {
+  const auto found = std::ranges::find(lines, name, &BudgetLine::name);
+  EXPECT_NE(found, lines.end()) << name;
+  return found == lines.end() ? lines.front() : *found;
+}
+
+Machine machine_with_a_tool() {
+  Machine machine = machine_of("wX'bYZt");
+  machine.tools = {{"short", {0.0, 0.0, -0.1}, 0.0}};
+  return machine;
+}
+
+// EXX = a (q - 1/2)^2 over 1 m, which no rigid motion takes up but its mean a/12: with 5 positions per axis
+// the squares are 1/4, 1/16, 0, 1/16, 1/4, mean 1/8, and the deviations 1/8, -1/16, -1/8, -1/16, 1/8 of a.
+// EYY jumps by b between the directions: +-b/2, whatever the position.
+TEST(ErrorBudget, IsTheHandCalculation) {
+  const double a = 40e-6, b = 6e-6;
+  FitResult result =
+      testing::result_with(machine_with_a_tool(),
+                           {.functions = {{"EXX", [a](double q) { return a * (q - 0.5) * (q - 0.5); }}},
+                            .reversals = {{"EYY", b}}},
+                           20);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const BudgetLine& positioning = line_named(budget.contributions, "EXX");
+  const double exx = a * std::sqrt((3.0 / 64.0 + 2.0 / 256.0) / 5.0);
+  EXPECT_NEAR(positioning.rms, exx, 1e-12);
+  EXPECT_NEAR(positioning.max, a / 8.0, 1e-12);
+  EXPECT_EQ(positioning.depends_on, "x");
+  const BudgetLine& reversal = line_named(budget.contributions, "reversal EYY");
+  EXPECT_NEAR(reversal.rms, 0.5 * b, 1e-12);
+  EXPECT_EQ(reversal.depends_on, "dir_y");
+  EXPECT_NEAR(budget.total.rms, std::hypot(exx, 0.5 * b), 1e-12);
+  EXPECT_NEAR(positioning.share, exx * exx / (exx * exx + 0.25 * b * b), 1e-9);
+  EXPECT_NEAR(line_named(budget.causes, "positioning").share +
+                  line_named(budget.causes, "effects beyond the rigid body").share,
+              1.0, 1e-9);
+  EXPECT_GE(budget.contributions[0].rms, budget.contributions[1].rms);
+}
+
+TEST(ErrorBudget, SharesAddUpToTheWholeWhateverCancels) {
+  FitResult result =
+      testing::result_with(machine_with_a_tool(),
+                           {.functions = {{"EXX", [](double q) { return 2e-5 * std::sin(5.0 * q); }},
+                                          {"EYX", [](double q) { return 1e-5 * std::cos(7.0 * q); }},
+                                          {"EAY", [](double q) { return -3e-5 * std::sin(3.0 * q); }},
+                                          {"ECZ", [](double q) { return 1e-5 * q * q; }}},
+                            .locations = {{"EC0Y", 2e-5}}},
+                           12);
+  const ErrorBudget budget = error_budget(result, result.machine.tools[0], {}, 5);
+  const auto total = [](const std::vector<BudgetLine>& lines) {
+    return std::accumulate(lines.begin(), lines.end(), 0.0,
+                           [](double sum, const BudgetLine& line) { return sum + line.share; });
+  };
+  EXPECT_NEAR(total(budget.contributions), 1.0, 1e-9);
+  EXPECT_NEAR(total(budget.causes), 1.0, 1e-9);
+}
+
+// A model with values is a machine whose errors are known: EXX of 10 um/m and an expansion of 11 um/m/K.
+TEST(StatedErrors, AreThoseOfTheModelFile) {
+  ModelSpec model;
+  FunctionSpec exx;
+  exx.degree = 1;
+  exx.knots = KnotChoice::Explicit;
+  exx.breakpoints = {0.0, 1.0};
+  exx.coefficients = {0.0, 10e-6};
+  model.functions[{Component::X, AxisName::X}] = exx;
+  model.locations[*LocationSymbol::parse("EC0Y")] = 20e-6;
+  model.effects = {
+      effect_spec("scale-expansion",
+                  {{"axis", std::string("X")}, {"temperature", std::string("bed")}, {"amplitude", 11e-6}})};
+  const FitResult result = stated_result(machine_with_a_tool(), model);
+  AxisPosition position{};
+  position[0] = 0.5;
+  position[1] = 0.25;
+  const auto ex = [&](const std::map<std::string, std::string>& conditions) {
+    return ErrorField(result, result.machine.tools[0], stated_conditions(result, conditions)).at(position)[0];
+  };
+  EXPECT_NEAR(ex({}), 5e-6 - 20e-6 * 0.25, 1e-12);
+  EXPECT_NEAR(ex({{"T_bed", "24"}}), 5e-6 - 5e-6 + 4.0 * 11e-6 * 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -191,7 +191,8 @@ TEST(Mutation, Result) {
   result.layout.size = 1;
   result.parameters = Eigen::VectorXd::Constant(1, 12.5e-6);
   result.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-12);
-  result.setups.push_back({.name = "S1", .instrument = "laser-tracer", .tool = "long", .reading_unit = "um", .fingerprint = {}});
+  result.setups.push_back(
+      {.name = "S1", .instrument = "laser-tracer", .tool = "long", .reading_unit = "um", .fingerprint = {}});
   result.messages = {"a message"};
   const int accepted = try_mutants(result_json(result), 3000, testing::accepts_result);
   EXPECT_GT(accepted, 30);

@@ -95,8 +95,8 @@ TEST_F(EffectsInTables, ExpansionAtStatedTemperature) {
   const auto exx_at = [&](const std::string& options) {
     return error_at("effect", "--at X=400,Y=-250,Z=0 " + options).at("error_um").at(0).get<double>();
   };
-  // From the home of X at -400 mm, 800 mm expand.
-  EXPECT_NEAR(exx_at("--conditions T_column=23.34") - exx_at(""), 3.34 * 10.0 * 0.8, 0.7);
+  // From the home of X at -400 mm, 800 mm expand; the coefficient is found to some 5 %.
+  EXPECT_NEAR(exx_at("--conditions T_column=23.34") - exx_at(""), 3.34 * 10.0 * 0.8, 1.4);
   EXPECT_EQ(exx_at("--conditions T_column=20"), exx_at(""));
   const json made = json::parse(
       done("tables " + path("effect") + " --conditions T_column=23.34 --json -o " + path("warm")));

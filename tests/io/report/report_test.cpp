@@ -310,6 +310,10 @@ TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
   reversal.offset = result.layout.size++;
   reversal.guess = reversal.prior_mean = reversal.prior_sigma = Eigen::VectorXd::Zero(1);
   result.layout.blocks.push_back(reversal);
+  EffectSpec effect;
+  effect.kind = "reversal";
+  effect.options.set("symbol", std::string("EAX"));
+  result.identified.effects.push_back(effect);
   result.parameters.conservativeResize(result.layout.size);
   result.parameters[reversal.offset] = 8e-6;
   result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));

@@ -159,7 +159,7 @@ TEST(ResultJson, RefusesDamagedFilesWithTheLine) {
 
 TEST(MachineToml, IsReadAgain) {
   Machine machine = read_machine(kSmall + "machine.toml");
-  machine.name = "a \"quoted\" name\nof two lines";
+  machine.name = "a \"quoted\" name \\ of one line";
   machine.axes[1].travel_max = 0.1 + 0.2;
   machine.axes[1].expansion = ScaleExpansion{11.7e-6, 0.3e-6, "Y scale"};
   machine.tools[0].name = "tool, long";

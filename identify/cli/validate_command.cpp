@@ -37,7 +37,11 @@ nlohmann::ordered_json figures_json(const ValidationFigures& figures, const Fitt
                                  {"reduced_chi2", figures.reduced_chi2},
                                  {"coverage95", figures.coverage95},
                                  {"readings", figures.lengths}};
-  json["fitted_readings"] = fitted.is_known ? nlohmann::ordered_json(fitted.readings) : nullptr;
+  if (fitted.is_known) {
+    json["fitted_readings"] = fitted.readings;
+  } else {
+    json["fitted_readings"] = nullptr;
+  }
   if (figures.angles > 0) {
     json["angle_rms_before_urad"] = figures.angle_rms_before * 1e6;
     json["angle_rms_after_urad"] = figures.angle_rms_after * 1e6;

@@ -48,7 +48,7 @@ double root_mean_square(const Eigen::VectorXd& moved) {
   return moved.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, moved.size())));
 }
 
-std::string words(const GenericTest& test) {
+std::string words_of(const GenericTest& test) {
   std::string text = fmt::format("something that depends on {}, along {}", fmt::join(test.variables, " and "),
                                  test.direction);
   if (!test.rotation.empty()) text += ", as " + test.rotation;
@@ -73,7 +73,7 @@ void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
   const double log10_count = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
   for (const GenericTest& test : tests) {
     leading.consider(test.log10_p + log10_count, [&](Screening& found) {
-      found.leading = words(test);
+      found.leading = words_of(test);
       found.rms = test.rms;
     });
   }

@@ -12,6 +12,14 @@ DrawProjection::DrawProjection(const RepeatedCampaign& campaign, const QuantityS
   const Eigen::Index own = set_.rows.rows();
   Eigen::Index columns = own;
   for (const QuantitySet::Volume& volume : set_.volumes) columns += volume.rows.rows();
+  if (campaign.parameters() == 0) {  // nothing varies
+    projection_ = Eigen::MatrixXd::Zero(0, columns);
+    of_normals_ = Eigen::MatrixXd::Zero(campaign.linear_root().cols(), columns);
+    of_amplitudes_ = Eigen::MatrixXd::Zero(campaign.response().cols(), columns);
+    offset_ = Eigen::VectorXd::Zero(columns).transpose();
+    u_linear_ = bias_linear_ = unit_ = Eigen::VectorXd::Zero(own);
+    return;
+  }
   projection_.resize(campaign.parameters(), columns);
   projection_.leftCols(own) = campaign.datum().reduce_rows(set_.rows).transpose();
   Eigen::Index column = own;
@@ -23,8 +31,11 @@ DrawProjection::DrawProjection(const RepeatedCampaign& campaign, const QuantityS
   of_normals_ = campaign.linear_root().transpose() * projection_;
   of_amplitudes_ = campaign.response().transpose() * projection_;
   offset_ = campaign.linear_bias().transpose() * projection_;
-  const Eigen::ArrayXd u =
-      (of_normals_.colwise().squaredNorm() + of_amplitudes_.colwise().squaredNorm()).cwiseSqrt().transpose();
+  Eigen::ArrayXd u = Eigen::ArrayXd::Zero(columns);
+  for (const Eigen::MatrixXd* part : {&of_normals_, &of_amplitudes_}) {
+    if (part->rows() > 0) u += part->colwise().squaredNorm().transpose().array();
+  }
+  u = u.sqrt();
   u_linear_ = u.head(own);
   bias_linear_ = offset_.head(own).transpose();
   unit_ = u_linear_;

@@ -125,7 +125,8 @@ QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per
   return volume;
 }
 
-void add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_axis, QuantityList& list) {
+/// False where nothing in the volume varies.
+bool add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_axis, QuantityList& list) {
   const std::vector<AxisPosition> positions = grid_positions(result.machine, per_axis);
   const std::size_t before = list.items.size();
   for (std::size_t point = 0; point < positions.size(); ++point) {
@@ -140,7 +141,9 @@ void add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_ax
       list.add(std::move(quantity), derivatives);
     }
   }
-  if (list.items.size() > before) add_sizes(volume, list);
+  if (list.items.size() == before) return false;
+  add_sizes(volume, list);
+  return true;
 }
 
 double edge_position(AxisName axis, double q) {
@@ -198,7 +201,7 @@ QuantitySet quantities_of(const FitResult& result, int grid_per_axis) {
   for (const Tool& tool : result.machine.tools) {
     if (grid_per_axis <= 0) break;
     set.volumes.push_back(volume_of(result, tool, grid_per_axis));
-    add_volume(result, set.volumes.back(), grid_per_axis, list);
+    if (!add_volume(result, set.volumes.back(), grid_per_axis, list)) set.volumes.pop_back();
   }
   set.items = std::move(list.items);
   set.rows = list.rows();

@@ -159,7 +159,7 @@ def csv():
         bad("header with a quote open", put(s1, b'"' + head + good), "quote"),
         bad("header twice", put(s1, head.replace(b"y_mm", b"x_mm") + good), "."),
         bad("position outside the travel", value(b"118.024", b"99999"), "travel"),
-        Row("column name not UTF-8", FIT, (0, 1), "written",
+        Row("column name not UTF-8", FIT, 2, "encoding",
             prepare=change(s1, b"T_air_degC", b"T_l\xfcft_degC")),
         Row("column name with markup", FIT, (0, 1), "written",
             prepare=change(s1, b"T_air_degC", b"T_<b>_degC")),

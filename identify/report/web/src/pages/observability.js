@@ -19,7 +19,7 @@ function errorBars(errors) {
   ], errors, { rowClass: (row) => (row.visible ? null : 'dim'), className: 'bars' });
 }
 
-/** The stronger the shade of a cell, the less the two errors can be told apart. */
+/** The stronger the shade of a cell, the more collinear the two errors are. */
 const shadeOf = (value) => shaded(color('heat'), Math.round(value * value * 100) / 100);
 
 function heatCell(correlation, a, b) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "volcal/identify/errors/volume_uncertainty.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -181,7 +182,23 @@ std::optional<ErrorLeft> left_over_conditions(const FitResult& result, const Tab
   return over;
 }
 
+/// Half of the approaches: directions of different axes are uncorrelated in them, as in all eight.
+double identification_uncertainty(const FitResult& result, const TableFormatOptions& options,
+                                  const std::vector<VolumePoint>& points) {
+  std::vector<AxisPosition> positions;
+  std::vector<ApproachDirection> directions;
+  for (const VolumePoint& point : points) {
+    if (point.direction[0] * point.direction[1] * point.direction[2] < 0) continue;
+    positions.push_back(point.position);
+    directions.push_back(point.direction);
+  }
+  return volume_uncertainty(result, tool_of(result.machine, options), conditions_of(result, options),
+                            positions, directions);
+}
+
 }  // namespace
+
+double VolumeCheck::expected_rms() const { return std::hypot(exported.rms, identification_u); }
 
 VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& options,
                             const CompensationTables& tables) {
@@ -203,6 +220,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
     check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
                            error_left(machine, points, part_of(of_exported))});
   }
+  check.identification_u = identification_uncertainty(result, options, points);
   check.over_conditions = left_over_conditions(result, options, tables, points);
   return check;
 }
@@ -210,7 +228,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance) {
   if (!format.limits.sampled) return {0.0, 0.0, true};
-  const Compensation ideal = ideal_compensation(result, options);
+  const Compensation ideal = sampled_compensation(format, result, options);
   double longest = 0.0;
   for (const AxisName axis : linear_axes_of(result.machine))
     longest = std::max(longest, 0.5 * result.machine.axis(axis).travel());

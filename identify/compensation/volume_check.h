@@ -33,6 +33,11 @@ struct VolumeCheck {
   ErrorLeft ideal;     ///< ideal compensation of the type
   ErrorLeft exported;  ///< the tables
   std::vector<PartLeft> parts;
+  /// Standard uncertainty of the errors as identified, RMS over the volume (volume_uncertainty.h), m.
+  double identification_u = 0.0;
+  /// RMS to be expected of the machine with the tables: what they leave of the identified errors, and the
+  /// uncertainty of these, m.
+  double expected_rms() const;
   /// The tables at the ends of the temperatures, times and feeds that the campaign recorded and the errors
   /// depend on; none where they depend on none.
   std::optional<ErrorLeft> over_conditions;
@@ -62,10 +67,11 @@ struct StepChoice {
   bool reached = false;    ///< deviation within the tolerance
 };
 
-/// The largest step of 1, 2 or 5 x 10^n mm whose tables, read back, follow the ideal compensation within
-/// `tolerance` (m) plus half the format's resolution, which rounding takes; where the controller's limits
-/// forbid that, the best one that they allow. A format that tells no directions apart is judged by their
-/// mean. Throws InputError when no step is allowed.
+/// The largest step of 1, 2 or 5 x 10^n mm whose tables, read back, follow the ideal compensation, of a
+/// format without coupled axes the nearest that a rigid body has, within `tolerance` (m) plus half the
+/// format's resolution, which rounding takes; where the controller's limits forbid that, the best one that
+/// they allow. A format that tells no directions apart is judged by their mean. Throws InputError when no
+/// step is allowed.
 StepChoice choose_step(const TableFormat& format, const FitResult& result, TableFormatOptions options,
                        double tolerance);
 

@@ -37,6 +37,9 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
   volume.add_row(figures("before", check.before));
   volume.add_row(figures("ideal " + type.name(), check.ideal));
   volume.add_row(figures("tables read back", check.exported));
+  if (check.identification_u > 0.0)
+    volume.add_row({"expected on the machine",
+                    fixed_number(check.expected_rms() / kMicro, 2), ""});
   if (check.over_conditions)
     volume.add_row(figures("tables, ends of the campaign's conditions", *check.over_conditions));
   TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});
@@ -50,7 +53,9 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
 nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
   nlohmann::ordered_json json = {{"before", left_json(check.before)},
                                  {"ideal", left_json(check.ideal)},
-                                 {"tables", left_json(check.exported)}};
+                                 {"tables", left_json(check.exported)},
+                                 {"identification_u_um", check.identification_u / kMicro},
+                                 {"expected_rms_um", check.expected_rms() / kMicro}};
   if (check.over_conditions) json["tables_over_conditions"] = left_json(*check.over_conditions);
   for (const PartLeft& part : check.parts) {
     json["by_type"][CompensationType(part.part).name()] = {{"before", left_json(part.before)},

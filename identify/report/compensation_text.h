@@ -8,7 +8,8 @@
 
 namespace volcal {
 
-/// RMS and largest error before, with the ideal compensation and with the tables, then per type.
+/// RMS and largest error before, with the ideal compensation and with the tables, and what is to be expected
+/// of the machine with the uncertainty of the identified errors; then per type.
 std::string volume_check_text(const VolumeCheck& check, const CompensationType& type);
 nlohmann::ordered_json volume_check_json(const VolumeCheck& check);
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <mutex>
 
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/cli/studies/exact_machine.h"
 #include "volcal/identify/io/control_tables.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -16,23 +16,15 @@
 #include "volcal/sim/random.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
-#include "volcal/sim/transforms.h"
 
 namespace volcal::cli {
 namespace {
 
-constexpr double kReversal = 4e-6;          // m, largest
-constexpr double kAngularReversal = 3e-6;   // rad, largest
-constexpr double kTableTolerance = 0.2e-6;  // m, as volcal tables
-constexpr double kLeastIncrement = 1e-6;    // m
-constexpr double kLongerTool = 50e-3;       // m
+constexpr double kReversal = 4e-6;         // m, largest
+constexpr double kAngularReversal = 3e-6;  // rad, largest
+constexpr double kLeastIncrement = 1e-6;   // m
+constexpr double kLongerTool = 50e-3;      // m
 constexpr std::uint64_t kOtherSeed = 7919;
-
-/// Where and from where the functional point is judged.
-struct FreshPoint {
-  std::array<double, kAxisCount> position{};
-  std::array<std::int8_t, kAxisCount> direction{};
-};
 
 /// Reversal of everything that the simulated machine has it in.
 ModelSpec model_with_reversal() {
@@ -62,7 +54,7 @@ class CompensatedMachine {
     const FitResult result = identify(study_);
     std::vector<CompensationStudyRow> rows;
     for (const TableFormat* format : table_formats()) {
-      if (!wanted(*format)) continue;
+      if (!is_wanted(*format, options_.formats)) continue;
       for (const CompensationType type : types_of(*format)) rows.push_back(row_of(*format, type, result));
     }
     add_variants(result, rows);
@@ -83,24 +75,18 @@ class CompensatedMachine {
     return study;
   }
 
-  std::vector<FreshPoint> fresh_points() const {
+  std::vector<VolumePoint> fresh_points() const {
     sim::RandomStream random(study_.seed, "fresh points");
-    std::vector<FreshPoint> points;
+    std::vector<VolumePoint> points;
     for (const sim::CommandedPoint& place :
          sim::random_points(study_.machine, options_.small ? 40 : 150, random)) {
       for (unsigned signs = 0; signs < 8; ++signs) {
-        FreshPoint point{place.position, {}};
+        VolumePoint point{place.position, {}};
         for (std::size_t i = 0; i < 3; ++i) point.direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
         points.push_back(point);
       }
     }
     return points;
-  }
-
-  bool wanted(const TableFormat& format) const {
-    return control_reads(format) &&
-           (options_.formats.empty() ||
-            std::ranges::find(options_.formats, format.name) != options_.formats.end());
   }
 
   /// Each alone where the format can do that, and all together, which comes last.
@@ -121,33 +107,13 @@ class CompensatedMachine {
     return fit(sim::simulate(study).campaign, model_with_reversal(), options);
   }
 
-  TableFormatOptions table_options(const TableFormat& format, CompensationType type) const {
-    TableFormatOptions options;
-    options.type = type;
-    options.tool = kCompensatedTool;
-    options.grid_per_axis = 2;
-    for (const TableSetting& setting : format.settings)
-      options.settings[std::string(setting.name)] = std::string(setting.example);
-    return options;
-  }
-
-  static std::vector<TableFile> files_of(const TableFormat& format, const FitResult& result,
-                                         TableFormatOptions options) {
-    options.step = choose_step(format, result, options, kTableTolerance).step;
-    return write_tables(format, result, options);
+  static TableFormatOptions table_options(const TableFormat& format, CompensationType type) {
+    return study_table_options(format, type, kCompensatedTool);
   }
 
   /// Of the exact machine with a tool, against the point that the program asks for.
   double rms_of(const sim::TruthMachine& machine, const Eigen::Vector3d& tool) const {
-    std::vector<Eigen::Vector3d> places, errors;
-    for (const FreshPoint& point : points_) {
-      sim::MachineState state;
-      state.position = point.position;
-      state.direction = point.direction;
-      places.push_back(machine.nominal_point(state, tool));
-      errors.emplace_back(machine.point(state, tool) - places.back());
-    }
-    return sim::rms_after_alignment(places, errors);
+    return exact_rms({machine, {}, tool}, points_);
   }
 
   double applied_rms(const sim::ActiveCompensation& compensation, const Eigen::Vector3d& tool) const {
@@ -204,7 +170,7 @@ class CompensatedMachine {
 
   CompensationStudyRow row_of(const TableFormat& format, CompensationType type,
                               const FitResult& result) const {
-    const std::vector<TableFile> files = files_of(format, result, table_options(format, type));
+    const std::vector<TableFile> files = study_table_files(format, result, table_options(format, type));
     const sim::ActiveCompensation compensation{control_tables(format, files), 0.0, {}};
     CompensationStudyRow row = empty_row(format, type);
     row.applied = applied_rms(compensation, tool_);
@@ -232,11 +198,11 @@ class CompensatedMachine {
   /// Least increment, a tool that the control knows wrongly, and L-VOL superimposed on active L-POS.
   void add_variants(const FitResult& result, std::vector<CompensationStudyRow>& rows) const {
     const TableFormat& format = *find_table_format("neutral-csv");
-    if (!wanted(format)) return;
+    if (!is_wanted(format, options_.formats)) return;
     const CompensationType all = CompensationType::volumetric();
     CompensationStudyRow row = empty_row(format, all);
     sim::ActiveCompensation compensation{
-        control_tables(format, files_of(format, result, table_options(format, all))), 0.0, {}};
+        control_tables(format, study_table_files(format, result, table_options(format, all))), 0.0, {}};
     row.variant = "tool 50 mm longer than told";
     row.applied = applied_rms(compensation, tool_ - Eigen::Vector3d(0.0, 0.0, kLongerTool));
     rows.push_back(row);
@@ -251,11 +217,11 @@ class CompensatedMachine {
 
   double superimposed_rms(const TableFormat& format, const FitResult& result) const {
     const std::vector<TableFile> active =
-        files_of(format, result, table_options(format, CompensationPart::Positioning));
+        study_table_files(format, result, table_options(format, CompensationPart::Positioning));
     sim::Study measured = again({control_tables(format, active), 0.0, {}});
     TableFormatOptions options = table_options(format, CompensationType::volumetric());
     options.active = format.read(active);
-    const std::vector<TableFile> files = files_of(format, identify(measured), options);
+    const std::vector<TableFile> files = study_table_files(format, identify(measured), options);
     return applied_rms({control_tables(format, files), 0.0, {}}, tool_);
   }
 
@@ -263,7 +229,7 @@ class CompensatedMachine {
   sim::Study study_;
   sim::TruthMachine truth_;
   Eigen::Vector3d tool_;
-  std::vector<FreshPoint> points_;
+  std::vector<VolumePoint> points_;
   double before_ = 0.0;
 };
 

@@ -10,6 +10,7 @@ namespace volcal::cli {
   STUDY(closed_loop_study)          \
   STUDY(compensation_study_command) \
   STUDY(criticism_study)            \
+  STUDY(effect_tables_command)      \
   STUDY(planning_study_command)
 
 #define VOLCAL_DECLARE(name) const Command& name();

@@ -106,6 +106,7 @@ const TableFormat& csv_table_format() {
       .source = "volcal's own; symbols, signs and layout of ISO 230-1 and ISO/TR 16907:2015, 9.1 to 9.3",
       .verified = "read back and evaluated by volcal with its kinematic model",
       .supported = CompensationType::volumetric(),
+      .rigid = true,
       .indivisible = true,
       .positions_of_own = true,
       .refusal = "its tables per error are the whole model",

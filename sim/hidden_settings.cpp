@@ -18,7 +18,7 @@ std::string station_of(const SetupPlan& plan) { return plan.options.text("statio
 }  // namespace
 
 void HiddenSettings::fail(const std::string& problem, const std::string& remedy) const {
-  throw InputError(effect_.place, "hidden effect " + effect_.kind + ": " + problem, remedy);
+  throw InputError(effect_.place, role_ + effect_.kind + ": " + problem, remedy);
 }
 
 double HiddenSettings::number(const std::string& stem, double otherwise) const {

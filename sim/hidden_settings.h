@@ -15,8 +15,10 @@ using OccasionTest = std::function<bool(const Occasion& occasion)>;
 
 class HiddenSettings {
  public:
-  HiddenSettings(const HiddenEffect& effect, double amplitude, const HiddenContext& context)
-      : effect_(effect), amplitude_(amplitude), context_(context) {}
+  /// `role`: how messages introduce the effect.
+  HiddenSettings(const HiddenEffect& effect, double amplitude, const HiddenContext& context,
+                 const char* role = "hidden effect ")
+      : effect_(effect), amplitude_(amplitude), context_(context), role_(role) {}
 
   double amplitude() const { return amplitude_; }
   bool has(const std::string& stem) const { return effect_.options.has(stem); }
@@ -59,6 +61,7 @@ class HiddenSettings {
   const HiddenEffect& effect_;
   double amplitude_;
   const HiddenContext& context_;
+  const char* role_;
 };
 
 double hours(const MachineState& state);

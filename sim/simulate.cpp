@@ -4,6 +4,7 @@
 
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/instruments.h"
+#include "volcal/sim/known_errors.h"
 #include "volcal/sim/paths.h"
 #include "volcal/sim/random.h"
 #include "volcal/sim/study.h"
@@ -21,7 +22,10 @@ std::vector<Eigen::Vector3d> true_tool_offsets(const Study& study) {
   offsets.reserve(study.machine.tools.size());
   for (const Tool& tool : study.machine.tools) {
     RandomStream random(study.seed, "tool " + tool.name);
-    offsets.emplace_back(longer(tool, study.wrong_tool_length) + tool.offset_sigma * random.normal_vector());
+    const Eigen::Vector3d drawn = tool.offset_sigma * random.normal_vector();
+    const auto known = study.truth.tools.find(tool.name);
+    offsets.emplace_back(longer(tool, study.wrong_tool_length) +
+                         (known == study.truth.tools.end() ? drawn : known->second));
   }
   return offsets;
 }
@@ -70,7 +74,7 @@ std::vector<SetupPlan> all_plans(const Study& study) {
   return plans;
 }
 
-Campaign validation_campaign(const Study& study, const TruthMachine& truth) {
+Campaign validation_campaign(const Study& study, const TruthMachine& truth, const Interference& known) {
   Campaign campaign;
   campaign.machine = study.machine;
   std::vector<std::string> tools = study.validation.tools;
@@ -78,7 +82,8 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth) {
   std::vector<Eigen::Vector3d> nominal_offsets;
   for (const Tool& tool : study.machine.tools)
     nominal_offsets.push_back(longer(tool, study.wrong_tool_length));
-  const MeasuringConditions conditions{truth, study.environment, nominal_offsets, study.seed, true};
+  const MeasuringConditions conditions{truth, study.environment, nominal_offsets, study.seed, true, false,
+                                       &known};
   for (const std::string& tool : tools) {
     const auto index = study.machine.tool_index(tool);
     if (!index) {
@@ -138,11 +143,21 @@ std::vector<SetupPlan> at_unseen_positions(std::vector<SetupPlan> plans) {
   return plans;
 }
 
-}  // namespace
+TruthMachine machine_with_errors(const Study& study) {
+  if (!study.truth.errors && !study.truth.perfect)
+    return random_truth(study.machine, study.seed, study.truth.random);
+  TruthMachine truth(study.machine);
+  if (study.truth.errors) set_known_errors(*study.truth.errors, truth);
+  return truth;
+}
 
-TruthMachine true_machine(const Study& study) {
-  TruthMachine truth = study.truth.perfect ? TruthMachine(study.machine)
-                                           : random_truth(study.machine, study.seed, study.truth.random);
+/// `known`: gets what known effects do besides moving axes.
+TruthMachine true_machine_of(const Study& study, Interference& known) {
+  TruthMachine truth = machine_with_errors(study);
+  HiddenScene scene{truth, known};
+  const std::vector<SetupPlan> none;
+  if (study.truth.errors)
+    add_known_effects(*study.truth.errors, {study.machine, study.environment, none}, scene);
   for (const auto& [symbol, value] : study.truth.locations) truth.set_location(symbol, value);
   for (const auto& [symbol, value] : study.truth.reversals) truth.set_reversal(symbol, value);
   set_expansions(study, truth);
@@ -151,29 +166,38 @@ TruthMachine true_machine(const Study& study) {
   return truth;
 }
 
+}  // namespace
+
+TruthMachine true_machine(const Study& study) {
+  Interference known;
+  return true_machine_of(study, known);
+}
+
 SimulatedCampaign simulate(const Study& study) {
   if (study.machine.tools.empty()) {
     throw InputError({study.file, 0}, "the machine has no tool", "add a [tools.NAME] table to its file");
   }
   check_channels(study);
-  SimulatedCampaign simulated{{}, {}, true_machine(study), true_tool_offsets(study), all_plans(study)};
+  Interference known;
+  SimulatedCampaign simulated{
+      {}, {}, true_machine_of(study, known), true_tool_offsets(study), all_plans(study)};
   const TruthMachine without_hidden = simulated.truth;
   const StudyReadout readout{study, simulated.tool_offsets, simulated.plans};
   const HiddenContext context{study.machine, study.environment, simulated.plans};
   simulated.hidden = resolve_hidden(study.hidden, context, without_hidden, readout);
-  Interference interference;
+  Interference interference = known;
   HiddenScene scene{simulated.truth, interference};
   for (const HiddenAnswer& answer : simulated.hidden) {
     add_hidden(answer.effect, answer.amplitude, context, scene);
   }
   simulated.campaign = readout.with_noise(simulated.truth, interference);
   simulated.campaign.active_compensations = study.compensation.description;
-  simulated.validation = validation_campaign(study, simulated.truth);
+  simulated.validation = validation_campaign(study, simulated.truth, known);
   for (const SetupPlan& plan : simulated.plans) append_gross_errors(plan, study.seed, simulated.outliers);
   if (study.unseen || !study.hidden.empty()) {
     const StudyReadout elsewhere{study, simulated.tool_offsets, at_unseen_positions(simulated.plans)};
     simulated.unseen = elsewhere.noise_free(simulated.truth, interference);
-    simulated.unseen_without_hidden = elsewhere.noise_free(without_hidden, {});
+    simulated.unseen_without_hidden = elsewhere.noise_free(without_hidden, known);
   }
   return simulated;
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// A study: a machine, its hidden truth, surroundings and measurements; and the campaign that comes of it.
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/model_spec.h"
 #include "volcal/sim/control.h"
 #include "volcal/sim/environment.h"
 #include "volcal/sim/hidden_answer.h"
@@ -20,11 +22,14 @@
 namespace volcal::sim {
 
 struct TruthSettings {
-  bool perfect = false;  ///< no errors but those listed below
+  bool perfect = false;             ///< no errors but those listed below
+  std::optional<ModelSpec> errors;  ///< known ones in place of random ones (known_errors.h)
+  std::string errors_file;          ///< where they were read from
   RandomTruthOptions random;
   std::map<LocationSymbol, double> locations;      ///< in place of the random ones, rad or m
   std::map<ErrorSymbol, double> reversals;         ///< in place of the random ones, rad or m
   std::map<AxisName, ScaleExpansion> expansions;   ///< exact, in place of the machine file's
+  std::map<std::string, Eigen::Vector3d> tools;    ///< true less stated offset, in place of random ones, m
   std::function<void(TruthMachine& truth)> alter;  ///< anything else, applied last
 };
 
@@ -68,8 +73,9 @@ struct SimulatedCampaign {
   std::vector<GrossError> outliers = {};
 };
 
-/// The truth of a study alone: the random machine with expansions (true coefficients drawn from the stated
-/// uncertainty), what the study sets, and its compensation, without its hidden effects.
+/// The truth of a study alone: the random machine, or known errors, with expansions (true coefficients drawn
+/// from the stated uncertainty), what the study sets, and its compensation, without its hidden effects and
+/// without what known effects do to tools.
 TruthMachine true_machine(const Study& study);
 
 /// Repeatable to the bit for a given study and seed. Throws InputError for a study that makes no sense.

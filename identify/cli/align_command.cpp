@@ -11,6 +11,7 @@
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/json_text.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/report/report.h"
@@ -22,7 +23,7 @@ namespace volcal::cli {
 namespace {
 
 struct AlignArguments {
-  std::string result;
+  std::string errors;
   std::string output;
   AlignmentArguments alignment;
   bool json = false;
@@ -88,17 +89,18 @@ std::map<std::string, std::string> kept_files(const std::string& folder) {
 }
 
 int run_align(const AlignArguments& arguments) {
-  require_output_folder(arguments.output, {arguments.result});
-  const FitResult before = read_result(arguments.result);
+  require_output_folder(arguments.output, {arguments.errors});
+  const FitResult before = read_known_errors(arguments.errors);
   if (!arguments.alignment.any())
     throw InputError({}, "nothing is to be aligned",
                      "give --primary, --secondary, --origin, or --align spindle");
   const AlignedResult aligned = align_result(before, alignment_of(before, arguments.alignment));
   Campaign campaign;
   campaign.machine = aligned.result.machine;
-  campaign.file = arguments.result;
-  std::map<std::string, std::string> files = kept_files(arguments.result);
-  if (report_available()) files["report.html"] = report_html(aligned.result, campaign, report_options());
+  campaign.file = arguments.errors;
+  std::map<std::string, std::string> files = kept_files(arguments.errors);
+  if (is_result(arguments.errors) && report_available())
+    files["report.html"] = report_html(aligned.result, campaign, report_options());
   write_result_folder(aligned.result, campaign, arguments.output, files);
   if (arguments.json) {
     const nlohmann::ordered_json json = {{"folder", arguments.output},
@@ -118,8 +120,12 @@ int run_align(const AlignArguments& arguments) {
 
 std::function<int()> define_align(CLI::App& app) {
   auto arguments = std::make_shared<AlignArguments>();
-  app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
-  app.add_option("-o,--output", arguments->output, "result folder to write")->required();
+  app.add_option("ERRORS", arguments->errors,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv")
+      ->required();
+  app.add_option("-o,--output", arguments->output,
+                 "result folder to write; its identified.toml is the aligned model")
+      ->required();
   add_alignment_options(app, arguments->alignment);
   app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
   return [arguments] { return run_align(*arguments); };
@@ -129,7 +135,8 @@ std::function<int()> define_align(CLI::App& app) {
 
 const Command& align_command() {
   static const Command command = {
-      "align", "turn a result to another primary or secondary axis, origin or spindle direction",
+      "align",
+      "turn a result, a model or tables to another primary or secondary axis, origin or spindle direction",
       "  volcal align result --primary Y --secondary X -o result-y\n"
       "  volcal align result --origin X=0,Y=0,Z=-200 -o result-centre\n"
       "  volcal align result --align spindle --spindle-tilt A=12,B=-5 -o result-spindle\n",

@@ -14,8 +14,10 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/errors/stated_errors.h"
 #include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/residual_writer.h"
 #include "volcal/identify/io/result_folder.h"
@@ -51,20 +53,27 @@ struct NamedModel {
   const Campaign& readings(const Campaign& campaign) const { return aligned ? *aligned : campaign; }
 };
 
-bool predicts_errors(const ModelSpec& model) {
-  if (!model.locations.empty() || !model.effects.empty()) return true;
-  return std::ranges::any_of(model.functions,
-                             [](const auto& entry) { return !entry.second.coefficients.empty(); });
+/// Error tables as a model.
+NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
+  const FitResult tables = read_known_errors(argument);
+  if (const std::string difference = machine_difference(tables.machine, campaign.machine);
+      !difference.empty()) {
+    throw InputError({argument, 0}, "they belong to another machine than the campaign: " + difference,
+                     "compare with tables of the same machine");
+  }
+  return {argument, tables.identified, tables.identified, false};
 }
 
-/// A result, a model file, or the word "nominal".
+/// A result, a model file, a folder of error tables, or the word "nominal".
 NamedModel load(const std::string& argument, const Campaign& campaign) {
   if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
   if (!std::filesystem::exists(argument)) {
-    throw InputError(
-        {argument, 0}, "there is no such result or model",
-        missing_remedy(argument, "give a result folder of volcal fit, a model.toml, or the word nominal"));
+    throw InputError({argument, 0}, "there is no such result or model",
+                     missing_remedy(argument,
+                                    "give a result folder of volcal fit, a model.toml, a folder of tables "
+                                    "--format csv, or the word nominal"));
   }
+  if (is_tables_folder(argument)) return load_tables(argument, campaign);
   if (is_result(argument) || std::filesystem::is_directory(argument)) {
     const FitResult result = read_result(argument);
     std::optional<Campaign> aligned;
@@ -78,7 +87,7 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
   }
   NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
   model.refittable = model.spec;
-  if (!predicts_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
+  if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
   return model;
 }
 
@@ -146,12 +155,11 @@ int run_compare(const CompareArguments& arguments) {
   std::string text = comparison_text(campaign, models, {arguments.all, arguments.worst});
   if (!heldout.empty()) {
     text += '\n' + heldout_text(campaign, heldout, campaign.reading_count());
-  } else if (models.size() > 1 && std::ranges::any_of(named, [](const NamedModel& model) {
-               return predicts_errors(model.spec);
-             })) {
+  } else if (models.size() > 1 &&
+             std::ranges::any_of(named, [](const NamedModel& model) { return states_errors(model.spec); })) {
     text += '\n' + heldout_hint();
   }
-  if (predicts_errors(named.back().spec) && fails(models.back()))
+  if (states_errors(named.back().spec) && fails(models.back()))
     text += fmt::format("\nnext: volcal diagnose {} --auto -o diagnosis\n", arguments.campaign);
   if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
   if (arguments.json) {
@@ -168,8 +176,8 @@ std::function<int()> define_compare(CLI::App& app) {
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option(
          "MODEL", arguments->models,
-         "one or two of: a result folder, a model.toml, the word nominal (machine without errors); a model "
-         "without coefficients is the nominal machine")
+         "one or two of: a result folder, a model.toml, a folder of tables --format csv, the word nominal "
+         "(machine without errors); a model without coefficients is the nominal machine")
       ->required()
       ->expected(1, 2);
   app.add_option(

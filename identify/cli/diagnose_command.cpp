@@ -16,6 +16,7 @@
 #include "volcal/identify/io/diagnosis_json.h"
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/diagnosis_text.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
@@ -43,12 +44,14 @@ ModelSpec given_model(const DiagnoseArguments& arguments, const Campaign& campai
 
 /// Of a campaign also by name.
 int print_list(const DiagnoseArguments& arguments) {
-  std::vector<std::string> testable;
+  std::vector<std::string> testable, notes;
   if (!arguments.campaign.empty()) {
     const Campaign campaign = read_campaign(arguments.campaign);
     testable = testable_effects(campaign, given_model(arguments, campaign));
+    notes = campaign.notes;
   }
-  fmt::print("{}", arguments.json ? effect_list_json(testable) : effect_list_text(testable));
+  fmt::print("{}", arguments.json ? effect_list_json(testable, notes)
+                                  : effect_list_text(testable) + campaign_notes_text(notes));
   return kDone;
 }
 

@@ -97,7 +97,8 @@ std::string effect_list_text(const std::vector<std::string>& testable) {
   return text;
 }
 
-std::string effect_list_json(const std::vector<std::string>& testable) {
+std::string effect_list_json(const std::vector<std::string>& testable,
+                             const std::vector<std::string>& notes) {
   Json json = {{"format", "volcal-effects-1"}, {"kinds", Json::array()}};
   for (const EffectKind* kind : effect_kinds()) {
     const EffectSchema& schema = kind->schema();
@@ -113,6 +114,7 @@ std::string effect_list_json(const std::vector<std::string>& testable) {
   for (const WordList& list : word_lists()) json[list.key] = words_json(list.words);
   json["directions"] = kScanDirections;
   if (!testable.empty()) json["testable"] = testable;
+  if (!notes.empty()) json["notes"] = notes;
   return json_text(json, 2) + "\n";
 }
 

@@ -16,6 +16,7 @@ std::vector<std::string> testable_effects(const Campaign& campaign, const ModelS
 
 /// `testable`: of a campaign; empty when none is given.
 std::string effect_list_text(const std::vector<std::string>& testable);
-std::string effect_list_json(const std::vector<std::string>& testable);
+/// `notes`: on the campaign's files.
+std::string effect_list_json(const std::vector<std::string>& testable, const std::vector<std::string>& notes);
 
 }  // namespace volcal::cli

@@ -20,6 +20,7 @@
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/diagnosis_text.h"
 #include "volcal/model/effects/registry.h"
 
@@ -102,7 +103,7 @@ void add_custom(const ExtendArguments& arguments, ModelSpec& model, const Campai
 
 /// Throws when the model has it already, or the machine cannot have it.
 void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
-               const Machine& machine, Changes& changes) {
+               const Machine& machine, const Campaign& campaign, Changes& changes) {
   require_new(effect.name, effect.label,
               "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
                   " -o DIR), or choose another --rank",
@@ -125,7 +126,7 @@ void add_found(const EffectFinding& effect, const ExtendArguments& arguments, Mo
                        "give the model that was diagnosed, or one of the same machine");
     }
   }
-  if (!arguments.campaign.empty()) made->check(read_campaign(arguments.campaign), {arguments.diagnosis, 0});
+  if (!arguments.campaign.empty()) made->check(campaign, {arguments.diagnosis, 0});
   model.effects.push_back(effect.spec);
   changes.added.push_back(effect.label + (effect.shape_text.empty() ? "" : ", " + effect.shape_text));
 }
@@ -177,16 +178,19 @@ void require_no_input(const std::string& output, const std::vector<std::string>&
   }
 }
 
-void report(const Changes& changes, const std::string& output, std::size_t effects, bool as_json) {
+void report(const Changes& changes, const std::string& output, std::size_t effects,
+            const std::vector<std::string>& notes, bool as_json) {
   if (as_json) {
-    const nlohmann::ordered_json json = {
+    nlohmann::ordered_json json = {
         {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
+    if (!notes.empty()) json["notes"] = notes;
     fmt::print("{}\n", json_text(json, 2));
     return;
   }
   for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);
   for (const std::string& label : changes.added) fmt::print("added: {}\n", label);
   fmt::print("written: {} ({} effect{})\n", output, effects, effects == 1 ? "" : "s");
+  fmt::print("{}", campaign_notes_text(notes));
 }
 
 int run_extend(const ExtendArguments& arguments) {
@@ -203,12 +207,12 @@ int run_extend(const ExtendArguments& arguments) {
   if (!arguments.custom.empty()) add_custom(arguments, model, campaign, changes);
   if (!arguments.diagnosis.empty()) {
     for (const EffectFinding& effect : chosen(arguments))
-      add_found(effect, arguments, model, machine, changes);
+      add_found(effect, arguments, model, machine, campaign, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
   if (!arguments.force) require_no_input(output, {arguments.model, machine.file, arguments.campaign});
   write_text_file(output, model_toml(model, path_from(output, machine.file)));
-  report(changes, output, model.effects.size(), arguments.json);
+  report(changes, output, model.effects.size(), campaign.notes, arguments.json);
   return kDone;
 }
 

@@ -23,6 +23,7 @@
 #include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/montecarlo_writer.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/montecarlo_text.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text_tables.h"
@@ -234,7 +235,9 @@ Drawn drawn(const MonteCarloArguments& arguments, const Campaign& campaign, cons
   require_draws_left(arguments, checkpoint, study);
   const End end = draw_all(arguments, bar, study);
   bar.finish();
-  return {study.result(), end};
+  Drawn drawn{study.result(), end};
+  drawn.result.notes = campaign.notes;
+  return drawn;
 }
 
 /// What was drawn so far is kept.
@@ -247,9 +250,11 @@ int tell_interrupted(const MonteCarloArguments& arguments, const MonteCarloResul
 }
 
 /// Ends as fit does, and writes nothing.
-int tell_undetermined(const MonteCarloArguments& arguments, const FitResult& fit_result) {
+int tell_undetermined(const MonteCarloArguments& arguments, const FitResult& fit_result,
+                      const std::vector<std::string>& notes) {
   if (is_first(arguments))
-    fmt::print("{}", arguments.json ? undetermined_json(fit_result) : undetermined_text(fit_result));
+    fmt::print("{}", arguments.json ? undetermined_json(fit_result, notes)
+                                    : undetermined_text(fit_result) + campaign_notes_text(notes));
   return kIncomplete;
 }
 
@@ -264,7 +269,7 @@ int run_montecarlo(MonteCarloArguments arguments) {
   const FitResult fit_result = fitted(arguments, campaign, bar);
   if (fit_result.status == FitStatus::RankDeficient) {
     bar.finish();
-    return tell_undetermined(arguments, fit_result);
+    return tell_undetermined(arguments, fit_result, campaign.notes);
   }
   const auto [result, end] = drawn(arguments, campaign, fit_result, options, bar);
   if (end == End::Interrupted) return tell_interrupted(arguments, result);

@@ -206,8 +206,9 @@ int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   PlanSettings settings = settings_of(arguments, with);
   ProgressBar bar("plan");
   settings.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const CampaignPlan plan =
+  CampaignPlan plan =
       arguments.extend ? extend_campaign(settings) : plan_campaign(settings, with ? &*with : nullptr);
+  if (with) plan.notes = with->notes;
   bar.finish();
   const std::string json = plan_json(plan);
   if (!arguments.output.empty()) write_plan(arguments, plan, json);

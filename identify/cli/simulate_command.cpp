@@ -21,6 +21,7 @@ namespace {
 struct SimulateArguments {
   std::string study;
   std::string output;
+  std::string errors;
   std::optional<std::uint64_t> seed;
   std::string compensation;
   double least_increment_um = 0.0;
@@ -39,9 +40,11 @@ void compensate(const SimulateArguments& arguments, sim::Study& study) {
 
 int run_simulate(const SimulateArguments& arguments) {
   const Replaceable replaceable = arguments.force ? Replaceable::Anything : Replaceable::Unedited;
-  require_output_folder(arguments.output, {arguments.study, arguments.compensation}, replaceable);
+  require_output_folder(arguments.output, {arguments.study, arguments.errors, arguments.compensation},
+                        replaceable);
   sim::Study study = read_study(arguments.study);
   if (arguments.seed) study.seed = *arguments.seed;
+  if (!arguments.errors.empty()) study.truth = known_truth(arguments.errors, study.machine);
   compensate(arguments, study);
   AtomicFolder folder(arguments.output, replaceable);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
@@ -52,11 +55,13 @@ int run_simulate(const SimulateArguments& arguments) {
                                          {"seed", study.seed},
                                          {"setups", simulated.campaign.setups.size()},
                                          {"readings", simulated.campaign.reading_count()},
+                                         {"known_errors", study.truth.errors_file},
                                          {"active_compensations", study.compensation.description}};
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
                simulated.campaign.setups.size(), study.seed, arguments.output);
+    if (!study.truth.errors_file.empty()) fmt::print("errors as stated in {}\n", study.truth.errors_file);
     if (!study.compensation.description.empty())
       fmt::print("active while it was measured: {}\n", study.compensation.description);
     fmt::print("next: volcal fit {0}/campaign.toml --model {0}/model.toml -o result\n", arguments.output);
@@ -69,6 +74,10 @@ std::function<int()> define_simulate(CLI::App& app) {
   app.add_option("STUDY", arguments->study, "study.toml: machine, hidden truth, measurements")->required();
   app.add_option("-o,--output", arguments->output, "folder for campaign.toml, its CSV files and truth/")
       ->required();
+  app.add_option(
+      "--errors", arguments->errors,
+      "known errors in place of the study's truth: model.toml with values, folder of tables --format "
+      "csv, or result folder");
   app.add_option("--seed", arguments->seed,
                  "instead of the study's seed; same seed, same readings to the bit")
       ->check(not_negative());
@@ -93,6 +102,7 @@ const Command& simulate_command() {
   static const Command command = {"simulate", "make a campaign from a machine with known errors",
                                   "  volcal simulate datasets/demo/study.toml -o campaign\n"
                                   "  volcal simulate study.toml --seed 7 -o campaign-7\n"
+                                  "  volcal simulate study.toml --errors identified.toml -o again\n"
                                   "  volcal simulate other-setups.toml --compensation tables -o after\n",
                                   define_simulate};
   return command;

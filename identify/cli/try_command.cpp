@@ -15,6 +15,7 @@
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/comparison.h"
@@ -209,8 +210,8 @@ std::string tried_text(const TryArguments& arguments, const Tried& tried) {
     values += (values.empty() ? "" : ", ") + tried_value_text(value);
   if (!tried.not_visible.empty()) values = "NOT VISIBLE: " + tried.not_visible;
   if (tried.status == FitStatus::NotConverged) values += " (the fit has not converged)";
-  return fmt::format("{}: {}\nheld out: {}\nremains: {}\n", arguments.effect, values, heldout_line(tried),
-                     remains_line(tried.remains));
+  return fmt::format("{}: {}\nheld out: {}\nremains: {}\n{}", arguments.effect, values, heldout_line(tried),
+                     remains_line(tried.remains), campaign_notes_text(tried.remains.notes));
 }
 
 nlohmann::ordered_json judged_json(const Comparison& comparison) {
@@ -236,6 +237,7 @@ std::string tried_json(const TryArguments& arguments, const Tried& tried) {
     json["held_out"] = {{"without", judged_json(tried.without)}, {"with", judged_json(tried.with)}};
   json["verdict_of_what_remains"] = to_string(tried.remains.verdict);
   json["remains"] = above_the_noise(tried.remains);
+  if (!tried.remains.notes.empty()) json["notes"] = tried.remains.notes;
   return json.dump(2) + "\n";
 }
 

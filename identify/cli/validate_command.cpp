@@ -10,8 +10,8 @@
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/json_text.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/io/model_reader.h"
-#include "volcal/identify/io/result_folder.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/alignment.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -118,7 +118,7 @@ std::string figures_text(const Validation& validation, const FittedReadings& fit
 }
 
 int run_validate(const ValidateArguments& arguments) {
-  const FitResult result = read_result(arguments.result);
+  const FitResult result = read_known_errors(arguments.result);
   Campaign campaign = read_campaign(arguments.campaign);
   const FittedReadings fitted = fitted_readings(campaign, result);
   adopt_alignment(campaign, result);
@@ -144,7 +144,9 @@ int run_validate(const ValidateArguments& arguments) {
 
 std::function<int()> define_validate(CLI::App& app) {
   auto arguments = std::make_shared<ValidateArguments>();
-  app.add_option("RESULT", arguments->result, "result folder of volcal fit")->required();
+  app.add_option("ERRORS", arguments->result,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv")
+      ->required();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml with readings that the fit did not use")
       ->required();
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")

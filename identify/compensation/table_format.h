@@ -5,6 +5,7 @@
 /// contract tests follow from the registration.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -82,6 +83,10 @@ struct TableFormat {
 
 std::span<const TableFormat* const> table_formats();
 const TableFormat* find_table_format(std::string_view name);  ///< nullptr when unknown
+/// Adds a format of the program's own, which lives as long as the program; call it before the library is
+/// used. Throws std::invalid_argument for no name, one that is taken, and a format that does not write and
+/// read.
+const TableFormat& register_table_format(std::unique_ptr<const TableFormat> format);
 std::vector<std::string> table_format_names();
 
 /// A controller whose tables are not written, and why.

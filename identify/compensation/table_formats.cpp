@@ -1,7 +1,9 @@
-#include <algorithm>
 #include <array>
+#include <stdexcept>
+#include <utility>
 
 #include "volcal/identify/compensation/table_format.h"
+#include "volcal/model/description/registration.h"
 
 namespace volcal {
 
@@ -25,15 +27,25 @@ namespace volcal {
 #define VOLCAL_ADDRESS(name) &(name)(),
 VOLCAL_TABLE_FORMATS(VOLCAL_DECLARE)
 
-std::span<const TableFormat* const> table_formats() {
-  static const auto kFormats = std::to_array<const TableFormat*>({VOLCAL_TABLE_FORMATS(VOLCAL_ADDRESS)});
-  return kFormats;
+namespace {
+
+Registration<TableFormat>& registered_table_formats() {
+  static Registration<TableFormat> formats(
+      {VOLCAL_TABLE_FORMATS(VOLCAL_ADDRESS)},
+      [](const TableFormat& format) -> std::string_view { return format.name; });
+  return formats;
 }
 
-const TableFormat* find_table_format(std::string_view name) {
-  const auto formats = table_formats();
-  const auto found = std::ranges::find(formats, name, &TableFormat::name);
-  return found == formats.end() ? nullptr : *found;
+}  // namespace
+
+std::span<const TableFormat* const> table_formats() { return registered_table_formats().all(); }
+
+const TableFormat* find_table_format(std::string_view name) { return registered_table_formats().find(name); }
+
+const TableFormat& register_table_format(std::unique_ptr<const TableFormat> format) {
+  if (format != nullptr && (format->write == nullptr || format->read == nullptr))
+    throw std::invalid_argument("a table format needs both write and read");
+  return registered_table_formats().add(std::move(format));
 }
 
 std::span<const RefusedFormat> refused_table_formats() {

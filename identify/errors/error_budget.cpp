@@ -6,6 +6,9 @@
 #include <utility>
 
 #include "volcal/identify/errors/error_grid.h"
+#include "volcal/identify/errors/volume_moments.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/stats/quadratic_form.h"
 #include "volcal/identify/stats/volumetric.h"
 
 namespace volcal {
@@ -39,56 +42,61 @@ std::string cause_of(const Contribution& part) {
 class VolumeOfParts {
  public:
   VolumeOfParts(const FitResult& result, const Tool& tool, const Conditions& conditions, int per_axis)
-      : result_(result), field_(result, tool, conditions), parts_(field_.contributions()) {
+      : result_(result),
+        is_uncertain_(!result.covariance.isZero(0.0)),
+        field_(result, tool, conditions),
+        parts_(field_.contributions()) {
     fields_.resize(parts_.size());
-    variances_.resize(parts_.size(), 0.0);
-    for (const AxisPosition& position : grid_positions_of(result.machine, per_axis)) {
+    VolumeMoments moments(result.parameters.size());
+    for (const AxisPosition& position : axis_grid(result.machine, per_axis).positions()) {
       for (unsigned signs = 0; signs < 8; ++signs) {
         ApproachDirection direction{};
         for (std::size_t i = 0; i < 3; ++i) direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
-        add(position, direction);
+        add(position, direction, moments);
       }
     }
+    if (is_uncertain_) moments_ = moments.mean();
   }
 
   const std::vector<Contribution>& parts() const { return parts_; }
   Field field(std::size_t part) const { return without_rigid_motion(points_, fields_[part]); }
-  double u_rms(std::size_t part) const {
-    return std::sqrt(std::max(0.0, variances_[part]) /
-                     static_cast<double>(std::max<std::size_t>(1, points_.size())));
-  }
   std::size_t size() const { return points_.size(); }
 
- private:
-  static std::vector<AxisPosition> grid_positions_of(const Machine& machine, int per_axis) {
-    return axis_grid(machine, per_axis).positions();
+  /// Root mean square of the standard uncertainty of what these parameters make together.
+  double u_rms(const std::vector<int>& parameters) const {
+    if (!is_uncertain_ || parameters.empty()) return 0.0;
+    const Eigen::MatrixXd covariance = result_.covariance(parameters, parameters);
+    return std::sqrt(std::max(0.0, covariance.cwiseProduct(moments_(parameters, parameters)).sum()));
+  }
+  /// Of the mean square, by independent standard normal variables squared.
+  Eigen::VectorXd weights(const std::vector<int>& parameters) const {
+    const SymmetricEigen moments = eigen_decomposition(moments_(parameters, parameters));
+    const Eigen::MatrixXd root = moments.vectors * moments.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    return eigenvalues(root.transpose() * result_.covariance(parameters, parameters) * root).cwiseMax(0.0);
   }
 
-  void add(const AxisPosition& position, const ApproachDirection& direction) {
+ private:
+  void add(const AxisPosition& position, const ApproachDirection& direction, VolumeMoments& moments) {
     points_.emplace_back(position[0], position[1], position[2]);
-    const PoseErrorRows rows = field_.rows(position, direction);
+    const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field_.rows(position, direction).topRows<3>();
     for (std::size_t p = 0; p < parts_.size(); ++p) {
-      const std::vector<int>& parameters = parts_[p].parameters;
       Vector3d displacement = Vector3d::Zero();
       if (parts_[p].kind == ContributionKind::Expansion)
         displacement = field_.known_expansion(position, parts_[p].axis).head<3>();
-      const Eigen::Matrix<double, 3, Eigen::Dynamic> of_part = rows(Eigen::seqN(0, 3), parameters);
-      for (std::size_t k = 0; k < parameters.size(); ++k)
-        displacement += of_part.col(static_cast<Eigen::Index>(k)) * result_.parameters[parameters[k]];
+      for (const int parameter : parts_[p].parameters)
+        displacement += rows.col(parameter) * result_.parameters[parameter];
       fields_[p].push_back(displacement);
-      if (result_.covariance.size() > 0 && !parameters.empty()) {
-        const Eigen::MatrixXd covariance = result_.covariance(parameters, parameters);
-        variances_[p] += (of_part * covariance).cwiseProduct(of_part).sum();
-      }
     }
+    if (is_uncertain_) moments.add(points_.back(), field_.unheld_rows(position, direction).topRows<3>());
   }
 
   const FitResult& result_;
+  bool is_uncertain_;
   ErrorField field_;
   std::vector<Contribution> parts_;
   Field points_;
   std::vector<Field> fields_;
-  std::vector<double> variances_;
+  Eigen::MatrixXd moments_;
 };
 
 void add_to(Field& sum, const Field& part) {
@@ -114,38 +122,68 @@ BudgetLine line_of(std::string name, const Field& field, const Field& whole) {
 }
 
 void sort_by_size(std::vector<BudgetLine>& lines) {
-  std::ranges::stable_sort(lines, std::ranges::greater{}, &BudgetLine::rms);
+  std::ranges::stable_sort(lines, std::ranges::greater{},
+                           [](const BudgetLine& line) { return std::pair(line.rms, line.u_rms); });
 }
+
+/// Where a sum of chi-squared variables with these weights exceeds with probability 5 %.
+double exceeded_by_5_percent(const Eigen::VectorXd& weights) {
+  const double wanted = std::log10(0.05);
+  double low = 0.0, high = weights.sum();
+  while (log10_quadratic_form_exceedance(high, weights) > wanted) high *= 2.0;
+  constexpr int kHalvings = 60;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (log10_quadratic_form_exceedance(middle, weights) > wanted ? low : high) = middle;
+  }
+  return high;
+}
+
+/// What contributions have in common: a cause, or all.
+struct Together {
+  Field field;
+  std::vector<int> parameters;
+
+  void add(const Field& part, const std::vector<int>& of_part) {
+    add_to(field, part);
+    parameters.insert(parameters.end(), of_part.begin(), of_part.end());
+  }
+};
 
 }  // namespace
 
 ErrorBudget error_budget(const FitResult& result, const Tool& tool, const Conditions& conditions,
                          int per_axis) {
   const VolumeOfParts volume(result, tool, conditions, per_axis);
+  Together whole;
+  whole.field.assign(volume.size(), Vector3d::Zero());
+  std::map<std::string, Together> by_cause;
   std::vector<Field> fields;
-  Field whole(volume.size(), Vector3d::Zero());
-  std::map<std::string, Field> by_cause;
-  std::map<std::string, double> variance_of_cause;
   for (std::size_t p = 0; p < volume.parts().size(); ++p) {
+    const Contribution& part = volume.parts()[p];
     fields.push_back(volume.field(p));
-    add_to(whole, fields.back());
-    add_to(by_cause[cause_of(volume.parts()[p])], fields.back());
-    variance_of_cause[cause_of(volume.parts()[p])] += volume.u_rms(p) * volume.u_rms(p);
+    whole.add(fields.back(), part.parameters);
+    by_cause[cause_of(part)].add(fields.back(), part.parameters);
   }
   ErrorBudget budget;
-  budget.total = line_of("all", whole, whole);
-  double variance = 0.0;
+  const auto line = [&](const std::string& name, const Field& field, const std::vector<int>& parameters) {
+    BudgetLine made = line_of(name, field, whole.field);
+    made.u_rms = volume.u_rms(parameters);
+    const double expected = std::pow(budget.total.expected_rms(), 2);
+    if (expected > 0.0)
+      made.expected_share = (mean_product(field, whole.field) + made.u_rms * made.u_rms) / expected;
+    return made;
+  };
+  budget.total = line("all", whole.field, whole.parameters);
+  budget.total.expected_share = budget.total.expected_rms() > 0.0 ? 1.0 : 0.0;
   for (std::size_t p = 0; p < fields.size(); ++p) {
-    budget.contributions.push_back(line_of(volume.parts()[p].name, fields[p], whole));
+    budget.contributions.push_back(line(volume.parts()[p].name, fields[p], volume.parts()[p].parameters));
     budget.contributions.back().depends_on = volume.parts()[p].depends_on;
-    budget.contributions.back().u_rms = volume.u_rms(p);
-    variance += volume.u_rms(p) * volume.u_rms(p);
   }
-  budget.total.u_rms = std::sqrt(variance);
-  for (const auto& [cause, field] : by_cause) {
-    budget.causes.push_back(line_of(cause, field, whole));
-    budget.causes.back().u_rms = std::sqrt(variance_of_cause[cause]);
-  }
+  for (const auto& [cause, together] : by_cause)
+    budget.causes.push_back(line(cause, together.field, together.parameters));
+  if (budget.total.rms == 0.0 && budget.total.u_rms > 0.0)
+    budget.rms_95 = std::sqrt(exceeded_by_5_percent(volume.weights(whole.parameters)));
   sort_by_size(budget.contributions);
   sort_by_size(budget.causes);
   return budget;

@@ -4,8 +4,11 @@
 /// alignment takes up (ISO/TR 16907:2015, 11; the error budget of Slocum).
 ///
 /// Shares are <e_c, e> / <e, e> over the volume, e the whole error: they sum to 1, and a contribution that
-/// cancels part of the others has a negative one.
+/// cancels part of the others has a negative one. Uncertainties are of the same displacements, correlations
+/// of the parameters included: u^2 = trace(C M) (volume_moments.h). Expected shares are (<e_c, e> + u_c^2) /
+/// (<e, e> + u^2); they sum to 1 where the contributions are uncorrelated, as at the design stage.
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,18 +17,25 @@
 namespace volcal {
 
 struct BudgetLine {
-  std::string name;        ///< of the contribution, or of the cause
-  std::string depends_on;  ///< of a contribution
-  double rms = 0.0;        ///< of the displacement, m
-  double max = 0.0;        ///< m
-  double share = 0.0;      ///< of the mean square of the whole error
-  double u_rms = 0.0;      ///< root mean square of the standard uncertainty of the contribution, m
+  std::string name;             ///< of the contribution, or of the cause
+  std::string depends_on;       ///< of a contribution
+  double rms = 0.0;             ///< of the displacement, m
+  double max = 0.0;             ///< m
+  double share = 0.0;           ///< of the mean square of the whole error
+  double u_rms = 0.0;           ///< root mean square of the standard uncertainty of the contribution, m
+  double expected_share = 0.0;  ///< of the mean square that is expected with the uncertainty
+
+  /// Root of the mean square that is expected with the uncertainty, m.
+  double expected_rms() const { return std::hypot(rms, u_rms); }
 };
 
 struct ErrorBudget {
   BudgetLine total;
   std::vector<BudgetLine> contributions;  ///< largest RMS first
   std::vector<BudgetLine> causes;  ///< positioning, straightness, squareness, angles ...; largest first
+  /// RMS of the whole error that 95 % of such machines do not exceed, m: of normally distributed parameters
+  /// whose expectation is no error; 0 where there is an expected error or no uncertainty.
+  double rms_95 = 0.0;
 };
 
 /// `per_axis` positions on every linear axis, ends of travel included; rotary axes at 0.

@@ -80,7 +80,8 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
       effects_(result, tool, conditions) {
   for (const Axis& axis : result.machine.axes) {
     if (!axis.expansion) continue;
-    Expansion expansion{axis.name, 0.0, temperature_excess_at(conditions, axis.expansion->channel), -1};
+    Expansion expansion{axis.name, 0.0, temperature_excess_at(conditions, axis.expansion->channel), axis.home,
+                        -1};
     expansion.strain = axis.expansion->per_kelvin * expansion.excess;
     const std::string name = std::string("expansion ") + letter_of(axis.name);
     if (const ParameterBlock* block = layout_.find_block(name)) expansion.parameter = block->offset;
@@ -109,7 +110,7 @@ PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirec
     const double deviation =
         expansion.parameter < 0 ? 0.0 : parameters_[expansion.parameter] * expansion.excess;
     errors.motion[index_of(expansion.axis)][index_of(positioning_of(expansion.axis))] +=
-        (expansion.strain + deviation) * position[index_of(expansion.axis)];
+        (expansion.strain + deviation) * (position[index_of(expansion.axis)] - expansion.home);
   }
   if (!effects_.empty()) {
     const Eigen::MatrixXd drivers = effects_.drivers({&held, 1}, {&direction, 1});
@@ -139,8 +140,9 @@ void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition
   for (const Expansion& expansion : expansions_) {
     if (expansion.parameter < 0) continue;
     const JointLever& lever = joint_lever(levers, chain_.joint_count(), expansion.axis);
-    rows.col(place_of(expansion.parameter)) = motion_column(lever, positioning_of(expansion.axis)) *
-                                              (expansion.excess * position[index_of(expansion.axis)]);
+    rows.col(place_of(expansion.parameter)) =
+        motion_column(lever, positioning_of(expansion.axis)) *
+        (expansion.excess * (position[index_of(expansion.axis)] - expansion.home));
   }
 }
 
@@ -199,13 +201,23 @@ PoseErrorVector ErrorField::known_expansion(const AxisPosition& position,
     if (only && *only != expansion.axis) continue;
     error += motion_column(joint_lever(levers, chain_.joint_count(), expansion.axis),
                            positioning_of(expansion.axis)) *
-             (expansion.strain * position[index_of(expansion.axis)]);
+             (expansion.strain * (position[index_of(expansion.axis)] - expansion.home));
   }
   return error;
 }
 
 PoseErrorRows ErrorField::rows(const AxisPosition& position, const ApproachDirection& direction) const {
-  PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, measured_.held(position));
+  return rows_at(position, measured_.held(position), direction);
+}
+
+PoseErrorRows ErrorField::unheld_rows(const AxisPosition& position,
+                                      const ApproachDirection& direction) const {
+  return rows_at(position, position, direction);
+}
+
+PoseErrorRows ErrorField::rows_at(const AxisPosition& position, const AxisPosition& functions_at,
+                                  const ApproachDirection& direction) const {
+  PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, functions_at);
   if (tool_parameter_ >= 0) rows.block<3, 3>(0, tool_parameter_) = chain_.nominal_rotation_wt(position);
   const PoseErrorRows of_conditions = condition_rows(position, direction);
   for (std::size_t i = 0; i < condition_parameters_.size(); ++i)
@@ -277,7 +289,13 @@ struct LinearDisplacements::Parts {
   ParameterLayout layout;
   Eigen::VectorXd parameters;
   MeasuredTravel measured;
-  std::vector<std::pair<std::size_t, double>> strains;  ///< axis and expansion of its scale, m/m
+  /// Expansion of an axis' scale from its home.
+  struct Strain {
+    std::size_t axis;
+    double strain;  ///< m/m
+    double home;    ///< m
+  };
+  std::vector<Strain> strains;
   MachineEffects coupled;
   MachineEffects single;                        ///< effects of one axis; empty where `polynomials` hold them
   std::optional<LinearAxisErrors> polynomials;  ///< in place of the chain
@@ -356,7 +374,7 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
     if (const ParameterBlock* block =
             result.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
       strain += result.parameters[block->offset] * excess;
-    if (strain != 0.0) parts->strains.emplace_back(index_of(axis.name), strain);
+    if (strain != 0.0) parts->strains.push_back({index_of(axis.name), strain, axis.home});
   }
   parts->polynomials = LinearAxisErrors::make(result, tool.offset, parts->single);
   if (parts->polynomials) {
@@ -379,8 +397,8 @@ Vector3d LinearDisplacements::rigid(const AxisPosition& position, const Approach
     }
     displacement = parts_->chain.first_order(linear, parts_->tool.offset, errors).displacement_w;
   }
-  for (const auto& [axis, strain] : parts_->strains)
-    displacement[static_cast<Eigen::Index>(axis)] += strain * position[axis];
+  for (const Parts::Strain& each : parts_->strains)
+    displacement[static_cast<Eigen::Index>(each.axis)] += each.strain * (position[each.axis] - each.home);
   if (!parts_->single.empty())
     displacement += parts_->of_effects(parts_->single, without_rotary_axes(position), direction);
   return displacement;

@@ -64,6 +64,9 @@ class ErrorField {
   PoseErrorVector at(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// Derivatives to the parameters; errors are linear in all of them but those of an effect's shape.
   PoseErrorRows rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// The same with the error functions as they are beyond the measured positions: what the uncertainty of a
+  /// value that is held there follows from.
+  PoseErrorRows unheld_rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// Of one contribution at a pose.
   PoseErrorVector contribution(const Contribution& part, const AxisPosition& position,
                                const ApproachDirection& direction = {}) const;
@@ -89,10 +92,13 @@ class ErrorField {
     AxisName axis = AxisName::X;
     double strain = 0.0;  ///< known, m/m at the stated temperature
     double excess = 0.0;  ///< temperature less 20 degC, K
+    double home = 0.0;    ///< from which it counts, m
     int parameter = -1;   ///< deviation of the coefficient, 1/K
   };
 
   Eigen::Index place_of(int parameter) const;
+  PoseErrorRows rows_at(const AxisPosition& position, const AxisPosition& functions_at,
+                        const ApproachDirection& direction) const;
   void add_expansion_rows(const JointLever* levers, const AxisPosition& position, PoseErrorRows& rows) const;
   void add_effect_rows(const JointLever* levers, const AxisPosition& position,
                        const ApproachDirection& direction, PoseErrorRows& rows) const;

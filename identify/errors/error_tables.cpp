@@ -13,6 +13,8 @@
 namespace volcal {
 namespace {
 
+constexpr double kRounding = 1e-12;  // m or rad, of a value that the datum makes zero
+
 /// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be
 /// shorter.
 std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& options) {
@@ -117,7 +119,7 @@ class TableRows {
       value -= derivatives[parameter] * result_.parameters[parameter];
     const Axis& axis = result_.machine.axis(symbol.axis);
     if (!is_expanding(symbol) || !axis.expansion) return value;
-    return value + axis.expansion->per_kelvin * excess_[index_of(symbol.axis)] * q;
+    return value + axis.expansion->per_kelvin * excess_[index_of(symbol.axis)] * (q - axis.home);
   }
 
  private:
@@ -128,6 +130,11 @@ class TableRows {
       if (!is_of_own_axis(effects_, e) && effects_.reach(e).direction[index_of(axis)]) return true;
     }
     return false;
+  }
+
+  /// Identified functions are zero at home but for rounding; stated ones need not be.
+  bool is_zero_by_datum(ErrorSymbol symbol, double q, const Eigen::VectorXd& row) const {
+    return q == result_.machine.axis(symbol.axis).home && std::abs(row.dot(result_.parameters)) < kRounding;
   }
 
   Eigen::VectorXd function_row(const ParameterLayout::FunctionPlace& place, double q) const {
@@ -142,10 +149,11 @@ class TableRows {
     AxisPosition position{};
     position[index_of(symbol.axis)] = q;
     const AxisPosition held = measured_.held(position);
-    const bool at_home = q == result_.machine.axis(symbol.axis).home;  // where the datum makes it zero
     Eigen::VectorXd row = Eigen::VectorXd::Zero(result_.layout.size);
-    if (const auto place = result_.layout.find(symbol); place && !at_home)
+    if (const auto place = result_.layout.find(symbol)) {
       row = function_row(*place, hold ? held[index_of(symbol.axis)] : q);
+      if (is_zero_by_datum(symbol, q, row)) row.setZero();
+    }
     if (!own_.empty()) add_own_effects(symbol, held, direction, row);
     if (has_share(symbol)) {
       const PoseErrorRows shares = compromise_.motions(symbol.axis, q, direction);
@@ -157,7 +165,7 @@ class TableRows {
     const ParameterBlock* expansion =
         result_.layout.find_block(std::string("expansion ") + letter_of(symbol.axis));
     if (is_expanding(symbol) && expansion != nullptr)
-      row[expansion->offset] += excess_[index_of(symbol.axis)] * q;
+      row[expansion->offset] += excess_[index_of(symbol.axis)] * (q - result_.machine.axis(symbol.axis).home);
     return row;
   }
 

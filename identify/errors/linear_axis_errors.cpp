@@ -22,18 +22,23 @@ constexpr int kHighestDegree = 8;
 constexpr std::size_t kMostBins = 4096;
 constexpr std::size_t kNumbersOfVector = 4;
 constexpr double kShortestPiece = 1e-9;    // m
+constexpr double kHeldPiece = 0.25;        // of the travel: length of a piece beyond it; the piece goes on
 constexpr int kEffectDegree = 3;           // of effects that are looked at as polynomials
 constexpr double kSamePolynomial = 1e-13;  // of the largest driver
 
 /// Errors of an axis on one piece, by power of the local coordinate: displacement and rotation.
 using PieceErrors = std::vector<Vector6d>;
 
-/// Ends of the pieces on which all functions of an axis are polynomials.
+/// Ends of the pieces on which all functions of an axis are polynomials. Beyond what was measured, and beyond
+/// the travel, there are pieces on which errors are held.
 std::vector<double> pieces_of(const FitResult& result, const Axis& axis) {
   std::vector<double> ends = {axis.travel_min, axis.travel_max};
   const MeasuredTravel measured(result);
-  for (const double end : {measured.min[index_of(axis.name)], measured.max[index_of(axis.name)]}) {
-    if (end > axis.travel_min + kShortestPiece && end < axis.travel_max - kShortestPiece) ends.push_back(end);
+  const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
+  if (std::isfinite(first)) {
+    const double held_piece = kHeldPiece * axis.travel();
+    ends.insert(ends.end(), {first, last, std::min(first, axis.travel_min) - held_piece,
+                             std::max(last, axis.travel_max) + held_piece});
   }
   for (const FunctionGroup& group : result.layout.groups) {
     if (group.axis != axis.name) continue;

@@ -1,8 +1,10 @@
 #include "volcal/identify/errors/stated_errors.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/observation/campaign_binding.h"
@@ -19,7 +21,8 @@ class StatedLayout {
     }
     layout_.function_size = size();
     for (const auto& [symbol, value] : model.locations) {
-      ParameterBlock& block = add_block(ParameterKind::Location, symbol.name(), value);
+      ParameterBlock& block = add_block(ParameterKind::Location, symbol.name(), value,
+                                        std::string(edge_unit(symbol.component)), kMicro);
       block.location = symbol;
     }
     for (const EffectSpec& spec : model.effects) add_effect(spec, model.file);
@@ -48,11 +51,15 @@ class StatedLayout {
     values_.insert(values_.end(), found->second.coefficients.begin(), found->second.coefficients.end());
   }
 
-  ParameterBlock& add_block(ParameterKind kind, const std::string& name, double value) {
+  ParameterBlock& add_block(ParameterKind kind, const std::string& name, double value,
+                            const std::string& unit, double si_per_unit) {
     ParameterBlock block;
     block.kind = kind;
     block.name = name;
     block.labels = {""};
+    block.units = {unit};
+    block.si_per_unit = {si_per_unit};
+    block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(1);
     block.offset = size();
     block.guess = Eigen::VectorXd::Constant(1, value);
     layout_.blocks.push_back(std::move(block));
@@ -63,7 +70,8 @@ class StatedLayout {
   void add_effect(const EffectSpec& spec, const std::string& file) {
     const std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, file);
     for (const EffectAmplitude& amplitude : effect->amplitudes())
-      add_block(ParameterKind::Effect, amplitude.label, amplitude.guess);
+      add_block(ParameterKind::Effect, amplitude.label, amplitude.guess, amplitude.unit(),
+                amplitude.si_per_unit());
   }
 
   ParameterLayout layout_;
@@ -90,6 +98,12 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   result.conditions.time = RecordedRange{};
   result.conditions.feed = RecordedRange{};
   return result;
+}
+
+bool states_errors(const ModelSpec& model) {
+  return !model.locations.empty() || !model.effects.empty() ||
+         std::ranges::any_of(model.functions,
+                             [](const auto& entry) { return !entry.second.coefficients.empty(); });
 }
 
 }  // namespace volcal

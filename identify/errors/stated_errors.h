@@ -11,4 +11,7 @@ namespace volcal {
 /// stated.
 FitResult stated_result(const Machine& machine, const ModelSpec& model);
 
+/// Whether a model states an error: a function with coefficients, a known location, an effect.
+bool states_errors(const ModelSpec& model);
+
 }  // namespace volcal

@@ -102,19 +102,31 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
   return stated_result(metadata.machine, model);
 }
 
+FitResult result_of_model(const std::string& path, const SourcePlace& named_at) {
+  const ModelFile model = read_model_with_machine(path, named_at);
+  if (!states_errors(model.spec))
+    throw InputError(
+        {path, 0}, "the model states no error: no coefficients, no locations, no effects",
+        "give a model with values, such as the identified.toml of a result; of a machine that is "
+        "not built yet, volcal budget MACHINE.toml --tolerances FILE");
+  return stated_result(model.machine, model.spec);
+}
+
 }  // namespace
 
-FitResult read_known_errors(const std::string& path) {
-  const std::filesystem::path place(path);
+bool is_tables_folder(const std::string& path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(place, ignored) && !is_result(path) &&
-      std::filesystem::exists(place / kErrorTables, ignored))
-    return result_of_tables(place);
-  if (!std::filesystem::is_directory(place, ignored) && place.extension() == ".toml") {
-    const ModelFile model = read_model_with_machine(path);
-    return stated_result(model.machine, model.spec);
-  }
-  return read_result(path);
+  return std::filesystem::is_directory(path, ignored) && !is_result(path) &&
+         std::filesystem::exists(std::filesystem::path(path) / kErrorTables, ignored);
+}
+
+FitResult read_known_errors(const std::string& path, const SourcePlace& named_at) {
+  if (is_tables_folder(path)) return result_of_tables(path);
+  std::error_code ignored;
+  const std::filesystem::path place(path);
+  if (!std::filesystem::is_directory(place, ignored) && place.extension() == ".toml")
+    return result_of_model(path, named_at);
+  return read_result(path, named_at);
 }
 
 }  // namespace volcal

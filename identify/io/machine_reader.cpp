@@ -7,6 +7,7 @@
 
 #include "volcal/identify/io/nearest_name.h"
 #include "volcal/identify/io/text_file.h"
+#include "volcal/identify/io/tolerance_reader.h"
 #include "volcal/identify/io/toml_document.h"
 #include "volcal/model/description/units.h"
 
@@ -46,6 +47,7 @@ class MachineReader {
     read_axes();
     read_datum();
     read_tools();
+    if (const auto table = root_.table("tolerances")) read_tolerances(*table, machine_.file, machine_);
     document_.reject_unknown();
     return std::move(machine_);
   }

@@ -207,6 +207,7 @@ class ModelReader {
     if (kind.uses_knots && spec.knots == KnotChoice::Automatic) {
       table.fail(key, name + " needs fixed knots", "add knots_mm (knots_deg), or knots = INTERVALS");
     }
+    if (spec.knots == KnotChoice::IntervalCount) spec.breakpoints = uniform_breakpoints(axis, spec.intervals);
     const std::size_t expected = basis_size(table, axis, kind, spec);
     if (spec.coefficients.size() != expected) {
       table.fail(key, name + " has " + std::to_string(spec.coefficients.size()) + " values",
@@ -215,8 +216,7 @@ class ModelReader {
   }
 
   static std::size_t basis_size(const TomlTable& table, const Axis& axis, const BasisKind& kind,
-                                FunctionSpec spec) {
-    if (spec.knots == KnotChoice::IntervalCount) spec.breakpoints = uniform_breakpoints(axis, spec.intervals);
+                                const FunctionSpec& spec) {
     try {
       return static_cast<std::size_t>(kind.make(spec, axis)->size());
     } catch (const std::invalid_argument& error) {
@@ -347,6 +347,21 @@ void check_machine(const TomlDocument& document, const std::string& file, const 
             "use a model of the same machine");
 }
 
+/// A folder is no model; what to give in its place.
+void require_no_folder(const std::string& path, const SourcePlace& named_at) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return;
+  const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
+  if (fs::exists(fs::path(path) / "identified.toml", error))
+    throw InputError(place, path + " is a result, a model file is expected",
+                     "give " + (fs::path(path) / "identified.toml").string());
+  if (fs::exists(fs::path(path) / "error_tables.csv", error))
+    throw InputError(
+        place, path + " is a folder of tables, a model file is expected",
+        "tables state errors and no bases: write a model.toml, or give the result they were made of");
+}
+
 std::string axis_difference(const Axis& a, const Axis& b) {
   const auto differs = [](double x, double y) { return std::abs(x - y) > kSamePosition; };
   const std::string name(1, letter_of(a.name));
@@ -375,6 +390,7 @@ std::string machine_difference(const Machine& a, const Machine& b) {
 }
 
 ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at) {
+  require_no_folder(path, named_at);
   const TomlDocument document = TomlDocument::read(path, named_at);
   document.require_format(kModelFormat);
   check_machine(document, path, machine);
@@ -386,6 +402,7 @@ ModelSpec parse_model(const std::string& text, const std::string& file, const Ma
 }
 
 ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at) {
+  require_no_folder(path, named_at);
   const TomlDocument document = TomlDocument::read(path, named_at);
   document.require_format(kModelFormat);
   const TomlTable root = document.root();

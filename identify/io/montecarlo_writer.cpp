@@ -94,16 +94,18 @@ std::string montecarlo_json(const MonteCarloResult& result) {
     for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
       of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
   }
+  if (!result.notes.empty()) json["notes"] = result.notes;
   return json_text(json, 1) + "\n";
 }
 
-std::string undetermined_json(const FitResult& fit) {
-  const MonteCarloJson json = {
+std::string undetermined_json(const FitResult& fit, const std::vector<std::string>& notes) {
+  MonteCarloJson json = {
       {"format", kMonteCarloFormat},
       {"status", std::string(to_string(fit.status))},
       {"draws", 0},
       {"rank",
        {{"parameters", fit.rank.parameters}, {"rank", fit.rank.rank}, {"invisible", fit.rank.invisible}}}};
+  if (!notes.empty()) json["notes"] = notes;
   return json_text(json, 1) + "\n";
 }
 

@@ -255,6 +255,7 @@ std::string plan_json(const CampaignPlan& plan) {
                                {"makes_visible", option.made_visible},
                                {"still_not_visible", option.still_invisible}});
   }
+  if (!plan.notes.empty()) json["notes"] = plan.notes;
   return json_text(json, 2) + "\n";
 }
 

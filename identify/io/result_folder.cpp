@@ -19,6 +19,12 @@ std::string json_path(const std::string& path) {
   return fs::is_directory(path, error) ? (fs::path(path) / "result.json").string() : path;
 }
 
+/// A result without setups is stated and not identified (stated_errors.h).
+std::string origin_of(const FitResult& result, const Campaign& campaign) {
+  if (result.setups.empty()) return "Stated in " + campaign.file;
+  return "Identified from " + campaign.file + ", status " + std::string(to_string(result.status));
+}
+
 }  // namespace
 
 void write_result_folder(const FitResult& result, const Campaign& campaign, const std::string& target,
@@ -30,20 +36,20 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
   for (const TableFile& file : result_tables(result, options)) folder.write(file);
   write_residuals_csv(folder.path("residuals.csv"), result, campaign);
   folder.write("machine.toml", machine_toml(result.machine));
-  folder.write(
-      "identified.toml",
-      model_toml(result.identified, "machine.toml",
-                 "Identified from " + campaign.file + ", status " + std::string(to_string(result.status)) +
-                     ".\nErrors are actual minus nominal, tool relative to workpiece."));
+  folder.write("identified.toml",
+               model_toml(result.identified, "machine.toml",
+                          origin_of(result, campaign) +
+                              ".\nErrors are actual minus nominal, tool relative to workpiece."));
   for (const auto& [name, content] : more) folder.write(name, content);
   folder.commit();
 }
 
-FitResult read_result(const std::string& path) {
+FitResult read_result(const std::string& path, const SourcePlace& named_at) {
   const std::string file = json_path(path);
   std::error_code error;
   if (!fs::exists(path, error)) {
-    throw InputError({path, 0}, "there is no such result",
+    throw InputError(named_at.file.empty() ? SourcePlace{path, 0} : named_at,
+                     named_at.file.empty() ? "there is no such result" : "there is no result " + path,
                      missing_remedy(path, "give the folder that volcal fit wrote with -o"));
   }
   if (fs::is_directory(path, error) && !fs::exists(file, error)) {

@@ -20,8 +20,8 @@ void write_result_folder(const FitResult& result, const Campaign& campaign, cons
                          const std::map<std::string, std::string>& more = {});
 
 /// Reads result.json of a result folder (or the file itself). `residuals` stays empty: they are in
-/// residuals.csv. Throws InputError.
-FitResult read_result(const std::string& path);
+/// residuals.csv. `named_at`: the line of a file that names it. Throws InputError.
+FitResult read_result(const std::string& path, const SourcePlace& named_at = {});
 
 /// True when `path` is a folder that holds a result.json, or such a file.
 bool is_result(const std::string& path);

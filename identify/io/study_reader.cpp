@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "volcal/identify/io/control_tables.h"
+#include "volcal/identify/io/known_errors.h"
 #include "volcal/identify/io/machine_reader.h"
+#include "volcal/identify/io/model_reader.h"
 #include "volcal/identify/io/text_file.h"
 #include "volcal/model/description/units.h"
 
@@ -66,7 +68,19 @@ void read_expansions(const TomlTable& truth, const Machine& machine, sim::TruthS
   }
 }
 
-sim::TruthSettings read_truth(const TomlTable& table, const Machine& machine) {
+/// The truth is known errors: nothing else can be said of it.
+sim::TruthSettings read_known_truth(const TomlTable& table, const std::string& file, const Machine& machine) {
+  const std::string errors = table.required_text("errors");
+  for (const std::string& key : table.keys()) {
+    if (key != "errors")
+      table.fail(key, "[truth] has errors and " + printable(key),
+                 "known errors are the whole truth: keep one of the two");
+  }
+  return known_truth(resolve_path(file, errors), machine, table.place("errors"));
+}
+
+sim::TruthSettings read_truth(const TomlTable& table, const std::string& file, const Machine& machine) {
+  if (table.has("errors")) return read_known_truth(table, file, machine);
   sim::TruthSettings truth;
   truth.perfect = table.choice("kind", {"random", "perfect"}).value_or("random") == "perfect";
   sim::RandomTruthOptions& random = truth.random;
@@ -141,7 +155,7 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
   root.text("name");
   study.seed = static_cast<std::uint64_t>(root.integer("seed", 0, kLargestSeed).value_or(1));
   read_number(root, "pause_s", study.pause_between_setups);
-  if (const auto truth = root.table("truth")) study.truth = read_truth(*truth, machine);
+  if (const auto truth = root.table("truth")) study.truth = read_truth(*truth, file, machine);
   for (const TomlTable& table : root.tables("temperatures")) {
     study.environment.channels.push_back(read_channel(table));
   }
@@ -157,6 +171,29 @@ sim::Study read_document(const TomlDocument& document, const std::string& file, 
 }
 
 }  // namespace
+
+sim::TruthSettings known_truth(const std::string& path, const Machine& machine, const SourcePlace& named_at) {
+  const FitResult known = read_known_errors(path, named_at);
+  if (const std::string difference = machine_difference(known.machine, machine); !difference.empty())
+    throw InputError({path, 0}, "the errors are those of another machine than the study's: " + difference,
+                     "name the machine of these errors in the study (beside a result: its machine.toml)");
+  sim::TruthSettings truth;
+  truth.errors = known.identified;
+  truth.errors_file = path;
+  if (truth.errors->file.empty()) truth.errors->file = path;
+  for (const Axis& axis : machine.axes) {
+    if (!axis.expansion) continue;
+    ScaleExpansion exact = *axis.expansion;
+    if (const auto* block = known.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
+      exact.per_kelvin += known.parameters[block->offset];
+    truth.expansions[axis.name] = exact;
+  }
+  for (const Tool& tool : machine.tools) {
+    if (const auto* block = known.layout.find_block("tool " + tool.name))
+      truth.tools[tool.name] = known.parameters.segment<3>(block->offset);
+  }
+  return truth;
+}
 
 sim::ActiveCompensation active_compensation(const std::string& folder, double least_increment) {
   const TablesFolder tables = read_tables_folder(folder);

@@ -8,6 +8,7 @@
 ///     unseen = true                      # truth/unseen and hidden.json also when nothing is hidden
 ///     [truth]                            # all optional
 ///     kind = "random"                    # or "perfect"
+///     errors = "model.toml"              # known errors in place of all others: model, tables or result
 ///     volumetric_rms_um = [15.5, 21.5]   # after rigid alignment, drawn from this range
 ///     angular_scale, squareness_scale, wave_scale = 1.0
 ///     reversal_max_um, angular_reversal_max_urad = 0.0
@@ -54,6 +55,12 @@ inline constexpr const char* kStudyFormat = "volcal-study-1";
 sim::Study read_study(const std::string& path);
 /// The same from text with a given machine (its `machine` key is not followed).
 sim::Study parse_study(const std::string& text, const std::string& file, const Machine& machine);
+
+/// Known errors (known_errors.h) as the truth of a machine: functions, locations and effects, and of a result
+/// the expansions and tool offsets that it identified. Throws InputError; also for errors of another machine,
+/// and for those that state no value.
+sim::TruthSettings known_truth(const std::string& path, const Machine& machine,
+                               const SourcePlace& named_at = {});
 
 /// The compensation of a folder of tables, with what is said of it in campaign files. Throws InputError.
 sim::ActiveCompensation active_compensation(const std::string& folder, double least_increment);

@@ -118,7 +118,7 @@ QuantitySet::Volume volume_of(const FitResult& result, const Tool& tool, int per
   const ErrorField field(result, tool);
   Eigen::Index row = 0;
   for (const AxisPosition& position : positions) {
-    volume.rows.middleRows<3>(row) = field.rows(position).topRows<3>();
+    volume.rows.middleRows<3>(row) = field.unheld_rows(position).topRows<3>();
     volume.error.segment<3>(row) = field.at(position).head<3>();
     row += 3;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -121,6 +122,16 @@ class Expectation {
   FitResult result_;
 };
 
+/// Error functions go on beyond the readings: there an uncertainty is that of the function, not that of the
+/// last value, which a table holds.
+FitResult without_measured_ends(FitResult result) {
+  for (FunctionSummary& function : result.functions) {
+    function.measured_min = -std::numeric_limits<double>::infinity();
+    function.measured_max = std::numeric_limits<double>::infinity();
+  }
+  return result;
+}
+
 }  // namespace
 
 FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
@@ -130,10 +141,11 @@ FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
 
 VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std::vector<Tool>& tools,
                                              int per_axis) {
+  const FitResult everywhere = without_measured_ends(result);
   VolumetricUncertainty out;
   double count = 0.0;
   for (const Tool& tool : tools) {
-    const ErrorGrid errors(result, tool, axis_grid(result.machine, per_axis));
+    const ErrorGrid errors(everywhere, tool, axis_grid(result.machine, per_axis));
     for (const Covariance3& covariance : errors.displacement_covariances()) {
       const double variance = covariance.variances().sum();
       out.rms += variance;

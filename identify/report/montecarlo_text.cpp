@@ -1,15 +1,7 @@
 #include "volcal/identify/report/montecarlo_text.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <limits>
-#include <utility>
-#include <vector>
-
 #include "volcal/identify/report/budget_text.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/quantity_groups.h"
 #include "volcal/identify/report/text_tables.h"
@@ -166,7 +158,8 @@ std::string verdict_text(const MonteCarloResult& result) {
 std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
-  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result);
+  return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
+         campaign_notes_text(result.notes);
 }
 
 std::string undetermined_text(const FitResult& fit) {

@@ -1,13 +1,8 @@
 #include "volcal/identify/report/plan_text.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"
 #include "volcal/identify/solve/result.h"
@@ -269,7 +264,8 @@ double target_ratio(const CampaignPlan& plan) {
 
 std::string plan_text(const CampaignPlan& plan) {
   return head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) + "\n" +
-         errors_table(plan) + "\n" + detectable_table(plan) + invisible_text(plan) + options_table(plan);
+         errors_table(plan) + "\n" + detectable_table(plan) + invisible_text(plan) + options_table(plan) +
+         campaign_notes_text(plan.notes);
 }
 
 }  // namespace volcal

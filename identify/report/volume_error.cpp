@@ -52,7 +52,8 @@ std::vector<ToolVolume> tool_volumes(const FitResult& result, int per_axis) {
     std::vector<Eigen::Vector3d> errors;
     for (const AxisPosition& position : positions) {
       const Eigen::Vector3d point_w = chain.nominal_point_w(position, tool.offset);
-      rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) = field.rows(position).topRows<3>();
+      rows.middleRows<3>(3 * static_cast<Eigen::Index>(errors.size())) =
+          field.unheld_rows(position).topRows<3>();
       errors.emplace_back(field.at(position).head<3>());
       volume.point_w.push_back(point_w);
       volume.extrapolated.push_back(field.measured().is_beyond(position));

@@ -237,7 +237,8 @@ Spread spread_of(const Campaign& campaign, const std::vector<ResidualRecord>& re
 Validation validate(const Campaign& campaign, const FitResult& result, int threads) {
   Validation validation;
   validation.before = evaluate_model(campaign, nominal_model(), nullptr, threads);
-  validation.after = evaluate_model(campaign, result.identified, &result, threads);
+  const bool is_stated = result.covariance.isZero(0.0);
+  validation.after = evaluate_model(campaign, result.identified, is_stated ? nullptr : &result, threads);
   ValidationFigures& figures = validation.figures;
   const Spread before = spread_of(campaign, validation.before.residuals);
   const Spread after = spread_of(campaign, validation.after.residuals);

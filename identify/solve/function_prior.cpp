@@ -1,5 +1,6 @@
 #include "volcal/identify/solve/function_prior.h"
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -55,13 +56,16 @@ Eigen::MatrixXd projection(const Basis& basis, const Eigen::VectorXd& points) {
 double beyond(double t) { return std::max(0.0, std::abs(t) - 1.0); }
 bool is_outside(double t) { return beyond(t) > kEdge; }
 
+/// How far outside, in what the basis resolves there: its pieces double in length.
+double resolved_beyond(double t) { return kBridge * std::log1p(beyond(t) / kBridge); }
+
 double squared_exponential(double distance) { return std::exp(-0.5 * distance * distance); }
 
 /// Rows of columns outside of [-1, 1]: what value and slope at the edge lead to.
 void lead_out(const Eigen::ArrayXd& t, Eigen::MatrixXd& columns) {
   for (Eigen::Index i = 0; i < t.size(); ++i) {
     if (!is_outside(t[i])) continue;
-    const double sense = t[i] > 0.0 ? 1.0 : -1.0, away = beyond(t[i]);
+    const double sense = t[i] > 0.0 ? 1.0 : -1.0, away = resolved_beyond(t[i]);
     for (Eigen::Index n = 0; n < columns.cols(); ++n) {
       const auto degree = static_cast<double>(n);
       const double value = std::sqrt(2.0 * degree + 1.0) * (n % 2 == 0 ? 1.0 : sense);
@@ -77,7 +81,7 @@ Eigen::MatrixXd free_outside(const Eigen::ArrayXd& t) {
   for (Eigen::Index i = 0; i < t.size(); ++i) {
     for (Eigen::Index j = 0; j < t.size(); ++j) {
       if (!is_outside(t[i]) || !is_outside(t[j]) || t[i] * t[j] < 0.0) continue;
-      const double a = beyond(t[i]) / kBridge, b = beyond(t[j]) / kBridge;
+      const double a = resolved_beyond(t[i]) / kBridge, b = resolved_beyond(t[j]) / kBridge;
       covariance(i, j) =
           squared_exponential(a - b) - squared_exponential(a) * squared_exponential(b) * (1.0 + a * b);
     }
@@ -117,7 +121,9 @@ double correlation(Roughness roughness, double distance) {
   return (1.0 + s + s * s / 3.0) * std::exp(-s);
 }
 
-Eigen::MatrixXd stationary_covariance(Roughness roughness, double length, const Eigen::ArrayXd& t) {
+Eigen::MatrixXd stationary_covariance(Roughness roughness, double length, const Eigen::ArrayXd& positions) {
+  const Eigen::ArrayXd t = positions.unaryExpr(
+      [](double each) { return is_outside(each) ? std::copysign(1.0 + resolved_beyond(each), each) : each; });
   Eigen::MatrixXd covariance(t.size(), t.size());
   for (Eigen::Index i = 0; i < t.size(); ++i) {
     for (Eigen::Index j = 0; j < t.size(); ++j)

@@ -15,6 +15,9 @@
 /// Of an axis that was measured on a part of its travel, t runs from -1 to 1 over that part. Stationary
 /// covariances go on outside; Legendre series continue from value and slope at the edge as a squared
 /// exponential covariance of a fixed length would: with the same variance, and ever less bound to the part.
+/// A distance d outside counts as h log(1 + d / h), h = 1/4 in t, since the pieces of the basis double in
+/// length there: what they did not resolve would be averaged away, and the uncertainty would fall with the
+/// distance.
 ///
 /// The spectrum of the chosen one, the variance of each Legendre coefficient, is then corrected degree by
 /// degree by the functions that share it, and the corrected one is taken where its evidence is higher

@@ -4,62 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <set>
 #include <sstream>
+#include <stdexcept>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/rank_words.h"
 #include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/solve/tool_tips.h"
 
 namespace volcal {
 namespace {
 
-// m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
-constexpr double kUnseenAmplitude = 1e-4;
-constexpr double kWideDisplacement = 1e-3;
-constexpr double kWideRotation = 1e-3;
-constexpr double kWideSquareness = 1e-3;
-constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
-constexpr double kWideNuisance = 1.0;
-constexpr double kCurvatureShare =
-    1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
 constexpr double kGainOfVisible = 100.0;  // variance, prior to posterior
 constexpr double kWeakPartner = 0.02;
 constexpr double kMostlyHidden = 0.5;  // share of its variance, for a partner
 constexpr std::size_t kMostPartners = 5;
 constexpr int kPositions = 33;
-
-/// Standard deviations of the wide prior.
-class WideSigma {
- public:
-  WideSigma(const PriorWidths& stated, std::vector<double> sigma) : stated_(stated) {
-    std::erase_if(sigma, [](double each) { return !std::isfinite(each); });
-    if (sigma.empty()) return;
-    const auto middle = sigma.begin() + static_cast<std::ptrdiff_t>(sigma.size() / 2);
-    std::ranges::nth_element(sigma, middle);
-    wider_ = std::max(1.0, *middle / kNoiseOfMachineTools);
-  }
-
-  double of(ErrorSymbol symbol) const {
-    return is_rotation(symbol.component) ? stated_.rotation.value_or(wider_ * kWideRotation)
-                                         : stated_.displacement.value_or(wider_ * kWideDisplacement);
-  }
-  double of(const ParameterBlock& block) const {
-    if (block.location) {
-      return is_rotation(block.location->component)
-                 ? stated_.squareness.value_or(wider_ * kWideSquareness)
-                 : stated_.displacement.value_or(wider_ * kWideDisplacement);
-    }
-    if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return wider_ * 1e-3;
-    if (block.kind == ParameterKind::EffectShape) return 10.0 * block.prior_sigma[0];
-    return kWideNuisance;
-  }
-
- private:
-  PriorWidths stated_;
-  double wider_ = 1.0;
-};
 
 const Basis& basis_of(const ParameterLayout& layout, ErrorSymbol symbol) {
   return *layout.groups[static_cast<std::size_t>(layout.find(symbol)->group)].basis;
@@ -110,121 +69,6 @@ double mean_variance(const ErrorStretch& stretch, const Eigen::MatrixXd& covaria
 double mean_variance_in(const ErrorStretch& stretch, const Eigen::MatrixXd& full_covariance) {
   return mean_variance(stretch,
                        full_covariance.block(stretch.offset, stretch.offset, stretch.size, stretch.size));
-}
-
-/// Words for why one error is not seen even when everything else is known.
-struct Explanation {
-  std::string reason;
-  std::string remedy;
-};
-
-std::string joined(const std::vector<std::string>& words) {
-  std::ostringstream text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text << (i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") << words[i];
-  }
-  return text.str();
-}
-
-bool axis_moves(const Campaign& campaign, AxisName axis) {
-  const MeasuredRange range = measured_range(campaign, axis);
-  return range.max - range.min > 1e-3 * campaign.machine.axis(axis).travel();
-}
-
-/// Tools in use, as offsets across direction `k`.
-double largest_sideways_offset(const Campaign& campaign, int k) {
-  double largest = 0.0;
-  for (const Setup& setup : campaign.setups) {
-    Eigen::Vector3d offset = campaign.machine.tools[setup.tool].offset;
-    offset[k] = 0.0;
-    largest = std::max(largest, offset.norm());
-  }
-  return largest;
-}
-
-/// Name of the straightness that displaces as a squareness does: this one in proportion to the position, the
-/// straightness in any other course. Empty for other errors.
-std::string straightness_beside(const std::string& name) {
-  const auto axis = turned_axis(name);
-  if (!axis) return "";
-  const int across = 3 - direction_of(LocationSymbol::parse(name)->component) - direction_of(*axis);
-  return ErrorSymbol{kAllComponents[static_cast<std::size_t>(across)], *axis}.name();
-}
-
-/// Nothing can be told of an error motion or a squareness of an axis that stands still.
-std::optional<Explanation> explain_standing(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
-  const auto moving = symbol ? std::optional(symbol->axis) : turned_axis(name);
-  if (!moving || axis_moves(campaign, *moving)) return std::nullopt;
-  const std::string axis(1, letter_of(*moving));
-  return Explanation{"axis " + axis + " does not move in this campaign", "measure along axis " + axis};
-}
-
-Explanation explain_unseen(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
-  if (symbol && is_rotation(symbol->component)) {
-    const int k = direction_of(symbol->component);
-    const std::string about(1, "XYZ"[k]);
-    if (largest_sideways_offset(campaign, k) < 1e-3) {
-      return {"every tool offset lies on " + about,
-              "add setups with a tool offset sideways to " + about + " (100 mm or more)"};
-    }
-    return {"no reading has a lever arm about " + about,
-            "add setups with another tool offset, or an angle instrument about " + about};
-  }
-  const bool location = LocationSymbol::parse(name).has_value();
-  const std::string off = symbol     ? " ([functions] " + name + " = { basis = \"zero\" })"
-                          : location ? " ([locations] " + name + " = \"zero\")"
-                                     : "";
-  return {"no reading changes when it changes",
-          "add readings that are sensitive to it, or switch it off in the model" + off};
-}
-
-std::set<std::string> stations(const ParameterLayout& layout) {
-  std::set<std::string> names;
-  for (const ParameterBlock& block : layout.blocks) {
-    if (block.name.starts_with("station ")) names.insert(block.name);
-  }
-  return names;
-}
-
-std::size_t tools_in_use(const Campaign& campaign) {
-  std::set<std::size_t> tools;
-  for (const Setup& setup : campaign.setups) tools.insert(setup.tool);
-  return tools.size();
-}
-
-/// The axis of an error function whose readings stand at one or two positions of it.
-std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
-  const auto symbol = ErrorSymbol::parse(name);
-  if (!symbol || automatic_intervals(campaign, symbol->axis) > 1) return std::nullopt;
-  return symbol->axis;
-}
-
-std::string remedy_for_mixture(const MeasurementModel& model, const std::string& error,
-                               const std::vector<std::string>& partners) {
-  const auto is_nuisance = [&](const std::string& name) {
-    const ParameterBlock* block = model.layout().find_block(name);
-    return block != nullptr && !block->location && block->kind != ParameterKind::Effect;
-  };
-  const std::size_t station_count = stations(model.layout()).size();
-  std::vector<std::string> remedies;
-  if (const auto axis = axis_at_few_positions(model.campaign(), error))
-    remedies.push_back(std::string("add positions along axis ") + letter_of(*axis));
-  if (station_count > 0 && station_count < 3)
-    remedies.emplace_back("measure from more stations (four, well apart)");
-  if (tools_in_use(model.campaign()) < 2)
-    remedies.emplace_back("repeat with a second tool offset, sideways and of another length");
-  if (std::string tool = third_tool(model.campaign(), error, partners); !tool.empty())
-    remedies.push_back(std::move(tool));
-  if (station_count == 0 && std::ranges::any_of(partners, is_nuisance)) {
-    remedies.emplace_back(
-        "add an instrument that holds position or direction over the whole travel (tracer, straightness, "
-        "square)");
-  }
-  if (remedies.empty())
-    remedies.emplace_back("add lines at other offsets, straightness or angle readings that tell them apart");
-  return joined(remedies);
 }
 
 /// Covariances before and after the readings, and the part of the latter that hides from them.
@@ -315,7 +159,7 @@ class RankAnalyser {
   Explanation explain_alone(const ErrorStretch& stretch) const {
     if (stretch.function == nullptr || !part_is_seen(stretch))
       return explain_unseen(model_.campaign(), stretch.name);
-    return too_few_positions(stretch);
+    return explain_few_positions(stretch.function->symbol.axis);
   }
 
   /// Does a reading change with some combination of the error's coefficients?
@@ -326,12 +170,6 @@ class RankAnalyser {
     Eigen::MatrixXd gain = lower.solve(block(data_, stretch));
     gain = lower.solve(gain.transpose()).eval();
     return gain.diagonal().sum() > kGainOfVisible * static_cast<double>(stretch.size);
-  }
-
-  static Explanation too_few_positions(const ErrorStretch& stretch) {
-    const std::string axis(1, letter_of(stretch.function->symbol.axis));
-    return {"the readings stand at too few positions of axis " + axis + " to tell its course between them",
-            "add positions along axis " + axis};
   }
 
   /// The straightness that hides a squareness though all other errors are known: no station, tool or other
@@ -370,11 +208,12 @@ class RankAnalyser {
     }
     const std::vector<std::string> partners = partners_of(stretch);
     if (partners.empty()) {
-      if (stretch.function != nullptr) return too_few_positions(stretch);
+      if (stretch.function != nullptr) return explain_few_positions(stretch.function->symbol.axis);
       return {"the readings that depend on it are too few or too noisy", "add readings far from its pivot"};
     }
-    return {"a change of it can be exchanged with " + joined(partners) + " without changing any reading",
-            remedy_for_mixture(model_, stretch.name, partners)};
+    return {
+        "a change of it can be exchanged with " + list_in_words(partners) + " without changing any reading",
+        remedy_for_mixture(model_, stretch.name, partners)};
   }
 
   /// Names of what changes along with an error in the directions that hide, strongest first.
@@ -434,70 +273,10 @@ class RankAnalyser {
 
 }  // namespace
 
-GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
-                         const std::vector<double>& sigma) {
-  const WideSigma wide_sigma(model.spec().priors, sigma);
-  GaussianPrior prior = GaussianPrior::none(datum.size());
-  prior.mean = z;
-  for (const auto& function : datum.functions()) {
-    if (function.size() == 0) continue;
-    const Basis& basis = basis_of(model.layout(), function.symbol);
-    const double travel = model.campaign().machine.axis(function.symbol.axis).travel();
-    Eigen::MatrixXd roughness = gram(basis, 0) / travel;
-    if (basis.roughness_order() > 0) {
-      roughness += kCurvatureShare * std::pow(travel, 2 * basis.roughness_order() - 1) *
-                   gram(basis, basis.roughness_order());
-    }
-    prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
-        function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma.of(function.symbol), 2);
-    prior.mean.segment(function.offset, function.size()).setZero();
-  }
-  for (const auto& block : datum.blocks()) {
-    const ParameterBlock& source = model.layout().blocks[block.block];
-    for (int k = 0; k < block.size; ++k) {
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma.of(source), 2);
-    }
-    if (source.location || source.kind == ParameterKind::Effect)
-      prior.mean.segment(block.offset, block.size).setZero();
-  }
-  return prior;
-}
-
 RankAnalysis analyse_rank(const MeasurementModel& model, const DatumSpace& datum, const Eigen::MatrixXd& data,
                           const GaussianPrior& wide) {
   if (datum.size() == 0) return {};
   return RankAnalyser(model, datum, data, wide).run();
-}
-
-GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum) {
-  GaussianPrior prior = GaussianPrior::none(datum.size());
-  for (const auto& block : datum.blocks()) {
-    const ParameterBlock& source = layout.blocks[block.block];
-    for (int k = 0; k < block.size; ++k) {
-      const double sigma = source.prior_sigma[k];
-      if (sigma == 0.0) continue;
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / (sigma * sigma);
-      prior.mean[block.offset + k] = source.prior_mean[k];
-    }
-  }
-  return prior;
-}
-
-void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior) {
-  if (rank.report.rank >= rank.report.parameters) return;
-  prior.mean = (prior.precision.diagonal().array() > 0.0).select(prior.mean, wide.mean);
-  prior.precision += rank.deficient ? rank.on_invisible : wide.precision;
-}
-
-void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {
-  const auto is_visible = [&](const SmoothingTerm& term) {
-    return std::ranges::find(rank.invisible_functions, term.symbol) == rank.invisible_functions.end();
-  };
-  const auto unseen = std::stable_partition(terms.begin(), terms.end(), is_visible);
-  std::vector<SmoothingTerm> held(unseen, terms.end());
-  terms.erase(unseen, terms.end());
-  for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
-  add_smoothing(held, prior);
 }
 
 }  // namespace volcal

@@ -30,13 +30,13 @@ void set_zero(Lanes* lanes, int count) {
   for (int k = 0; k < count; ++k) lanes[k].fill(0.0);
 }
 
-/// lanes += factor * position times the excess over the reference temperature.
+/// lanes += factor * position from home times the excess over the reference temperature.
 void add_warmed(const ExpansionBinding& expansion, const ReadingBlock& block, const Lanes& position,
                 double factor, Lanes& lanes) {
   const double* const temperature_degC = expansion.temperature_degC->data() + block.first_row;
   for (int i = 0; i < kLanes; ++i) {
     const double excess = temperature_degC[std::min(i, block.size - 1)] - kReferenceTemperature_degC;
-    lanes[i] += factor * (excess * position[i]);
+    lanes[i] += factor * (excess * (position[i] - expansion.home));
   }
 }
 

@@ -257,6 +257,7 @@ class CampaignBinder {
     expansion.term = motion_term({kAllComponents[index_of(axis.name)], axis.name}, parameter);
     expansion.axis = axis.name;
     expansion.per_kelvin = axis.expansion->per_kelvin;
+    expansion.home = axis.home;
     expansions_.push_back(expansion);
     if (parameter >= 0) binding_.shared_terms.push_back(expansion.term);
   }

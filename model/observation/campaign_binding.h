@@ -68,19 +68,21 @@ struct EffectBinding {
   }
 };
 
-/// Thermal expansion of a scale; `term.parameter` corrects the coefficient, -1 = exact.
+/// Thermal expansion of a scale, from home, where the datum makes every error motion zero; `term.parameter`
+/// corrects the coefficient, -1 = exact.
 struct ExpansionBinding {
   MotionTerm term;
   AxisName axis = AxisName::X;
   double per_kelvin = 0.0;  ///< 1/K
+  double home = 0.0;        ///< m or rad
   const std::vector<double>* temperature_degC = nullptr;
 
   double coefficient(const Eigen::VectorXd& parameters) const {
     return term.parameter < 0 ? per_kelvin : per_kelvin + parameters[term.parameter];
   }
-  /// Position times the excess over the reference temperature, m K.
+  /// Position from home times the excess over the reference temperature, m K.
   double warmed(std::size_t row, const AxisPosition& position) const {
-    return ((*temperature_degC)[row] - kReferenceTemperature_degC) * position[index_of(axis)];
+    return ((*temperature_degC)[row] - kReferenceTemperature_degC) * (position[index_of(axis)] - home);
   }
 };
 

@@ -30,3 +30,4 @@ run(${work}/build/consumer ${campaign}/campaign.toml ${campaign}/truth/campaign.
 if(NOT EXISTS ${work}/result/error_tables.csv)
   message(FATAL_ERROR "consumer: no error tables")
 endif()
+run(${work}/build/with_own_format ${work}/result)

@@ -177,6 +177,50 @@ TEST(LinearAxisErrors, AtManyPositionsAreThoseAtEachToTheBit) {
   }
 }
 
+/// Positions up to a travel beyond either end, and the ends themselves.
+std::vector<AxisPosition> positions_beyond(const Machine& machine, std::mt19937_64& random, int count) {
+  std::vector<AxisPosition> positions(static_cast<std::size_t>(count));
+  for (AxisPosition& position : positions) {
+    for (const Axis& axis : machine.axes) {
+      const int where = random_count(random, 0, 3);
+      position[index_of(axis.name)] = where == 0 ? axis.travel_min
+                                      : where == 1
+                                          ? axis.travel_max
+                                          : axis.travel_min + axis.travel() * (0.5 + uniform(random, 1.5));
+    }
+  }
+  return positions;
+}
+
+// Beyond the readings the last measured value is held, whether they end within the travel or with it.
+TEST(LinearAxisErrors, BeyondTheReadingsErrorsAreHeldAsInThePlainField) {
+  std::mt19937_64 random(76);
+  for (const double share : {0.0, 0.15}) {
+    for (int i = 0; i < 20; ++i) {
+      const Machine machine = random_machine(random);
+      FitResult result = random_result(machine, random);
+      for (const Axis& axis : machine.axes) {
+        FunctionSummary& summary = result.functions.emplace_back();
+        summary.symbol = {Component::X, axis.name};
+        summary.measured_min = axis.travel_min + share * axis.travel();
+        summary.measured_max = axis.travel_max - 2.0 * share * axis.travel();
+      }
+      const Vector3d tool = random_vector(random, 0.3);
+      const auto errors = LinearAxisErrors::make(result, tool, effects_of(result, tool));
+      ASSERT_TRUE(errors);
+      const DisplacementField plain = plain_displacement_field(result, tool_at(tool), {});
+      double largest = 0.0, difference = 0.0;
+      for (const AxisPosition& position : positions_beyond(machine, random, 60)) {
+        const Vector3d wanted = plain(position, kTowardsPlus);
+        largest = std::max(largest, wanted.cwiseAbs().maxCoeff());
+        difference =
+            std::max(difference, (errors->at(position, kTowardsPlus) - wanted).cwiseAbs().maxCoeff());
+      }
+      EXPECT_LT(difference, kSameAsPlain * largest) << machine.structure.code << ", " << share;
+    }
+  }
+}
+
 TEST(LinearAxisErrors, CountsThatDifferAreRefused) {
   std::mt19937_64 random(74);
   const FitResult result = random_result(machine_of("wX'bYZt"), random);

@@ -30,7 +30,7 @@ Axis axis_of(double travel) {
 }
 
 /// Five runs of a line along X over 200 mm of its travel, from `start`, where its home is.
-Campaign line_on(double travel, double start = 0.0) {
+Campaign line_on(double travel, double start = 0.0, unsigned seed = 7) {
   Campaign campaign;
   campaign.machine = testing_support::machine_of("wbXYZt");
   for (Axis& axis : campaign.machine.axes) axis.travel_max = travel;
@@ -41,7 +41,7 @@ Campaign line_on(double travel, double start = 0.0) {
   setup.instrument = "displacement";
   setup.noise.set("constant", kSigma);
   setup.readings.value.resize(1);
-  std::mt19937_64 random(7);
+  std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   for (int run = 0; run < 5; ++run) {
     for (int i = 0; i * kStep < kMeasured + 1e-9; ++i) {
@@ -81,14 +81,33 @@ TEST(PartOfTravel, ValuesAreThoseOfAShortAxis) {
   for (const double x : {0.025, 0.075, 0.125, 0.175}) {
     const ErrorTableRow row = value_at(on_long, x), expected = value_at(on_short, x);
     EXPECT_FALSE(row.extrapolated);
-    EXPECT_LT(std::abs(row.value - truth(x)), 2.0 * row.U95)
-        << x;  // a period of four pieces is just resolved
-    EXPECT_LT(row.U95, 1.5e-6) << x;
-    EXPECT_NEAR(row.value, expected.value, expected.U95) << x;
-    EXPECT_NEAR(row.u / expected.u, 1.0, 0.35) << x;
+    EXPECT_NEAR(row.value, expected.value, 0.25 * expected.U95) << x;
+    EXPECT_NEAR(row.u / expected.u, 1.0, 0.1) << x;
   }
   EXPECT_EQ(on_long.status, FitStatus::Ok);
   EXPECT_NEAR(on_long.variance_components.front().scale, 1.0, 0.35) << "the wave is no noise";
+}
+
+// One draw of the noise may be off: seed 7 estimates 0.7 of it and is 1.9 U95 off at 25 mm, on either axis.
+// Over draws the values have no bias and U95 covers 95 % of them, within what 20 draws of 8 values tell.
+TEST(PartOfTravel, UncertaintyCoversTheTruth) {
+  constexpr int kDraws = 20;
+  int inside = 0, values = 0;
+  double sum = 0.0, variance = 0.0;
+  for (unsigned seed = 1; seed <= kDraws; ++seed) {
+    const FitResult result = positioning_of(line_on(1.0, 0.0, seed));
+    for (int i = 1; i <= 8; ++i) {
+      const ErrorTableRow row = value_at(result, i * kStep);
+      const double off = row.value - truth(i * kStep);
+      ++values;
+      if (std::abs(off) < row.U95) ++inside;
+      sum += off / 8.0;
+      variance += row.u * row.u / 8.0;
+      EXPECT_LT(row.U95, 1.5e-6) << seed;
+    }
+  }
+  EXPECT_GE(inside, static_cast<int>(0.88 * values));
+  EXPECT_LT(std::abs(sum) / kDraws, 3.0 * std::sqrt(variance) / kDraws);
 }
 
 TEST(PartOfTravel, UncertaintyGrowsOutside) {
@@ -97,7 +116,7 @@ TEST(PartOfTravel, UncertaintyGrowsOutside) {
   for (const double x : {0.65, 0.7, 0.8, 1.0}) {
     const ErrorTableRow row = value_at(result, x);
     EXPECT_TRUE(row.extrapolated);
-    EXPECT_GT(row.u, 0.9 * before) << x;
+    EXPECT_GT(row.u, before) << x;
     before = row.u;
   }
   EXPECT_GT(value_at(result, 1.0).u, 10.0 * value_at(result, 0.5).u);

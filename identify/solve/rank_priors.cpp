@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volcal/identify/solve/rank.h"
+
+namespace volcal {
+namespace {
+
+// m or rad: nothing says how rough what is not seen is; more than any machine, and little enough to compute
+constexpr double kUnseenAmplitude = 1e-4;
+constexpr double kWideDisplacement = 1e-3;
+constexpr double kWideRotation = 1e-3;
+constexpr double kWideSquareness = 1e-3;
+constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
+constexpr double kWideNuisance = 1.0;
+constexpr double kCurvatureShare =
+    1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
+
+/// Standard deviations of the wide prior.
+class WideSigma {
+ public:
+  WideSigma(const PriorWidths& stated, std::vector<double> sigma) : stated_(stated) {
+    std::erase_if(sigma, [](double each) { return !std::isfinite(each); });
+    if (sigma.empty()) return;
+    const auto middle = sigma.begin() + static_cast<std::ptrdiff_t>(sigma.size() / 2);
+    std::ranges::nth_element(sigma, middle);
+    wider_ = std::max(1.0, *middle / kNoiseOfMachineTools);
+  }
+
+  double of(ErrorSymbol symbol) const {
+    return is_rotation(symbol.component) ? stated_.rotation.value_or(wider_ * kWideRotation)
+                                         : stated_.displacement.value_or(wider_ * kWideDisplacement);
+  }
+  double of(const ParameterBlock& block) const {
+    if (block.location) {
+      return is_rotation(block.location->component)
+                 ? stated_.squareness.value_or(wider_ * kWideSquareness)
+                 : stated_.displacement.value_or(wider_ * kWideDisplacement);
+    }
+    if (block.kind == ParameterKind::Effect || block.kind == ParameterKind::Expansion) return wider_ * 1e-3;
+    if (block.kind == ParameterKind::EffectShape) return 10.0 * block.prior_sigma[0];
+    return kWideNuisance;
+  }
+
+ private:
+  PriorWidths stated_;
+  double wider_ = 1.0;
+};
+
+}  // namespace
+
+GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
+                         const std::vector<double>& sigma) {
+  const WideSigma wide_sigma(model.spec().priors, sigma);
+  GaussianPrior prior = GaussianPrior::none(datum.size());
+  prior.mean = z;
+  for (const auto& function : datum.functions()) {
+    if (function.size() == 0) continue;
+    const Basis& basis =
+        *model.layout().groups[static_cast<std::size_t>(model.layout().find(function.symbol)->group)].basis;
+    const double travel = model.campaign().machine.axis(function.symbol.axis).travel();
+    Eigen::MatrixXd roughness = gram(basis, 0) / travel;
+    if (basis.roughness_order() > 0) {
+      roughness += kCurvatureShare * std::pow(travel, 2 * basis.roughness_order() - 1) *
+                   gram(basis, basis.roughness_order());
+    }
+    prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
+        function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma.of(function.symbol), 2);
+    prior.mean.segment(function.offset, function.size()).setZero();
+  }
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = model.layout().blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma.of(source), 2);
+    }
+    if (source.location || source.kind == ParameterKind::Effect)
+      prior.mean.segment(block.offset, block.size).setZero();
+  }
+  return prior;
+}
+
+GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum) {
+  GaussianPrior prior = GaussianPrior::none(datum.size());
+  for (const auto& block : datum.blocks()) {
+    const ParameterBlock& source = layout.blocks[block.block];
+    for (int k = 0; k < block.size; ++k) {
+      const double sigma = source.prior_sigma[k];
+      if (sigma == 0.0) continue;
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / (sigma * sigma);
+      prior.mean[block.offset + k] = source.prior_mean[k];
+    }
+  }
+  return prior;
+}
+
+void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior) {
+  if (rank.report.rank >= rank.report.parameters) return;
+  prior.mean = (prior.precision.diagonal().array() > 0.0).select(prior.mean, wide.mean);
+  prior.precision += rank.deficient ? rank.on_invisible : wide.precision;
+}
+
+void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {
+  const auto is_visible = [&](const SmoothingTerm& term) {
+    return std::ranges::find(rank.invisible_functions, term.symbol) == rank.invisible_functions.end();
+  };
+  const auto unseen = std::stable_partition(terms.begin(), terms.end(), is_visible);
+  std::vector<SmoothingTerm> held(unseen, terms.end());
+  terms.erase(unseen, terms.end());
+  for (SmoothingTerm& term : held) term.lambda = 1.0 / (kUnseenAmplitude * kUnseenAmplitude);
+  add_smoothing(held, prior);
+}
+
+}  // namespace volcal

@@ -1,0 +1,104 @@
+#include "volcal/sim/known_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace volcal::sim {
+namespace {
+
+/// Clamped spline by de Boor's algorithm (C. de Boor, A Practical Guide to Splines, 1978, ch. X).
+class KnownSpline {
+ public:
+  KnownSpline(int degree, const std::vector<double>& breakpoints, std::vector<double> coefficients)
+      : degree_(static_cast<std::size_t>(degree)), coefficients_(std::move(coefficients)) {
+    knots_.assign(degree_, breakpoints.front());
+    knots_.insert(knots_.end(), breakpoints.begin(), breakpoints.end());
+    knots_.insert(knots_.end(), degree_, breakpoints.back());
+  }
+
+  double operator()(double q) const {
+    const std::size_t last = coefficients_.size() - 1;
+    std::size_t span = degree_;
+    while (span < last && q >= knots_[span + 1]) ++span;
+    std::vector<double> d(coefficients_.begin() + static_cast<std::ptrdiff_t>(span - degree_),
+                          coefficients_.begin() + static_cast<std::ptrdiff_t>(span) + 1);
+    for (std::size_t r = 1; r <= degree_; ++r) {
+      for (std::size_t j = degree_; j >= r; --j) {
+        const double left = knots_[span - degree_ + j], right = knots_[span + 1 + j - r];
+        const double share = (q - left) / (right - left);
+        d[j] = (1.0 - share) * d[j - 1] + share * d[j];
+      }
+    }
+    return d[degree_];
+  }
+
+ private:
+  std::size_t degree_;
+  std::vector<double> coefficients_;
+  std::vector<double> knots_;
+};
+
+/// sum c_n P_n(t), t from -1 to 1 over the travel.
+struct KnownLegendre {
+  double low = 0.0;
+  double high = 1.0;
+  std::vector<double> coefficients;
+
+  double operator()(double q) const {
+    const double t = (2.0 * q - low - high) / (high - low);
+    double before = 0.0, now = 1.0, sum = 0.0;
+    for (std::size_t n = 0; n < coefficients.size(); ++n) {
+      sum += coefficients[n] * now;
+      const auto number = static_cast<double>(n);
+      const double next = ((2.0 * number + 1.0) * t * now - number * before) / (number + 1.0);
+      before = std::exchange(now, next);
+    }
+    return sum;
+  }
+};
+
+/// c_0 + c_1 cos q + c_2 sin q + c_3 cos 2q ...
+struct KnownFourier {
+  std::vector<double> coefficients;
+
+  double operator()(double q) const {
+    double sum = coefficients.front();
+    for (std::size_t i = 1; i < coefficients.size(); ++i) {
+      const double angle = q * static_cast<double>((i + 1) / 2);
+      sum += coefficients[i] * (i % 2 == 1 ? std::cos(angle) : std::sin(angle));
+    }
+    return sum;
+  }
+};
+
+std::vector<double> breakpoints_of(const FunctionSpec& spec, const Axis& axis) {
+  if (spec.knots != KnotChoice::IntervalCount) return spec.breakpoints;
+  std::vector<double> ends;
+  for (int i = 0; i < spec.intervals; ++i)
+    ends.push_back(axis.travel_min + axis.travel() * static_cast<double>(i) / spec.intervals);
+  ends.push_back(axis.travel_max);
+  return ends;
+}
+
+ErrorFunction known_function(const ModelSpec& errors, ErrorSymbol symbol, const Axis& axis) {
+  const FunctionSpec& spec = errors.function(symbol);
+  if (spec.basis == "bspline") return KnownSpline(spec.degree, breakpoints_of(spec, axis), spec.coefficients);
+  if (spec.basis == "legendre") return KnownLegendre{axis.travel_min, axis.travel_max, spec.coefficients};
+  if (spec.basis == "fourier") return KnownFourier{spec.coefficients};
+  throw InputError(
+      {errors.file, 0}, symbol.name() + " has the basis \"" + spec.basis + "\", which is not simulated",
+      "state it in one of bspline, legendre, fourier, or as tables (volcal tables --format csv)");
+}
+
+}  // namespace
+
+void set_known_errors(const ModelSpec& errors, TruthMachine& truth) {
+  for (const auto& [symbol, spec] : errors.functions) {
+    if (spec.coefficients.empty()) continue;
+    truth.set_error(symbol, known_function(errors, symbol, truth.machine().axis(symbol.axis)));
+  }
+  for (const auto& [symbol, value] : errors.locations) truth.set_location(symbol, value);
+}
+
+}  // namespace volcal::sim

@@ -1,0 +1,209 @@
+/// Known errors go in wherever errors do: exercise 3 of the teaching paper, a machine simulated from a model,
+/// from tables and from a result, alignment of a model, and an error budget before anything is built.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+#include "tests/support/simulated_campaign.h"
+
+namespace volcal {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+const std::string kExercises = VOLCAL_SOURCE_DIR "/datasets/exercises/";
+
+// Table 2 of the paper, to the printed micrometre.
+TEST(Exercise3, IsOneCommand) {
+  const std::vector<double> printed = {0, 8, 60, 81, 76, 17, -18, -47, -54};
+  std::string arguments = "tables " + kExercises + "slideway.toml --json";
+  for (std::size_t y = 0; y < printed.size(); ++y) arguments += " --at Y=" + std::to_string(y);
+  const auto run = run_program(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const json errors = json::parse(run.output).at("volumetric_errors");
+  ASSERT_EQ(errors.size(), printed.size());
+  for (std::size_t y = 0; y < printed.size(); ++y)
+    EXPECT_EQ(std::round(errors[y].at("error_um")[1].get<double>()), printed[y]) << "y = " << y << " mm";
+}
+
+constexpr const char* kKnown = R"(
+[functions]
+default = { basis = "zero" }
+EXX = { basis = "legendre", degree = 3, coefficients_um = [6.0, 9.0, -4.0, 2.0] }
+EYX = { basis = "bspline", degree = 2, knots = 3, coefficients_um = [0.0, 5.0, -6.0, 4.0, 1.0] }
+EAY = { basis = "bspline", degree = 3, knots = 2, coefficients_urad = [0.0, 12.0, -20.0, 9.0, 15.0] }
+ECZ = { basis = "bspline", degree = 1, knots_mm = [-450, -300, 0], coefficients_urad = [18.0, -7.0, 0.0] }
+EZZ = { basis = "legendre", degree = 2, coefficients_um = [1.0, -7.0, 3.0] }
+[locations]
+EC0Y_urad = 22.0
+EB0Z_urad = -14.0
+[[effects]]
+kind = "reversal"
+symbol = "EXX"
+amplitude_um = 3.0
+[[effects]]
+kind = "axis-coupling"
+symbol = "EAY"
+axis = "Z"
+amplitude_urad_per_m = 25.0
+[[effects]]
+kind = "scale-expansion"
+axis = "X"
+temperature = "air"
+amplitude_um_per_m_K = 11.0
+)";
+
+constexpr const char* kMeasured = R"(
+[[temperatures]]
+channel = "air"
+start_degC = 21.0
+drift_K_per_hour = 1.0
+[[measurements]]
+kind = "point-grid"
+grid = [5, 4, 4]
+noise = { constant_um = 0.0001, per_metre_um = 0.0, repeatability_um = 0.0 }
+[[measurements]]
+kind = "laser-tracer"
+grid = [4, 3, 3]
+noise = { constant_um = 0.0001, per_metre_um = 0.0, repeatability_um = 0.0 }
+)";
+
+class KnownErrors : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write("known.toml",
+          "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n" + kKnown);
+    write("study.toml",
+          "format = \"volcal-study-1\"\nmachine = \"" + testing::kDemoMachine + "\"\nseed = 5\n" + kMeasured);
+  }
+
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
+
+  std::string done(const std::string& arguments) const {
+    const auto run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 0) << arguments << "\n" << run.errors << run.output;
+    return run.output;
+  }
+  void refused(const std::string& arguments, const std::string& problem, const std::string& remedy) const {
+    const auto run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 2) << arguments << run.output;
+    EXPECT_THAT(run.errors, HasSubstr(problem)) << arguments;
+    EXPECT_THAT(run.errors, HasSubstr(remedy)) << arguments;
+  }
+
+  /// RMS and largest residual of what a model leaves of a campaign, um.
+  std::pair<double, double> left(const std::string& campaign, const std::string& model) const {
+    const json compared =
+        json::parse(done("compare " + path(campaign) + "/campaign.toml " + model + " --json"));
+    const json& lengths = compared.at("models").at(0).at("total").at("lengths_um");
+    return {lengths.at("rms").get<double>(), lengths.at("max").get<double>()};
+  }
+
+ private:
+  testing::ScratchFolder folder_;
+};
+
+TEST_F(KnownErrors, AMachineIsSimulatedFromAModelAndExplainedByIt) {
+  done("simulate " + path("study.toml") + " --errors " + path("known.toml") + " -o " + path("campaign"));
+  EXPECT_GT(left("campaign", "nominal").first, 5.0);
+  EXPECT_LT(left("campaign", path("known.toml")).second, 0.01);
+  write("with-errors.toml", testing::content(path("study.toml")) + "[truth]\nerrors = \"known.toml\"\n");
+  done("simulate " + path("with-errors.toml") + " -o " + path("same"));
+  for (const auto& entry : std::filesystem::directory_iterator(path("same"))) {
+    if (entry.path().extension() != ".csv") continue;
+    EXPECT_EQ(testing::content(entry.path()),
+              testing::content(path("campaign") + "/" + entry.path().filename().string()));
+  }
+}
+
+TEST_F(KnownErrors, TablesAndResultsAreSimulatedToo) {
+  write("rigid.toml",
+        testing::content(path("known.toml"))
+            .substr(0, testing::content(path("known.toml")).find("[[effects]]\nkind = \"axis-coupling\"")));
+  done("tables " + path("rigid.toml") + " --format csv --positions 401 -o " + path("tables"));
+  done("simulate " + path("study.toml") + " --errors " + path("tables") + " -o " + path("from-tables"));
+  EXPECT_LT(left("from-tables", path("tables")).second, 0.01);
+  EXPECT_LT(left("from-tables", path("rigid.toml")).second, 0.05) << "tables are linear between their rows";
+  done("align " + path("rigid.toml") + " --primary Y --secondary X -o " + path("aligned"));
+  write("aligned.toml",
+        "format = \"volcal-study-1\"\nmachine = \"aligned/machine.toml\"\n" + std::string(kMeasured));
+  done("simulate " + path("aligned.toml") + " --errors " + path("aligned") + " -o " + path("from-result"));
+  EXPECT_LT(left("from-result", path("aligned/identified.toml")).second, 0.01);
+}
+
+// The error of the volume is the same in any frame but for a rigid motion, whatever the errors are read from.
+TEST_F(KnownErrors, AModelIsAlignedAsAResultIs) {
+  done("align " + path("known.toml") + " --primary Y --secondary X -o " + path("aligned"));
+  const auto rms = [&](const std::string& errors) {
+    return json::parse(done("budget " + errors + " --json")).at("total").at("rms_um").get<double>();
+  };
+  EXPECT_NEAR(rms(path("known.toml")), rms(path("aligned")), 0.01);
+  EXPECT_NEAR(rms(path("known.toml")), rms(path("aligned/identified.toml")), 0.01);
+  EXPECT_THAT(testing::content(path("aligned/identified.toml")), HasSubstr("EC0X_urad"));
+  EXPECT_THAT(testing::content(path("aligned/identified.toml")), HasSubstr("Stated in"));
+}
+
+TEST_F(KnownErrors, AModelIsValidatedOnReadings) {
+  done("simulate " + path("study.toml") + " --errors " + path("known.toml") + " -o " + path("campaign"));
+  const json figures =
+      json::parse(done("validate " + path("known.toml") + " " + path("campaign/campaign.toml") + " --json"));
+  EXPECT_GT(figures.at("rms_before_um").get<double>(), 5.0);
+  EXPECT_LT(figures.at("rms_after_um").get<double>(), 0.01);
+}
+
+TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
+  write("empty.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n");
+  refused("budget " + path("empty.toml"), "states no error", "--tolerances");
+  write("other.toml", testing::content(path("known.toml")) +
+                          "[[effects]]\nkind = \"station-drift\"\nstation = \"P1\"\nx_um_per_h = 1.0\n");
+  refused("simulate " + path("study.toml") + " --errors " + path("other.toml") + " -o " + path("c"),
+          "station-drift", "[[hidden]]");
+  write("cold.toml", "format = \"volcal-study-1\"\nmachine = \"" + testing::kDemoMachine +
+                         "\"\n[[measurements]]\nkind = \"point-grid\"\n");
+  refused("simulate " + path("cold.toml") + " --errors " + path("known.toml") + " -o " + path("c"), "air",
+          "[[temperatures]]");
+  refused("simulate " + path("study.toml") + " --errors " + kExercises + "slideway.toml -o " + path("c"),
+          "another machine", "name the machine");
+  write("both.toml", testing::content(path("study.toml")) +
+                         "[truth]\nerrors = \"known.toml\"\nvolumetric_rms_um = [1, 2]\n");
+  refused("simulate " + path("both.toml") + " -o " + path("c"), "volumetric_rms_um", "keep one of the two");
+  done("align " + path("known.toml") + " --primary Y --secondary X -o " + path("aligned"));
+  refused("plan " + path("aligned/machine.toml") + " --readings 64 --model " + path("aligned"),
+          "is a result, a model file is expected", "identified.toml");
+}
+
+TEST_F(KnownErrors, ABudgetOfTolerancesIsOneCommand) {
+  write("tolerances.toml",
+        "format = \"volcal-tolerances-1\"\n[tolerances]\npositioning_um = 10\nstraightness_um = 8\n"
+        "angles_urad = 15\nsquareness_urad = 20\n");
+  const std::string command = "budget " + testing::kDemoMachine + " --tolerances " + path("tolerances.toml");
+  const json budget = json::parse(done(command + " --tool side_y --json"));
+  EXPECT_EQ(budget.at("tool"), "side_y");
+  double share = 0.0;
+  for (const json& cause : budget.at("causes")) share += cause.at("expected_share_percent").get<double>();
+  EXPECT_NEAR(share, 100.0, 0.01);
+  EXPECT_EQ(budget.at("contributions").size(), 21U);
+  EXPECT_GT(budget.at("rms_95_um").get<double>(), budget.at("total").at("expected_rms_um").get<double>());
+  EXPECT_TRUE(budget.at("without_tolerance").empty());
+  write("tolerances.toml", "format = \"volcal-tolerances-1\"\n[tolerances]\nEXX_um = 10\n");
+  EXPECT_THAT(done(command), HasSubstr("without a tolerance, counted as free of error: EYX, EZX"));
+  write("model.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n");
+  EXPECT_EQ(done("budget " + path("model.toml") + " --tolerances " + path("tolerances.toml")), done(command));
+  refused("budget " + path("known.toml") + " --tolerances " + path("tolerances.toml"), "states errors",
+          "machine file");
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,181 @@
+// A machine with known errors, measured without noise by the simulator, which evaluates functions and effects
+// by code of its own: the model that states the errors explains every reading.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
+#include "volcal/sim/known_errors.h"
+#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/study.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kFirstOrder = 10e-9;  // m: errors of 20 um and 50 urad, squared, over a metre
+constexpr const char* kChannel = "column";
+
+Machine machine_with_homes() {
+  Machine machine = sim::reference_machines()[0];
+  for (Axis& axis : machine.axes) axis.home = axis.travel_min + 0.3 * axis.travel();
+  return machine;
+}
+
+/// Splines of every degree, Legendre series, squareness: displacements of some 10 um, rotations of 20 urad.
+ModelSpec known_functions(const Machine& machine, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  int turn = 0;
+  for (const Axis& axis : machine.axes) {
+    for (const Component component : kAllComponents) {
+      FunctionSpec spec;
+      switch (turn++ % 5) {
+        case 0:
+        case 1:
+        case 2:
+          spec.degree = turn % 5;
+          if (spec.degree == 0) spec.degree = 3;
+          spec.knots = KnotChoice::IntervalCount;
+          spec.intervals = 4;
+          break;
+        case 3:
+          spec.degree = 3;
+          spec.knots = KnotChoice::Explicit;
+          spec.breakpoints = {axis.travel_min, axis.travel_min + 0.2 * axis.travel(),
+                              axis.travel_min + 0.7 * axis.travel(), axis.travel_max};
+          break;
+        default:
+          spec.basis = "legendre";
+          spec.degree = 6;
+      }
+      if (spec.knots == KnotChoice::IntervalCount)
+        spec.breakpoints = uniform_breakpoints(axis, spec.intervals);
+      const int size = find_basis(spec.basis)->make(spec, axis)->size();
+      for (int i = 0; i < size; ++i)
+        spec.coefficients.push_back((is_rotation(component) ? 20e-6 : 10e-6) * normal(random));
+      model.functions[{component, axis.name}] = spec;
+    }
+  }
+  for (const LocationSymbol symbol : machine.datum.squareness())
+    model.locations[symbol] = 30e-6 * normal(random);
+  return model;
+}
+
+/// Errors of points all over the volume from both directions, lengths from stations, temperatures that drift.
+Campaign measured_without_noise(const Machine& machine, const ModelSpec& errors) {
+  sim::Study study;
+  study.machine = machine;
+  study.truth.errors = errors;
+  study.environment.channels = {{.name = kChannel, .start = 21.0, .drift = 1.5 / 3600.0}};
+  sim::PointGrid grid;
+  grid.rigid_alignment = false;
+  grid.alignment_shift = grid.alignment_rotation = 0.0;
+  study.measurements.push_back({"grid", grid});
+  sim::Tracking tracking;
+  tracking.grid = {4, 4, 3};
+  study.measurements.push_back({"", tracking});
+  sim::AxisLines lines;
+  study.measurements.push_back({"", lines});
+  for (sim::Measurement& measurement : study.measurements)
+    std::visit([](auto& settings) { settings.noise = {}; }, measurement.settings);
+  Campaign campaign = sim::simulate(study).campaign;
+  for (Setup& setup : campaign.setups) {
+    setup.noise.set("constant", 0.1e-6);
+    setup.repeatability = 0.0;
+  }
+  return campaign;
+}
+
+double largest_residual(const Campaign& campaign, const ModelSpec& model) {
+  double largest = 0.0;
+  for (const ResidualRecord& record : evaluate_model(campaign, model, nullptr, 1).residuals)
+    largest = std::max(largest, std::abs(record.residual()));
+  return largest;
+}
+
+TEST(KnownTruth, FunctionsAndSquarenessAreThoseOfTheModel) {
+  const Machine machine = machine_with_homes();
+  const ModelSpec model = known_functions(machine, 3);
+  const Campaign campaign = measured_without_noise(machine, model);
+  EXPECT_GT(largest_residual(campaign, nominal_model()), 20e-6);
+  EXPECT_LT(largest_residual(campaign, model), kFirstOrder);
+}
+
+/// One of every kind that the simulator knows, with its amplitudes: a few micrometres over the travel.
+EffectSpec example_of(const std::string& kind, const Machine& machine) {
+  EffectSpec spec;
+  spec.kind = kind;
+  const auto has = [&](const std::string& stem) {
+    return std::ranges::any_of(find_effect(kind)->schema().keys, [&](const KeySchema& key) {
+      return key.key == stem || key.key.starts_with(stem + "_");
+    });
+  };
+  if (has("symbol")) spec.options.set("symbol", std::string(kind == "squareness-drift" ? "EC0Y" : "EBX"));
+  if (kind == "product-coupling") spec.options.set("second_axis", std::string("Z"));
+  if (has("axis")) spec.options.set("axis", std::string("Y"));
+  if (has("temperature")) spec.options.set("temperature", std::string(kChannel));
+  if (has("tool")) spec.options.set("tool", machine.tools[1].name);
+  if (kind == "axis-coupling") spec.options.set("shape", std::string("quadratic"));
+  if (has("period")) spec.options.set("period", 0.137);
+  if (has("time_constant")) spec.options.set("time_constant", 900.0);
+  const double amplitude = kind == "squareness-drift" ? 4e-6 : 12e-6;
+  for (const char* stem : {"amplitude", "cos", "sin", "x", "y", "z"}) {
+    if (has(stem)) spec.options.set(stem, std::string(stem) == "sin" ? -0.5 * amplitude : amplitude);
+  }
+  return spec;
+}
+
+TEST(KnownTruth, EveryEffectIsThatOfTheModel) {
+  const Machine machine = machine_with_homes();
+  const ModelSpec without = known_functions(machine, 4);
+  for (const std::string& kind : sim::known_effect_kinds()) {
+    ASSERT_NE(find_effect(kind), nullptr) << kind;
+    ModelSpec with = without;
+    with.effects = {example_of(kind, machine)};
+    const Campaign campaign = measured_without_noise(machine, with);
+    EXPECT_LT(largest_residual(campaign, with), kFirstOrder) << kind;
+    EXPECT_GT(largest_residual(campaign, without), 20.0 * kFirstOrder) << kind << " does nothing";
+  }
+}
+
+TEST(KnownTruth, ScalesExpandFromHome) {
+  Machine machine = machine_with_homes();
+  for (Axis& axis : machine.axes) axis.expansion = ScaleExpansion{11e-6, 0.0, kChannel};
+  const ModelSpec model = known_functions(machine, 5);
+  const Campaign campaign = measured_without_noise(machine, model);
+  EXPECT_LT(largest_residual(campaign, model), kFirstOrder);
+}
+
+TEST(KnownTruth, WhatIsNotSimulatedIsNamed) {
+  const Machine machine = machine_with_homes();
+  ModelSpec model;
+  model.file = "known.toml";
+  model.effects = {effect_spec("station-drift", {{"station", std::string("P1")}})};
+  model.effects[0].source_line = 7;
+  try {
+    measured_without_noise(machine, model);
+    FAIL() << "an effect was dropped";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("station-drift"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("known.toml:7"), std::string::npos) << error.what();
+  }
+  model.effects = {effect_spec(
+      "thermal-drift",
+      {{"symbol", std::string("EAX")}, {"temperature", std::string("oil")}, {"amplitude", 1e-6}})};
+  EXPECT_THROW(measured_without_noise(machine, model), InputError);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -91,11 +91,11 @@ TEST(CommandLine, SaysWhatIsMissingAndWhatToGive) {
             "error: " + here + "resul: there is no such result (did you mean \"result\"?)\n");
   EXPECT_EQ(refusal("compare " + campaign + " " + here + "resul"),
             "error: " + here + "resul: there is no such result or model (did you mean \"result\"?)\n");
-  EXPECT_EQ(
-      refusal("compare " + campaign + " " + here + "nowhere"),
-      "error: " + here +
-          "nowhere: there is no such result or model (give a result folder of volcal fit, a model.toml, or "
-          "the word nominal)\n");
+  EXPECT_EQ(refusal("compare " + campaign + " " + here + "nowhere"),
+            "error: " + here +
+                "nowhere: there is no such result or model (give a result folder of volcal fit, a "
+                "model.toml, a folder of tables "
+                "--format csv, or the word nominal)\n");
   EXPECT_EQ(refusal("diagnose --show " + here + "nowhere"),
             "error: " + here +
                 "nowhere: there is no such diagnosis (give the folder that volcal diagnose wrote with -o)\n");

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <memory>
 #include <regex>
 #include <set>
+#include <stdexcept>
 
 #include "tests/support/table_samples.h"
 #include "volcal/identify/compensation/volume_check.h"
@@ -185,6 +187,17 @@ TEST(TableFormats, UnknownNameIsNotFound) {
   EXPECT_EQ(find_table_format("?"), nullptr);
   const auto names = table_format_names();
   EXPECT_EQ(std::set<std::string>(names.begin(), names.end()).size(), table_formats().size());
+}
+
+TEST(TableFormats, OfAProgramNeedANameOfTheirOwnAWriterAndAReader) {
+  EXPECT_THROW(register_table_format(nullptr), std::invalid_argument);
+  EXPECT_THROW(register_table_format(std::make_unique<TableFormat>(*find_table_format("csv"))),
+               std::invalid_argument);
+  TableFormat half = *find_table_format("csv");
+  half.name = "half";
+  half.read = nullptr;
+  EXPECT_THROW(register_table_format(std::make_unique<TableFormat>(half)), std::invalid_argument);
+  EXPECT_EQ(find_table_format("half"), nullptr);
 }
 
 }  // namespace

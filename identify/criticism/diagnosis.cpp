@@ -9,9 +9,9 @@
 #include <set>
 #include <stdexcept>
 
-#include "volcal/identify/criticism/effect_search.h"
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/not_looked_for.h"
+#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/catalogue/not_looked_for.h"
+#include "volcal/identify/criticism/search/effect_search.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/chi_squared.h"

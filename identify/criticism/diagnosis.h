@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/confounding.h"
-#include "volcal/identify/criticism/detectable.h"
-#include "volcal/identify/criticism/diagnosis_figures.h"
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
-#include "volcal/identify/criticism/next_measurement.h"
+#include "volcal/identify/criticism/catalogue/detectable.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/figures/diagnosis_figures.h"
+#include "volcal/identify/criticism/proposals/confounding.h"
+#include "volcal/identify/criticism/proposals/next_measurement.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/noise/noise_estimate.h"
 
 namespace volcal {

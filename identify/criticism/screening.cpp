@@ -7,8 +7,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/stats/threads.h"
 
 namespace volcal {

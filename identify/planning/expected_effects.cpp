@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/criticism/catalogue/effect_words.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "volcal/identify/criticism/detectable.h"
+#include "volcal/identify/criticism/catalogue/detectable.h"
 
 namespace volcal {
 

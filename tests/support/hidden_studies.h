@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
-#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"

@@ -9,10 +9,10 @@
 
 #include "volcal/identify/cli/studies/criticism_names.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
+#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/channels.h"

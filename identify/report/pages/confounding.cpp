@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/separation.h"
+#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/projection/separation.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/model/effects/registry.h"
 

@@ -1,0 +1,43 @@
+// The same station again, hours later: what drifts with time has moved on, what depends on temperature or
+// position has not.
+#include <fmt/format.h>
+
+#include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/effects/effect_keys.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kHour = 3600.0;
+constexpr double kHoursLater = 3.0;
+constexpr double kOvernight = 16.0;
+
+std::vector<ExtraMeasurement> again(const MenuContext& context, double hours, Temperatures temperatures,
+                                    const std::string& when) {
+  const Campaign& campaign = context.campaign;
+  std::vector<ExtraMeasurement> all;
+  if (!has_time(campaign)) return all;
+  for (const Setup* setup : one_setup_per_station(campaign)) {
+    ExtraMeasurement extra;
+    extra.setup = setup->name;
+    extra.words = fmt::format("measure {} again {}", place_and_tool(campaign, *setup), when);
+    extra.setups.push_back(continued_setup(context, *setup, spread_rows(*setup, context.readings),
+                                           setup->name + " again " + when, end_of(campaign) + hours * kHour,
+                                           temperatures));
+    all.push_back(std::move(extra));
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<ExtraMeasurement> revisits(const MenuContext& context) {
+  return again(context, kHoursLater, Temperatures::Last, fmt::format("after {:.0f} h", kHoursLater));
+}
+
+std::vector<ExtraMeasurement> cold_starts(const MenuContext& context) {
+  if (temperature_channels(context.campaign).empty()) return {};
+  return again(context, kOvernight, Temperatures::First, "the next day, at the temperatures of the start");
+}
+
+}  // namespace volcal

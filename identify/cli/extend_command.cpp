@@ -11,7 +11,7 @@
 #include "volcal/identify/cli/named_effect.h"
 #include "volcal/identify/cli/number_checks.h"
 #include "volcal/identify/cli/written_effect.h"
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/io/campaign_reader.h"
 #include "volcal/identify/io/diagnosis_json.h"

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
+
 
 namespace volcal {
 

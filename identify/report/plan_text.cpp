@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/report/detectable_groups.h"
 #include "volcal/identify/report/text_tables.h"

@@ -9,7 +9,7 @@
 
 #include "volcal/identify/cli/studies/criticism_names.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/projection/linear_model.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/effects/formula_effect.h"
@@ -134,13 +133,6 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
     errors.push_back({left_out_spec(location.name()), squareness(location)});
   }
   return errors;
-}
-
-std::vector<std::string> left_out_symbols(const EffectSpec& spec) {
-  std::istringstream words(spec.options.text("symbol").value_or(""));
-  std::vector<std::string> symbols;
-  for (std::string word; words >> word;) symbols.push_back(word);
-  return symbols;
 }
 
 bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {

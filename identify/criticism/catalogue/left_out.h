@@ -7,14 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "volcal/model/effects/effect.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
-
-inline constexpr const char* kLeftOut = "left-out";
-inline constexpr const char* kLeftOutSummary =
-    "an error function or squareness that the model file switches off: give it back to the model";
 
 struct LeftOutError {
   EffectSpec spec;
@@ -27,7 +23,5 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
 
 /// Gives what `spec` names back to the model; false when it is an effect of the catalogue.
 bool restore_left_out(const EffectSpec& spec, ModelSpec& model);
-/// The symbols that `spec` names: "EAX", "EC0Y".
-std::vector<std::string> left_out_symbols(const EffectSpec& spec);
 
 }  // namespace volcal

@@ -8,18 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/criticism/projection/projector.h"
 #include "volcal/identify/noise/noise_model.h"
 
 namespace volcal {
-
-/// Means of a value over bins of an abscissa. Empty bins are left out.
-struct BinnedMean {
-  std::vector<double> centre;
-  std::vector<double> mean;
-  std::vector<double> noise;  ///< standard deviation that noise alone gives the mean, correlation counted
-  std::vector<std::size_t> count;
-};
 
 /// Bin of every observation: `count` bins of equal width over the range of `abscissa`; not-a-number = -1.
 std::vector<int> equal_bins(const Eigen::VectorXd& abscissa, int count);
@@ -33,17 +26,6 @@ std::vector<double> mean_variance(const NoiseData& data, std::span<const NoisePa
 BinnedMean binned_mean(const Eigen::VectorXd& abscissa, const Eigen::VectorXd& value,
                        const std::vector<int>& bin, const std::vector<double>& variance,
                        const Eigen::VectorXd& felt = {});
-
-/// Autocorrelation of residuals of one instrument within its sequences, at growing lags.
-struct Autocorrelation {
-  std::size_t group = 0;
-  std::vector<int> lag;     ///< in readings, in the order of time
-  std::vector<double> gap;  ///< s, mean time between the two of a pair; NaN without times
-  std::vector<std::size_t> pairs;
-  std::vector<double> residual;  ///< of the residuals, each in its own standard deviation
-  std::vector<double> expected;  ///< by the noise model
-  std::vector<double> whitened;  ///< after the filter of the noise model
-};
 
 /// `whitened`: as Whitener::whiten() leaves them, at their observations. Observations that are left out do
 /// not count; lags with fewer than 30 pairs are left out.

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 
-#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/projection/separation.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/stats/chi_squared.h"

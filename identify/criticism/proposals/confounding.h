@@ -7,22 +7,12 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 
 namespace volcal {
-
-struct Diagnosis;
-struct EffectFinding;
-
-/// Cosines of the smallest angles between hypotheses after projection off the model.
-struct Confounding {
-  std::vector<EffectName> names;
-  std::vector<std::string> labels;
-  Eigen::MatrixXd cosine;  ///< symmetric, 0..1; NaN: nothing of one of the two is visible
-};
 
 /// What a diagnosis was made from.
 struct CriticismState {

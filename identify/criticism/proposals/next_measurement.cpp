@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"

@@ -12,31 +12,9 @@
 /// those that would just be detected and are nearest to the rival. What is gained is compared with as many
 /// further readings of the kind that the campaign already has.
 
-#include <string>
-#include <vector>
-
 #include "volcal/identify/criticism/proposals/confounding.h"
 
 namespace volcal {
-
-struct MeasurementProposal {
-  std::string action;                     ///< entry of the menu; empty: nothing on the menu helps
-  std::string setup;                      ///< setup that it continues; empty = a new one
-  std::vector<EffectName> separates;      ///< two hypotheses, or none
-  std::vector<EffectName> makes_visible;  ///< of effects that are not
-  std::size_t readings = 0;
-  double separation = 0.0;  ///< s^2 as it is
-  double gain = 0.0;        ///< s^2 with the measurement over s^2; infinite when it is 0 as it is
-  double plain_gain = 0.0;  ///< with as many plain readings
-  double reached = 0.0;     ///< s^2 with the measurement; 0 when it makes effects visible
-  double plain = 0.0;       ///< s^2 with as many plain readings
-  std::string words;
-};
-
-struct PlanningOptions {
-  std::size_t readings = 48;         ///< that a measurement may take, about
-  std::vector<EffectSpec> separate;  ///< hypotheses that the user wants told apart, or seen if it is one
-};
 
 /// Fills `next_measurement` and `proposals` of the diagnosis: for the alternatives of ONE_OF, for what the
 /// user asks about, and with the verdict NOT_VISIBLE for what is not visible. Throws InputError when the user

@@ -20,8 +20,6 @@
 
 namespace volcal {
 
-inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
-
 struct GenericTest {
   std::vector<std::string> variables;  ///< one or two
   std::string direction;               ///< of kScanDirections; of a rotation, where it shows most

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {

@@ -5,7 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/projection/projector.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
+
 
 namespace volcal {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/projection/separation.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/model/effects/registry.h"

@@ -1,13 +1,12 @@
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <regex>
+#include <sstream>
 #include <utility>
-
-#include "volcal/identify/criticism/catalogue/left_out.h"
 
 namespace volcal {
 namespace {
@@ -15,7 +14,7 @@ namespace {
 constexpr const char* kResolution = "resolution";
 
 constexpr auto kModelChanges = std::to_array<ModelChange>({
-    {kLeftOut, kLeftOutSummary},
+    {kLeftOut, "an error function or squareness that the model file switches off: give it back to the model"},
     {kResolution, "an error function that the readings ask to be finer: give it more knots"},
 });
 
@@ -140,6 +139,13 @@ std::string full_name(const EffectName& name) {
 }
 
 std::span<const ModelChange> model_change_kinds() { return kModelChanges; }
+
+std::vector<std::string> left_out_symbols(const EffectSpec& spec) {
+  std::istringstream words(spec.options.text("symbol").value_or(""));
+  std::vector<std::string> symbols;
+  for (std::string word; words >> word;) symbols.push_back(word);
+  return symbols;
+}
 
 EffectName resolution_name(ErrorSymbol symbol) {
   return {kResolution, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "finer"};

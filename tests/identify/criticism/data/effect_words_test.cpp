@@ -1,6 +1,6 @@
 // Words of effects' names: whatever is registered can be looked up in `volcal diagnose --list`.
 
-#include "volcal/identify/criticism/catalogue/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 
 #include <gtest/gtest.h>
 

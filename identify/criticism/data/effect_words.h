@@ -23,6 +23,10 @@ struct ModelChange {
   std::string_view summary;
 };
 std::span<const ModelChange> model_change_kinds();
+/// The kind of an error that the model file switches off (left_out.h).
+inline constexpr const char* kLeftOut = "left-out";
+/// The symbols that the specification of such an error names: "EAX", "EC0Y".
+std::vector<std::string> left_out_symbols(const EffectSpec& spec);
 /// Name of more knots for an error function: resolution:EXX:x:finer.
 EffectName resolution_name(ErrorSymbol symbol);
 

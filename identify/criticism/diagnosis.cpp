@@ -9,12 +9,13 @@
 #include <set>
 #include <stdexcept>
 
-#include "volcal/identify/criticism/proposals/next_measurement.h"
-#include "volcal/identify/criticism/proposals/confounding.h"
-#include "volcal/identify/criticism/figures/diagnosis_figures.h"
 #include "volcal/identify/criticism/catalogue/detectable.h"
-#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/catalogue/not_looked_for.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/figures/diagnosis_figures.h"
+#include "volcal/identify/criticism/proposals/confounding.h"
+#include "volcal/identify/criticism/proposals/next_measurement.h"
 #include "volcal/identify/criticism/search/effect_search.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/identify/stats/channels.h"
@@ -26,10 +27,6 @@ namespace volcal {
 
 namespace {
 
-constexpr double kPower = 0.8;
-constexpr double kNearlyAsImprobable = 0.1;  // share of log10 p
-constexpr double kLog10NotToldApart = 1.0;
-constexpr double kShareNotToldApart = 0.05;  // of log10 p
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
@@ -115,8 +112,8 @@ class Diagnostician {
     out.visible_fraction = test.score.visible_fraction;
     out.resolution = family.resolution.has_value();
     if (!family.effect) return out;
-    const double found_from =
-        std::sqrt(detectable_noncentrality(search_.log10_level(), std::max(1, test.score.dof), kPower));
+    const double found_from = std::sqrt(
+        detectable_noncentrality(search_.log10_level(), std::max(1, test.score.dof), kThresholds.power));
     for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
       const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
       const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
@@ -222,7 +219,7 @@ class Diagnostician {
       const Family& family = families_[test.family];
       if (family.resolution) continue;
       const EffectFinding found = finding(test);
-      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kVisibleFraction;
+      const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kThresholds.visible_fraction;
       if (!visible) diagnosis_.not_visible.push_back(found);
       diagnosis_.detectable.push_back(detectable(found, *family.effect, test.shape, visible, levers));
     }
@@ -295,7 +292,8 @@ class Diagnostician {
     UnknownFinding& leading = diagnosis_.unknown.front();
     if (leading.variables.size() < 2) return;
     const double nearly =
-        leading.log10_p + std::max(kLog10NotToldApart, -kShareNotToldApart * leading.log10_p);
+        leading.log10_p +
+        std::max(kThresholds.same_second_variable, -kThresholds.same_second_variable_share * leading.log10_p);
     std::vector<std::string> common = leading.variables, others = leading.variables;
     for (const UnknownFinding& other : diagnosis_.unknown) {
       if (other.variables.size() < 2 || other.log10_p > nearly) continue;
@@ -316,7 +314,7 @@ class Diagnostician {
   /// Of those that stand out nearly as much as the most improbable one, the first of the simplest.
   static void put_simplest_first(std::vector<const GenericTest*>& order) {
     if (order.empty()) return;
-    const double nearly = (1.0 - kNearlyAsImprobable) * order.front()->log10_p;
+    const double nearly = (1.0 - kThresholds.nearly_as_improbable) * order.front()->log10_p;
     const auto end =
         std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
     const auto simplest = std::ranges::min_element(order.begin(), end, {}, [](const GenericTest* test) {
@@ -329,7 +327,7 @@ class Diagnostician {
   void collect_given_up() {
     for (const auto& [family, reason] : search_.given_up()) {
       const FamilyTest& test = search_.tests()[family];
-      if (search_.is_added(family) || search_.family_wise_log10_p(test) > kLog10FamilyRisk) continue;
+      if (search_.is_added(family) || search_.family_wise_log10_p(test) > log10_family_risk()) continue;
       const Eigen::VectorXd moved =
           family_columns(model_, families_[family], test.shape) * test.score.amplitude;
       diagnosis_.unknown.push_back({scan_variables_of(families_[family].name()),
@@ -355,7 +353,7 @@ class Diagnostician {
                                families_,
                                search_.tests(),
                                search_.log10_level(),
-                               kPower,
+                               kThresholds.power,
                                thread_count(options_.threads)};
     add_confounding(state, diagnosis_);
     add_next_measurements(state, options_.planning, diagnosis_);
@@ -478,9 +476,6 @@ class Diagnostician {
 };
 
 }  // namespace
-
-double log10_family_risk() { return kLog10FamilyRisk; }
-double log10_generic_risk() { return kLog10GenericRisk; }
 
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
   return Diagnostician(campaign, result, options).run();

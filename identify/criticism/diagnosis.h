@@ -18,10 +18,6 @@
 
 namespace volcal {
 
-/// log10 of the family-wise probability below which an effect, or a generic test, is above the noise.
-double log10_family_risk();
-double log10_generic_risk();
-
 struct DiagnoseOptions {
   int threads = 1;     ///< 0 = as many as the machine has; results do not depend on it
   bool climb = false;  ///< tell all effects that were found, not the first alone

@@ -5,7 +5,6 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 
-
 namespace volcal {
 
 inline constexpr const char* kDiagnosisFormat = "volcal-diagnosis-1";

@@ -9,7 +9,6 @@
 #include "volcal/identify/solve/result.h"
 #include "volcal/model/description/campaign.h"
 
-
 namespace volcal {
 
 /// `result` must be expected_result() of this campaign. Effects with a shape that is scanned (a period, a

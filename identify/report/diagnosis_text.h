@@ -6,7 +6,6 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 
-
 namespace volcal {
 
 std::string diagnosis_text(const Diagnosis& diagnosis);

@@ -6,7 +6,6 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 
-
 namespace volcal::testing {
 
 inline EffectFinding found_effect(const std::string& kind, const std::string& symbol, double value) {

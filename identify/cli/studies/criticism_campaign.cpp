@@ -9,8 +9,9 @@
 
 #include "volcal/identify/cli/studies/criticism_names.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
-#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
@@ -234,7 +235,7 @@ class CampaignRun {
       return false;  // it has no effect on these readings
     }
     const Yardstick::Visible visible = yardstick_->visible(change);
-    if (scaled && visible.fraction < kVisibleFraction) return false;
+    if (scaled && visible.fraction < kThresholds.visible_fraction) return false;
     const double factor = scaled ? planned.signal / visible.signal : 1.0;
     if (!plausible(effect, amplitude * factor, *effect.rms * factor)) return false;
     HiddenRecord record;

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <set>
 
-#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/identify/stats/chi_squared.h"

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/criticism/data/thresholds.h"
+
 namespace volcal {
 namespace {
 
 constexpr int kGoldenSteps = 12;
 constexpr double kGolden = 0.6180339887498949;
-constexpr double kRelatedNeighbours = 0.3;  // cosine of projected columns
-constexpr double kDerivativeStep = 0.02;    // of the distance to the neighbours
-constexpr double kSmooth = 0.2;             // second difference against first
-constexpr double kAtTheEnd = 0.02;          // of the distance to the neighbour
+constexpr double kDerivativeStep = 0.02;  // of the distance to the neighbours
 
 struct Bracket {
   double low = 0.0;
@@ -68,7 +67,7 @@ void refine_shape(const LinearModel& model, const Family& family, const Projecto
   const double centre = test.shape[0];
   auto [low, high] = neighbours(family, centre);
   for (const double neighbour : {low, high}) {
-    if (neighbour != centre && refiner.relation(centre, neighbour) < kRelatedNeighbours) return;
+    if (neighbour != centre && refiner.relation(centre, neighbour) < kThresholds.related_neighbours) return;
   }
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
   ScoreTest at_left = refiner.score(left), at_right = refiner.score(right);
@@ -96,7 +95,7 @@ std::optional<ScanEnd> end_of_scan(const Family& family, double shape) {
       std::ranges::minmax(family.scan, {}, [](const Eigen::VectorXd& each) { return each[0]; });
   const auto is_end = [&](double end) {
     const auto [low, high] = neighbours(family, end);
-    return std::abs(shape - end) < kAtTheEnd * (high - low);
+    return std::abs(shape - end) < kThresholds.at_end_of_scan * (high - low);
   };
   if (is_end(lowest[0])) return ScanEnd::Lowest;
   if (is_end(highest[0])) return ScanEnd::Highest;
@@ -115,7 +114,8 @@ std::optional<Eigen::VectorXd> shape_derivative(const LinearModel& model, const 
   const Eigen::VectorXd before = readings(shape[0] - step), after = readings(shape[0] + step);
   const Eigen::VectorXd difference = after - before;
   const Eigen::VectorXd bend = after + before - 2.0 * readings(shape[0]);
-  if (difference.norm() == 0.0 || bend.norm() > kSmooth * difference.norm()) return std::nullopt;
+  if (difference.norm() == 0.0 || bend.norm() > kThresholds.smooth_dependence * difference.norm())
+    return std::nullopt;
   return difference / (2.0 * step);
 }
 

@@ -51,4 +51,13 @@ std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagno
   return sets;
 }
 
+std::string screening_sentence(const Screening& screening) {
+  if (!screening.contradicts) return {};
+  return fmt::format(
+      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
+      "tests "
+      "counted)",
+      screening.leading, screening.rms * 1e6, screening.log10_p, screening.tests);
+}
+
 }  // namespace volcal

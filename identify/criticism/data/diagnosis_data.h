@@ -1,6 +1,6 @@
 #pragma once
-/// What a diagnosis says, as plain data: all that is printed, drawn and kept in files. SI but for what is named
-/// otherwise.
+/// What a diagnosis says, as plain data: all that is printed, drawn and kept in files. SI but for what is
+/// named otherwise.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -155,5 +155,17 @@ struct Diagnosis {
 
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
+
+/// Whether a diagnosis pays (screening.h).
+struct Screening {
+  std::size_t tests = 0;
+  bool contradicts = false;  ///< a test is above the noise
+  std::string leading;       ///< the most improbable: "EAX by z^2", "something that depends on z along Z"
+  double log10_p = 0.0;      ///< its, family-wise
+  double rms = 0.0;          ///< SI: root mean square over the readings of what it would explain
+};
+
+/// The sentence for it; empty where nothing contradicts.
+std::string screening_sentence(const Screening& screening);
 
 }  // namespace volcal

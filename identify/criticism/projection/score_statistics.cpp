@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/quadratic_form.h"
@@ -30,7 +31,7 @@ ScoreTest score_test(const ProjectedColumns& projected, Eigen::Index first, Eige
   test.visible_fraction = std::sqrt(std::max(0.0, gram.trace() / static_cast<double>(columns)));
   for (Eigen::Index k = 0; k < columns; ++k) {
     const double value = eigen.values[k];
-    if (value < kInvisibleShare * kInvisibleShare) continue;
+    if (value < kThresholds.invisible_share * kThresholds.invisible_share) continue;
     const Eigen::VectorXd direction = eigen.vectors.col(k);
     const double along = direction.dot(score);
     test.lm += along * along / value;
@@ -49,14 +50,14 @@ double ScoreTest::lm_of(const std::vector<Eigen::Index>& which) const {
   const Eigen::VectorXd scale = own_gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   own_gram = scale.asDiagonal() * own_gram * scale.asDiagonal();
   const Eigen::VectorXd scaled = scale.cwiseProduct(own);
-  return scaled.dot(least_squares(own_gram, scaled, kInvisibleShare).solution);
+  return scaled.dot(least_squares(own_gram, scaled, kThresholds.invisible_share).solution);
 }
 
 KernelTest kernel_test(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) {
   const Eigen::MatrixXd gram = projected.gram(first, columns);
   const double trace = gram.trace(), squares = gram.squaredNorm();
   const double score = projected.score.segment(first, columns).squaredNorm();
-  const double floor = kInvisibleShare * projected.norm.segment(first, columns).squaredNorm();
+  const double floor = kThresholds.invisible_share * projected.norm.segment(first, columns).squaredNorm();
   if (!(trace > floor)) return {};
   KernelTest test{score * trace / squares, trace * trace / squares, 0.0};
   test.log10_p = log10_chi_squared_exceedance(test.lm, test.dof);

@@ -10,11 +10,6 @@
 
 namespace volcal {
 
-/// Columns of which less than this share survives the projection carry no information.
-inline constexpr double kInvisibleShare = 1e-4;
-/// An effect of which less than this share survives is not visible to the campaign.
-inline constexpr double kVisibleFraction = 0.02;
-
 struct ScoreTest {
   double lm = 0.0;
   int dof = 0;  ///< visible directions; 0 = nothing of the family is visible

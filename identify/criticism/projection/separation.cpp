@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/numeric/dense.h"
 
 namespace volcal {
@@ -76,7 +77,7 @@ Eigen::VectorXd amplitude_uncertainty(const Eigen::MatrixXd& gram, const Eigen::
     const double value = eigen.values[k];
     for (Eigen::Index i = 0; i < gram.rows(); ++i) {
       const double share = std::pow(eigen.vectors(i, k), 2);
-      if (value >= kSameSquaredSine) {
+      if (value >= kThresholds.same_squared_sine) {
         variance[i] += share * scale[i] * scale[i] / value;
       } else if (share > kTouches || scale[i] == 0.0) {
         variance[i] = std::numeric_limits<double>::infinity();

@@ -18,9 +18,6 @@ struct ColumnRange {
   Eigen::Index count = 0;
 };
 
-/// Squared sine below which two hypotheses predict the same readings.
-inline constexpr double kSameSquaredSine = 1e-6;
-
 /// Sets to 0 what is left of columns of which nothing is visible but rounding; `known_norm` = |L^-1 g|,
 /// before the projection off the model. The functions below ask for a matrix that went through this.
 void clear_invisible(const Eigen::VectorXd& known_norm, Eigen::MatrixXd& gram);
@@ -39,8 +36,8 @@ Eigen::MatrixXd projected_off(const Eigen::MatrixXd& gram, ColumnRange wanted, C
 double canonical_cosine(const Eigen::MatrixXd& gram, ColumnRange a, ColumnRange b);
 
 /// Standard uncertainties of amplitudes with the Gram matrix `gram`; infinite where an amplitude is not
-/// determined: along directions with less than kSameSquaredSine of what `reference`, the Gram matrix before
-/// the last projection, has on its diagonal.
+/// determined: along directions with less than Thresholds::same_squared_sine of what `reference`, the Gram
+/// matrix before the last projection, has on its diagonal.
 Eigen::VectorXd amplitude_uncertainty(const Eigen::MatrixXd& gram, const Eigen::VectorXd& reference);
 
 /// Amplitudes that are found with the noncentrality `noncentrality` but are, of all those, the least apart

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"
@@ -17,11 +18,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kHelps = 1.05;      // a gain below is no proposal
-constexpr double kTold = 1.0;        // s^2 below which two are not told apart
-constexpr double kMuchBetter = 1.5;  // for one pair than the measurement that serves all
-constexpr double kEffort = 2.0;      // how much better it must be with what is not at hand
-constexpr double kNothing = 1e-6;    // s^2 that counts as none
+constexpr double kNothing = 1e-6;  // s^2 that counts as none
 constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostProposals = 6;
 constexpr std::size_t kMostActions = 3;     // that make effects visible
@@ -201,7 +198,7 @@ class Proposer {
         return instrument_of_noise_group(group) == setup.instrument;
       });
     });
-    return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kEffort;
+    return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kThresholds.effort;
   }
 
   std::size_t best_for(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
@@ -229,7 +226,7 @@ class Proposer {
       const auto reached = [&](std::size_t i) {
         return planner.separation(planner.with(i), pair.first, pair.second);
       };
-      if (own != common && reached(own) > kMuchBetter * reached(common)) {
+      if (own != common && reached(own) > kThresholds.much_better * reached(common)) {
         propose(planner, imagined, hypotheses, pair, own);
       }
     }
@@ -259,7 +256,7 @@ class Proposer {
     out.gain = ratio(out.reached, out.separation);
     out.plain_gain = ratio(out.plain, out.separation);
     const std::string both = described(first) + " from " + described(second);
-    if (out.gain < kHelps || out.reached < kTold) {
+    if (out.gain < kThresholds.helpful_gain || out.reached < kThresholds.told_apart) {
       out.gain = out.plain_gain = 1.0;
       out.reached = out.plain = out.separation;
       out.words = "Nothing on the menu tells " + both + ": they predict nearly the same readings.";
@@ -308,7 +305,7 @@ class Proposer {
                     const std::vector<PlannedHypothesis>& hypotheses) {
     std::vector<std::size_t> hidden;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-      if (planner.visible_fraction(planner.now(), i) < kVisibleFraction) hidden.push_back(i);
+      if (planner.visible_fraction(planner.now(), i) < kThresholds.visible_fraction) hidden.push_back(i);
     }
     for (std::size_t action = 0; action < kMostActions && !hidden.empty(); ++action) {
       std::vector<std::size_t> most;
@@ -338,7 +335,8 @@ class Proposer {
                                            const std::vector<std::size_t>& hidden) {
     std::vector<std::size_t> shown;
     for (const std::size_t i : hidden) {
-      if (planner.visible_fraction(planner.with(measurement), i) >= kVisibleFraction) shown.push_back(i);
+      if (planner.visible_fraction(planner.with(measurement), i) >= kThresholds.visible_fraction)
+        shown.push_back(i);
     }
     return shown;
   }
@@ -349,7 +347,7 @@ class Proposer {
     MeasurementProposal out;
     set_measurement(imagined.measurements()[measurement], out);
     const std::size_t first = shown.front();
-    const bool seen = planner.visible_fraction(planner.now(), first) > kInvisibleShare;
+    const bool seen = planner.visible_fraction(planner.now(), first) > kThresholds.invisible_share;
     const double before = seen ? planner.information(planner.now(), first) : 0.0;
     out.gain = ratio(planner.information(planner.with(measurement), first), before);
     out.plain_gain = seen ? ratio(planner.information(planner.plain(measurement), first), before) : 1.0;

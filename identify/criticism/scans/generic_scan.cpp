@@ -6,8 +6,8 @@
 #include <numbers>
 #include <span>
 
-#include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/criticism/projection/score_statistics.h"
 #include "volcal/identify/criticism/scans/wave_scan.h"
 #include "volcal/identify/numeric/parallel.h"

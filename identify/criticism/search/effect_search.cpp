@@ -12,31 +12,13 @@
 #include <utility>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
 
-const double kLog10FamilyRisk = std::log10(0.005);
-const double kLog10GenericRisk = std::log10(0.002);
-const double kLog10ConstancyRisk = std::log10(0.01);
-const double kLog10RivalRisk = std::log10(0.001);
-
 namespace {
-
-constexpr double kToldApart = 6.0;       // of the extended BIC
-constexpr double kWorthRefining = 40.0;  // the same, below the leading one
-constexpr double kNotByChance = -2.0;    // log10 p of a family for itself, before its shape is refined
-constexpr double kVisibleDerivative = 1e-3;
-constexpr double kSameLikelihood = 4.0;  // of LM: what fits as well is a rival, however many its parameters
-constexpr double kMoreGain = 2.0;        // of a scan that does better than the leading name
-constexpr double kMoreGainOfSilent = kToldApart;   // the same, where names leave all scans silent
-constexpr double kLessProbable = 0.03;             // the same, share of log10 p, family-wise
-constexpr double kLessProbableByComponents = 0.1;  // those that are not there cost probability
-constexpr int kMostChanges = 4;
-constexpr int kMostTogether = 3;
-constexpr int kNoiseRounds = 2;
-constexpr double kWanderInTests = 4.0;  // a wander that is left out raises alarms, one too many costs little
 
 void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
   const Eigen::Index before = all.cols();
@@ -46,8 +28,8 @@ void append(Eigen::MatrixXd& all, const Eigen::MatrixXd& more) {
 
 /// More resolution follows nearly anything; for the price of its columns it is no rival.
 bool near(const FamilyTest& own, const FamilyTest& other, bool of_resolution) {
-  return own.gain - other.gain < kToldApart ||
-         (!of_resolution && own.score.lm - other.score.lm < kSameLikelihood);
+  return own.gain - other.gain < kThresholds.indistinguishable_gain ||
+         (!of_resolution && own.score.lm - other.score.lm < kThresholds.indistinguishable_lm);
 }
 
 }  // namespace
@@ -79,7 +61,7 @@ void EffectSearch::run() {
 
 /// Until every added effect stands against its rivals.
 void EffectSearch::settle(const std::function<void()>& after_a_change) {
-  for (int change = 0; change < kMostChanges; ++change) {
+  for (int change = 0; change < kThresholds.most_changes; ++change) {
     if (!reconsider(true)) return;
     after_a_change();
   }
@@ -110,7 +92,7 @@ void EffectSearch::start() {
 void EffectSearch::find_noise() {
   NoiseOptions noise = noise_options();
   noise.uncertainty = false;
-  for (int round = 0; round < (model_.smoothing().empty() ? 1 : kNoiseRounds); ++round) {
+  for (int round = 0; round < (model_.smoothing().empty() ? 1 : kThresholds.noise_rounds); ++round) {
     noise_estimate_ =
         estimate_noise(problem_with_added(), noise, noise_estimate_ ? &*noise_estimate_ : nullptr);
     noise_ = noise_estimate_->parameters();
@@ -126,7 +108,7 @@ void EffectSearch::find_noise() {
 NoiseOptions EffectSearch::noise_options() const {
   NoiseOptions noise;
   noise.threads = options_.threads;
-  noise.wander_threshold = kWanderInTests;
+  noise.wander_threshold = kThresholds.drift_evidence;
   return noise;
 }
 
@@ -181,7 +163,8 @@ std::vector<FamilyTest> EffectSearch::refined_tests(const Projector& projector) 
   double best = 0.0;
   for (const FamilyTest& test : tests) best = std::max(best, test.gain);
   for (FamilyTest& test : tests) {
-    if (test.gain > best - kWorthRefining && test.log10_p < kNotByChance)
+    if (test.gain > best - kThresholds.worth_refining_gain &&
+        test.log10_p < kThresholds.worth_refining_log10_p)
       refine_shape(model_, families_[test.family], projector, test);
   }
   return tests;
@@ -240,7 +223,8 @@ bool EffectSearch::add_several() {
   std::set<std::size_t> start;
   for (const FamilyTest& test : kept) start.insert(test.family);
   if (!tried_together_.insert(start).second) return false;
-  for (int names = 1; names <= kMostTogether && static_cast<int>(added_.size()) < options_.most; ++names) {
+  for (int names = 1; names <= kThresholds.most_together && static_cast<int>(added_.size()) < options_.most;
+       ++names) {
     const FamilyTest* best = outstanding();
     if (best == nullptr && names == 1) best = best_by_the_variables_of_a_scan();
     if (best == nullptr) break;
@@ -291,7 +275,8 @@ bool EffectSearch::explain_together(std::size_t first) const {
       std::min(0.0, log10_chi_squared_exceedance(lm, static_cast<double>(dof)) + log10_choices);
   const std::vector<GenericTest> scans = generic_scan(model_, variables_, *before, options_.threads);
   return std::ranges::none_of(scans, [&](const GenericTest& scan) {
-    return does_better(scan, {lm - price, log10_p}, kMoreGainOfSilent, kLessProbable);
+    return does_better(scan, {lm - price, log10_p}, kThresholds.scan_gain_margin_of_sufficient_names,
+                       kThresholds.scan_probability_margin);
   });
 }
 
@@ -328,7 +313,7 @@ Eigen::MatrixXd EffectSearch::accept(const FamilyTest& test, Projector& projecto
   const auto derivative = shape_derivative(model_, family, test.shape, test.score.amplitude);
   if (!derivative) return columns;
   const ProjectedColumns projected = projector.project(*derivative);
-  if (projected.gram(0, 1)(0, 0) > std::pow(kVisibleDerivative * projected.norm[0], 2)) {
+  if (projected.gram(0, 1)(0, 0) > std::pow(kThresholds.visible_derivative * projected.norm[0], 2)) {
     projector.accept(*derivative);
     append(columns, *derivative);
   }
@@ -391,14 +376,14 @@ bool EffectSearch::reconsider(bool may_change) {
     if (options_.progress) options_.progress("rivals of " + families_[kept[i].family].label(), 0.9);
     std::vector<FamilyTest> tests = refined_tests(*projector_without({i}));
     const FamilyTest& own = tests[kept[i].family];
-    if (may_change && family_wise_log10_p(own) > kLog10FamilyRisk) {
+    if (may_change && family_wise_log10_p(own) > log10_family_risk()) {
       dropped_.insert(own.family);
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
       add_again(kept);
       return true;
     }
     const FamilyTest* best = leading(tests, kept[i].family);
-    if (may_change && best != nullptr && best->gain > own.gain + kToldApart) {
+    if (may_change && best != nullptr && best->gain > own.gain + kThresholds.indistinguishable_gain) {
       kept[i] = *best;
       add_again(kept);
       return true;
@@ -463,16 +448,17 @@ bool EffectSearch::may_be_added(const FamilyTest& test) const {
 }
 
 bool EffectSearch::is_above(const FamilyTest& test) const {
-  return test.score.dof > 0 && family_wise_log10_p(test) <= kLog10FamilyRisk;
+  return test.score.dof > 0 && family_wise_log10_p(test) <= log10_family_risk();
 }
 
 /// An unlisted effect of few terms has a larger gain among the polynomials; bumps and waves make a kernel
 /// less probable than any name.
 bool EffectSearch::generic_does_better(const FamilyTest& best) const {
   const bool components = families_[best.family].independent_components();
-  const double share = components ? kLessProbableByComponents : kLessProbable;
+  const double share =
+      components ? kThresholds.scan_probability_margin_of_components : kThresholds.scan_probability_margin;
   return std::ranges::any_of(generic_, [&](const GenericTest& test) {
-    return does_better(test, {best.gain, family_wise_log10_p(best)}, kMoreGain, share);
+    return does_better(test, {best.gain, family_wise_log10_p(best)}, kThresholds.scan_gain_margin, share);
   });
 }
 
@@ -490,6 +476,6 @@ double EffectSearch::family_wise_log10_p(const GenericTest& test) const {
   return std::min(0.0, test.log10_p + log10_generic_);
 }
 
-double EffectSearch::log10_level() const { return kLog10FamilyRisk - log10_families_; }
+double EffectSearch::log10_level() const { return log10_family_risk() - log10_families_; }
 
 }  // namespace volcal

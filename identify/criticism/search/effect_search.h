@@ -179,11 +179,4 @@ class EffectSearch {
   double log10_generic_ = 0.0;
 };
 
-/// Family-wise risks of naming an effect, and of the generic scans (polynomials and kernels each).
-extern const double kLog10FamilyRisk;
-extern const double kLog10GenericRisk;
-/// Risks that a right name is refused, or left out of a set, because its amplitude seems to vary.
-extern const double kLog10ConstancyRisk;
-extern const double kLog10RivalRisk;
-
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/projection/noise_freedom.h"
 #include "volcal/identify/criticism/projection/score_statistics.h"
 #include "volcal/identify/criticism/search/effect_search.h"
@@ -15,14 +16,9 @@
 namespace volcal {
 namespace {
 
-constexpr double kWorthEstimating = 20.0;  // of a likelihood ratio: what noise estimated beside it may add
-constexpr std::size_t kMostBesideNoise = 3;
-constexpr std::size_t kMostDoubtful =
-    40;  // scans; a weak finding is seen by some of them, a strong one by most
-
 void keep_best(std::vector<FamilyTest>& tests) {
   std::ranges::sort(tests, std::greater{}, &FamilyTest::gain);
-  if (tests.size() > kMostBesideNoise) tests.resize(kMostBesideNoise);
+  if (tests.size() > kThresholds.most_joint_tests) tests.resize(kThresholds.most_joint_tests);
 }
 
 }  // namespace
@@ -43,7 +39,7 @@ std::vector<std::size_t> EffectSearch::doubtful_scans() const {
   for (std::size_t i = 0; i < generic_.size(); ++i) {
     if (scan_stands_out_[i]) above.push_back(i);
   }
-  return above.size() > kMostDoubtful ? std::vector<std::size_t>{} : above;
+  return above.size() > kThresholds.most_doubtful_scans ? std::vector<std::size_t>{} : above;
 }
 
 /// Above the noise, also where the noise that a name or a scan would stand on is hardly known.
@@ -51,7 +47,7 @@ void EffectSearch::find_outstanding() {
   outstanding_.clear();
   scan_stands_out_.clear();
   for (const GenericTest& test : generic_)
-    scan_stands_out_.push_back(family_wise_log10_p(test) <= kLog10GenericRisk);
+    scan_stands_out_.push_back(family_wise_log10_p(test) <= log10_scan_risk());
   const std::vector<std::size_t> names = families_above(), scans = doubtful_scans();
   if (names.empty() && scans.empty()) return;
   const auto of_names = static_cast<Eigen::Index>(names.size()),
@@ -69,13 +65,13 @@ void EffectSearch::find_outstanding() {
     const FamilyTest& test = tests_[names[k]];
     const double log10_p = log10_exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) +
                            std::log10(test.multiplicity);
-    if (log10_p + log10_families_ <= kLog10FamilyRisk) outstanding_.push_back(names[k]);
+    if (log10_p + log10_families_ <= log10_family_risk()) outstanding_.push_back(names[k]);
   }
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const GenericTest& test = generic_[scans[k]];
     const double log10_p =
         log10_exceedance_of_estimated(test.lm, test.dof, freedom[names.size() + k]) + test.log10_choices;
-    scan_stands_out_[scans[k]] = log10_p + log10_generic_ <= kLog10GenericRisk;
+    scan_stands_out_[scans[k]] = log10_p + log10_generic_ <= log10_scan_risk();
   }
 }
 
@@ -86,7 +82,7 @@ std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& probl
   for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
     const auto projector = projector_of(without(problem.data, heldout_), other.noise);
     for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
-      if (!may_be_added(test) || test.score.lm < other.loss - kWorthEstimating) continue;
+      if (!may_be_added(test) || test.score.lm < other.loss - kThresholds.worth_joint_estimate) continue;
       refine_shape(model_, families_[test.family], *projector, test);
       test.gain -= other.loss;
       tests.push_back(std::move(test));
@@ -113,12 +109,12 @@ bool EffectSearch::add_hidden_in_noise() {
   std::vector<FamilyTest> tests = held_by_a_wander(problem);
   std::ranges::move(above_doubtful_noise(), std::back_inserter(tests));
   for (FamilyTest& test : tests) {
-    const double least = chi_squared_quantile(kLog10FamilyRisk - log10_families_, test.score.dof);
+    const double least = chi_squared_quantile(log10_family_risk() - log10_families_, test.score.dof);
     test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, noise_options(), least,
                       test);
   }
   const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
-  if (best == tests.end() || family_wise_log10_p(*best) > kLog10FamilyRisk) return false;
+  if (best == tests.end() || family_wise_log10_p(*best) > log10_family_risk()) return false;
   add(FamilyTest(*best));
   return true;
 }
@@ -136,13 +132,13 @@ std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
     const std::vector<GenericTest> scans = generic_scan(model_, variables_, *projector, options_.threads);
     std::vector<Candidate> candidates;
     for (std::size_t i = 0; i < scans.size(); ++i) {
-      const double ratio = scans[i].lm - other.loss + kWorthEstimating;
+      const double ratio = scans[i].lm - other.loss + kThresholds.worth_joint_estimate;
       if (!(ratio > 0.0) || scans[i].dof == 0.0) continue;
       const double log10_p = log10_chi_squared_exceedance(ratio, scans[i].dof);
-      if (log10_p + log10_generic_ <= kLog10GenericRisk) candidates.push_back({i, log10_p});
+      if (log10_p + log10_generic_ <= log10_scan_risk()) candidates.push_back({i, log10_p});
     }
     std::ranges::sort(candidates, {}, &Candidate::log10_p);
-    if (candidates.size() > kMostBesideNoise) candidates.resize(kMostBesideNoise);
+    if (candidates.size() > kThresholds.most_joint_tests) candidates.resize(kThresholds.most_joint_tests);
     std::vector<std::size_t> chosen;
     for (const Candidate& each : candidates) chosen.push_back(each.scan);
     const Eigen::MatrixXd moved = scanned_displacements(model_, variables_, *projector, scans, chosen);
@@ -162,13 +158,13 @@ void EffectSearch::find_scans_hidden_in_noise() {
   const NoiseProblem problem = problem_with_added();
   for (ScanBesideNoise& held : scans_held_by_a_wander(problem)) {
     GenericTest& test = held.test;
-    const double least = chi_squared_quantile(kLog10GenericRisk - log10_generic_, test.dof);
+    const double least = chi_squared_quantile(log10_scan_risk() - log10_generic_, test.dof);
     const auto [ratio, freedom] =
         test_beside_noise(model_, held.moved, problem, *noise_estimate_, noise_options(), least);
     test.lm = ratio;
     test.log10_p = std::min(0.0, log10_exceedance_of_estimated(ratio, test.dof, freedom));
     const bool known = scan_stands_out_[held.scan] && generic_[held.scan].log10_p <= test.log10_p;
-    if (known || family_wise_log10_p(test) > kLog10GenericRisk) continue;
+    if (known || family_wise_log10_p(test) > log10_scan_risk()) continue;
     generic_[held.scan] = test;
     scan_stands_out_[held.scan] = true;
   }

@@ -8,15 +8,11 @@
 #include <tuple>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/effect_search.h"
 
 namespace volcal {
 namespace {
-
-/// Twins vary nearly alike: where one is refused the other has to stand plainly.
-const double kLog10PlainlyConstant = std::log10(0.1);
-
-constexpr double kPlainlyBeyond = 2.0;  // standard uncertainties
 
 /// "time constant"
 std::string shape_word(const EffectShape& shape) {
@@ -71,7 +67,7 @@ std::string EffectSearch::why_no_name(std::size_t added) const {
   if (still_moves(drivers)) return fmt::format("{} still moves what it leaves", fmt::join(drivers, " or "));
   if (!family.effect) return {};
   const ConstancyTest constancy = constancy_of(family, effect.columns, first_column(added), *projector_);
-  if (constancy.log10_p <= kLog10ConstancyRisk) {
+  if (constancy.log10_p <= std::log10(kThresholds.constancy_risk)) {
     return fmt::format("its amplitude varies with {} (log10 p {:.1f})", constancy.variable,
                        constancy.log10_p);
   }
@@ -91,7 +87,7 @@ bool EffectSearch::lies_beyond_its_scan(std::size_t added) const {
   row(0, column) = 1.0;
   const double change = projector_->solution()[column];
   const double outwards = *end == ScanEnd::Lowest ? -change : change;
-  return outwards > kPlainlyBeyond * std::sqrt(projector_->prediction_variance(row)[0]);
+  return outwards > kThresholds.beyond_scan * std::sqrt(projector_->prediction_variance(row)[0]);
 }
 
 /// `first`: of its columns among the projector's parameters.
@@ -126,16 +122,18 @@ void EffectSearch::leave_rivals_that_vary() {
     const Family& family = families_[effect.test.family];
     if (effect.rivals.empty() || !family.effect) continue;
     const double own = constancy_of(family, effect.columns, first_column(i), *projector_).log10_p;
-    if (own < kLog10PlainlyConstant) continue;
-    std::erase_if(effect.rivals,
-                  [&](const FamilyTest& rival) { return constancy_of_rival(i, rival) < kLog10RivalRisk; });
+    if (own < std::log10(kThresholds.plainly_constant)) continue;
+    std::erase_if(effect.rivals, [&](const FamilyTest& rival) {
+      return constancy_of_rival(i, rival) < std::log10(kThresholds.rival_constancy_risk);
+    });
   }
 }
 
 /// The first rival that would stand where the added effect is refused.
 const FamilyTest* EffectSearch::standing_rival(std::size_t added) const {
   for (const FamilyTest& rival : added_[added].rivals) {
-    if (!given_up_.contains(rival.family) && constancy_of_rival(added, rival) > kLog10PlainlyConstant)
+    if (!given_up_.contains(rival.family) &&
+        constancy_of_rival(added, rival) > std::log10(kThresholds.plainly_constant))
       return &rival;
   }
   return nullptr;

@@ -5,16 +5,11 @@
 #include <memory>
 #include <utility>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/projection/noise_freedom.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
-namespace {
-
-constexpr double kCalmer = 0.3;
-
-}  // namespace
-
 std::vector<NoiseAlternative> noise_with_less_wander(const NoiseProblem& problem,
                                                      const NoiseEstimate& estimate, int threads) {
   const std::vector<NoiseParameters> wandering = estimate.parameters();
@@ -25,7 +20,7 @@ std::vector<NoiseAlternative> noise_with_less_wander(const NoiseProblem& problem
   for (std::size_t group = 0; group < wandering.size(); ++group) {
     if (!wanders(wandering[group])) continue;
     std::vector<NoiseParameters> noise = wandering;
-    noise[group].wander *= kCalmer;
+    noise[group].wander *= kThresholds.reduced_drift;
     const double loss = 2.0 * (estimate.log_likelihood - likelihood.log_likelihood(noise));
     alternatives.push_back({std::move(noise), loss});
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/heldout_errors.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/result.h"
@@ -13,7 +14,6 @@ namespace volcal {
 namespace {
 
 constexpr std::int32_t kStretch = 10;
-constexpr double kHardlyFallen = 0.8;         // of the systematic error before
 constexpr double kSmallestEigenvalue = 1e-9;  // of a precision with unit diagonal
 
 /// Of the prior: as many further observations.
@@ -108,7 +108,7 @@ std::vector<bool> heldout_lines(const LinearModel& model, double share) {
 bool error_has_hardly_fallen(std::span<const LadderStep> ladder) {
   const LadderStep& first = ladder.front();
   const LadderStep& last = ladder.back();
-  return last.systematic_low > 0.0 && last.systematic > kHardlyFallen * first.systematic;
+  return last.systematic_low > 0.0 && last.systematic > kThresholds.heldout_error_left * first.systematic;
 }
 
 LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,

@@ -5,10 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/criticism/projection/projector.h"
-#include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/criticism/data/diagnosis_data.h"
-
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/criticism/projection/projector.h"
 
 namespace volcal {
 

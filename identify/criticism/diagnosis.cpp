@@ -30,7 +30,7 @@ namespace {
 constexpr std::size_t kListed = 40;
 constexpr std::size_t kMostUnknown = 10;
 constexpr std::size_t kMostAmplitudesInWords = 3;
-constexpr const char* kHardlyFallenWords =
+constexpr const char* kNotReducedWords =
     "More remains: readings that were held out are still off by more than noise, hardly less than before. "
     "The "
     "effect may be another one that acts in the same places.";
@@ -318,7 +318,7 @@ class Diagnostician {
     const auto end =
         std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
     const auto simplest = std::ranges::min_element(order.begin(), end, {}, [](const GenericTest* test) {
-      return how_far_fetched(test->variables, test->direction);
+      return complexity_rank(test->variables, test->direction);
     });
     std::rotate(order.begin(), simplest, simplest + 1);
   }
@@ -381,8 +381,8 @@ class Diagnostician {
   void conclude_named() {
     const auto sets = sets_of_alternatives(diagnosis_);
     const bool more = !diagnosis_.unknown.empty();
-    const bool hardly_fallen = error_has_hardly_fallen(diagnosis_.ladder);
-    const bool open = more || !sets.empty() || search_.more_is_known() || hardly_fallen;
+    const bool not_reduced = heldout_error_not_reduced(diagnosis_.ladder);
+    const bool open = more || !sets.empty() || search_.more_is_known() || not_reduced;
     auto& words = diagnosis_.words;
     diagnosis_.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
     for (const EffectFinding& effect : diagnosis_.effects)
@@ -390,7 +390,7 @@ class Diagnostician {
     for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
     if (search_.more_is_known()) words.emplace_back(kKnownMore);
     if (more) words.push_back("More remains: " + sentence(diagnosis_.unknown.front()));
-    if (hardly_fallen) words.emplace_back(kHardlyFallenWords);
+    if (not_reduced) words.emplace_back(kNotReducedWords);
   }
 
   void conclude_unknown() {

@@ -173,7 +173,7 @@ const EffectWord* find_word(NamePart part, const EffectName& name) {
 std::span<const EffectWord> scan_words() { return kScanWords; }
 const EffectWord* find_scan_word(const std::string& variable) { return find_in(kScanWords, {}, variable); }
 
-int how_far_fetched(const std::vector<std::string>& variables, const std::string& direction) {
+int complexity_rank(const std::vector<std::string>& variables, const std::string& direction) {
   const auto holds = [&](std::string_view beginning) {
     return std::ranges::any_of(variables,
                                [&](const std::string& name) { return name.starts_with(beginning); });

@@ -49,6 +49,6 @@ const EffectWord* find_scan_word(const std::string& variable);
 /// along its beam, which is a dead path and no parameter of the model where it shows; time before
 /// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
 /// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
-int how_far_fetched(const std::vector<std::string>& variables, const std::string& direction);
+int complexity_rank(const std::vector<std::string>& variables, const std::string& direction);
 
 }  // namespace volcal

@@ -26,7 +26,7 @@ std::vector<std::size_t> in_order(const NoiseData& data, const NoiseSequence& se
   return order;
 }
 
-double felt_by(const Eigen::VectorXd& felt, std::size_t observation) {
+double influence_on(const Eigen::VectorXd& felt, std::size_t observation) {
   return felt.size() == 0 ? 1.0 : felt[static_cast<Eigen::Index>(observation)];
 }
 
@@ -88,7 +88,7 @@ std::vector<double> mean_variance(const NoiseData& data, std::span<const NoisePa
       const std::size_t i = sequence.observation[k];
       if (bin[i] < 0) continue;
       const auto b = static_cast<std::size_t>(bin[i]);
-      const double weight = felt_by(felt, i);
+      const double weight = influence_on(felt, i);
       squares[b] += weight * weight;
       sum[b] += weight * weight * independent_variance(data, part, i);
       if (!sequence.time.empty() && part.wander > 0.0) {
@@ -114,7 +114,7 @@ BinnedMean binned_mean(const Eigen::VectorXd& abscissa, const Eigen::VectorXd& v
   for (std::size_t i = 0; i < bin.size(); ++i) {
     if (bin[i] < 0) continue;
     const auto b = static_cast<std::size_t>(bin[i]);
-    const double weight = felt_by(felt, i);
+    const double weight = influence_on(felt, i);
     x[b] += abscissa[static_cast<Eigen::Index>(i)];
     y[b] += weight * value[static_cast<Eigen::Index>(i)];
     squares[b] += weight * weight;

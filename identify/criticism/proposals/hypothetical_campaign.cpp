@@ -30,9 +30,9 @@ void continue_sequence(NoiseSequence& sequence, std::size_t observation, const R
 
 }  // namespace
 
-ImaginedCampaign::ImaginedCampaign(const Campaign& campaign, const FitResult& result,
-                                   std::vector<std::string> noise_groups,
-                                   std::vector<ExtraMeasurement> measurements)
+HypotheticalCampaign::HypotheticalCampaign(const Campaign& campaign, const FitResult& result,
+                                           std::vector<std::string> noise_groups,
+                                           std::vector<ExtraMeasurement> measurements)
     : measurements_(std::move(measurements)),
       noise_groups_(std::move(noise_groups)),
       campaign_(extended(campaign)),
@@ -42,7 +42,7 @@ ImaginedCampaign::ImaginedCampaign(const Campaign& campaign, const FitResult& re
   views_ = setup_views(campaign_, model_.binding(), model_.chain());
 }
 
-Campaign ImaginedCampaign::extended(const Campaign& campaign) {
+Campaign HypotheticalCampaign::extended(const Campaign& campaign) {
   Campaign all = campaign;
   for (ExtraMeasurement& measurement : measurements_) {
     stretches_.push_back({all.setups.size(), measurement.setups.size()});
@@ -62,7 +62,7 @@ Campaign ImaginedCampaign::extended(const Campaign& campaign) {
 }
 
 /// Functions have the same coefficients in both; blocks are found by name.
-void ImaginedCampaign::map_parameters(const Campaign& campaign, const FitResult& result) {
+void HypotheticalCampaign::map_parameters(const Campaign& campaign, const FitResult& result) {
   const ParameterLayout& layout = model_.layout();
   parameters_ = model_.initial_parameters();
   parameters_.head(layout.function_size) = result.parameters.head(layout.function_size);
@@ -98,13 +98,13 @@ void ImaginedCampaign::map_parameters(const Campaign& campaign, const FitResult&
   }
 }
 
-std::size_t ImaginedCampaign::group_of(std::size_t setup, int channel) const {
+std::size_t HypotheticalCampaign::group_of(std::size_t setup, int channel) const {
   const std::string group = noise_group(campaign_.setups[setup], static_cast<std::size_t>(channel));
   return static_cast<std::size_t>(std::ranges::find(noise_groups_, group) - noise_groups_.begin());
 }
 
 /// Observations with the same run and channel follow each other in one sequence.
-void ImaginedCampaign::observe(std::size_t setup, Derivatives& derivatives, NoiseData& data) const {
+void HypotheticalCampaign::observe(std::size_t setup, Derivatives& derivatives, NoiseData& data) const {
   const Readings& readings = campaign_.setups[setup].readings;
   std::map<std::pair<std::int32_t, int>, std::size_t> sequence_of;
   RowJacobian row;
@@ -126,7 +126,7 @@ void ImaginedCampaign::observe(std::size_t setup, Derivatives& derivatives, Nois
   }
 }
 
-std::vector<Eigen::Index> ImaginedCampaign::new_parameters(const Derivatives& derivatives) const {
+std::vector<Eigen::Index> HypotheticalCampaign::new_parameters(const Derivatives& derivatives) const {
   std::vector<Eigen::Index> found;
   for (std::size_t k = 0; k < place_.size(); ++k) {
     const auto at = static_cast<Eigen::Index>(k);
@@ -136,9 +136,9 @@ std::vector<Eigen::Index> ImaginedCampaign::new_parameters(const Derivatives& de
   return found;
 }
 
-ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
+HypotheticalRows HypotheticalCampaign::rows(std::size_t measurement) const {
   const auto [first, count] = stretches_[measurement];
-  ImaginedRows out;
+  HypotheticalRows out;
   Derivatives derivatives;
   for (std::size_t setup = first; setup < first + count; ++setup) observe(setup, derivatives, out.data);
   const auto size = static_cast<Eigen::Index>(derivatives.model.size());
@@ -158,8 +158,8 @@ ImaginedRows ImaginedCampaign::rows(std::size_t measurement) const {
   return out;
 }
 
-Eigen::MatrixXd ImaginedCampaign::columns(std::size_t measurement, const ImaginedRows& rows,
-                                          const Effect& effect, const Eigen::VectorXd& shape) const {
+Eigen::MatrixXd HypotheticalCampaign::columns(std::size_t measurement, const HypotheticalRows& rows,
+                                              const Effect& effect, const Eigen::VectorXd& shape) const {
   const auto [first, count] = stretches_[measurement];
   const auto& amplitudes = effect.amplitudes();
   Eigen::MatrixXd out(rows.sensitivity.rows(), static_cast<Eigen::Index>(amplitudes.size()));

@@ -15,7 +15,7 @@
 namespace volcal {
 
 /// What n further observations add to a linear model of p parameters (linear_model.h).
-struct ImaginedRows {
+struct HypotheticalRows {
   Eigen::MatrixXd model;               ///< n x p, derivatives to the parameters that the campaign has
   Eigen::MatrixXd nuisance;            ///< n x q, to those that come with the new setups
   Eigen::VectorXd nuisance_precision;  ///< q, of their priors
@@ -23,20 +23,20 @@ struct ImaginedRows {
   NoiseData data;
 };
 
-class ImaginedCampaign {
+class HypotheticalCampaign {
  public:
   /// `result` must come from fit() of the campaign. `noise_groups`: those of the noise model; others follow
   /// in the order in which they first appear. Throws InputError when a setup cannot be used.
-  ImaginedCampaign(const Campaign& campaign, const FitResult& result, std::vector<std::string> noise_groups,
-                   std::vector<ExtraMeasurement> measurements);
-  ImaginedCampaign(const ImaginedCampaign&) = delete;
-  ImaginedCampaign& operator=(const ImaginedCampaign&) = delete;
+  HypotheticalCampaign(const Campaign& campaign, const FitResult& result,
+                       std::vector<std::string> noise_groups, std::vector<ExtraMeasurement> measurements);
+  HypotheticalCampaign(const HypotheticalCampaign&) = delete;
+  HypotheticalCampaign& operator=(const HypotheticalCampaign&) = delete;
 
   const std::vector<ExtraMeasurement>& measurements() const { return measurements_; }
   const std::vector<std::string>& noise_groups() const { return noise_groups_; }
-  ImaginedRows rows(std::size_t measurement) const;
+  HypotheticalRows rows(std::size_t measurement) const;
   /// Columns of an effect in the observations of rows().
-  Eigen::MatrixXd columns(std::size_t measurement, const ImaginedRows& rows, const Effect& effect,
+  Eigen::MatrixXd columns(std::size_t measurement, const HypotheticalRows& rows, const Effect& effect,
                           const Eigen::VectorXd& shape) const;
 
  private:

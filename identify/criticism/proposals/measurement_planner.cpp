@@ -18,15 +18,15 @@ constexpr double kFaint = 1e-2;  // share of an amplitude's effect, squared, tha
 }  // namespace
 
 MeasurementPlanner::MeasurementPlanner(const CriticismState& state, std::vector<PlannedHypothesis> hypotheses,
-                                       std::size_t given, const ImaginedCampaign& imagined)
+                                       std::size_t given, const HypotheticalCampaign& hypothetical)
     : state_(state),
       hypotheses_(std::move(hypotheses)),
       given_(given),
-      imagined_(imagined),
+      hypothetical_(hypothetical),
       noise_(state.noise.begin(), state.noise.end()),
       parameters_(state.model.problem().jacobian.cols()) {
   use_single_threaded_blas();
-  noise_.resize(imagined.noise_groups().size());
+  noise_.resize(hypothetical.noise_groups().size());
   for (const PlannedHypothesis& each : hypotheses_) {
     range_.push_back({columns_, state.families[each.hypothesis.family].amplitudes()});
     columns_ += range_.back().count;
@@ -106,14 +106,14 @@ ProjectedHypotheses MeasurementPlanner::project(const Eigen::MatrixXd& gram, Eig
 }
 
 ProjectedHypotheses MeasurementPlanner::extended(std::size_t measurement) const {
-  const ImaginedRows rows = imagined_.rows(measurement);
+  const HypotheticalRows rows = hypothetical_.rows(measurement);
   const Eigen::Index fresh = rows.nuisance.cols(), parameters = parameters_ + fresh;
   Eigen::MatrixXd added(rows.model.rows(), parameters + columns_);
   added.leftCols(parameters) << rows.model, rows.nuisance;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     const auto& [family, shape] = hypotheses_[i].hypothesis;
     added.middleCols(parameters + range_[i].first, range_[i].count) =
-        imagined_.columns(measurement, rows, *state_.families[family].effect, shape);
+        hypothetical_.columns(measurement, rows, *state_.families[family].effect, shape);
   }
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(parameters + columns_, parameters + columns_);
   gram.topLeftCorner(parameters_, parameters_) = campaign_.topLeftCorner(parameters_, parameters_);
@@ -126,7 +126,7 @@ ProjectedHypotheses MeasurementPlanner::extended(std::size_t measurement) const 
 }
 
 ProjectedHypotheses MeasurementPlanner::plain(std::size_t measurement) const {
-  const auto further = static_cast<double>(imagined_.measurements()[measurement].readings());
+  const auto further = static_cast<double>(hypothetical_.measurements()[measurement].readings());
   return project(campaign_ * (1.0 + further / observations_), parameters_);
 }
 

@@ -26,9 +26,9 @@ class MeasurementPlanner {
  public:
   /// The first `given` hypotheses are part of the model. Effects only.
   MeasurementPlanner(const CriticismState& state, std::vector<PlannedHypothesis> hypotheses,
-                     std::size_t given, const ImaginedCampaign& imagined);
+                     std::size_t given, const HypotheticalCampaign& hypothetical);
 
-  std::size_t measurements() const { return imagined_.measurements().size(); }
+  std::size_t measurements() const { return hypothetical_.measurements().size(); }
   const ProjectedHypotheses& now() const { return now_; }
   const ProjectedHypotheses& with(std::size_t measurement) const { return with_[measurement]; }
   /// With as many plain readings as the measurement has: the information of all readings grows by their
@@ -56,7 +56,7 @@ class MeasurementPlanner {
   const CriticismState& state_;
   std::vector<PlannedHypothesis> hypotheses_;
   std::size_t given_;
-  const ImaginedCampaign& imagined_;
+  const HypotheticalCampaign& hypothetical_;
   std::vector<NoiseParameters> noise_;  ///< also of instruments that the campaign lacks
   std::vector<ColumnRange> range_;
   Eigen::Index parameters_ = 0;

@@ -46,17 +46,17 @@ class Proposer {
     if (diagnosis_.verdict == Verdict::NotVisible) invisible = invisible_hypotheses();
     if (asked.empty() && alternatives.empty() && invisible.empty()) return;
 
-    const MenuContext context{state_.model.campaign(), state_.model.model().chain(), options_.readings};
-    const ImaginedCampaign imagined(state_.model.campaign(), state_.result, state_.model.noise_groups(),
-                                    possible_measurements(context));
+    const CandidateContext context{state_.model.campaign(), state_.model.model().chain(), options_.readings};
+    const HypotheticalCampaign hypothetical(state_.model.campaign(), state_.result,
+                                            state_.model.noise_groups(), candidate_measurements(context));
     if (!asked.empty()) {
-      const MeasurementPlanner planner = plan(asked, imagined);
-      separate(planner, imagined, asked, all_pairs(asked.size()));
-      make_visible(planner, imagined, asked);
+      const MeasurementPlanner planner = plan(asked, hypothetical);
+      separate(planner, hypothetical, asked, all_pairs(asked.size()));
+      make_visible(planner, hypothetical, asked);
     }
     for (const auto& set : alternatives)
-      separate(plan(set, imagined), imagined, set, with_leading(set.size()));
-    if (!invisible.empty()) make_visible(plan(invisible, imagined), imagined, invisible);
+      separate(plan(set, hypothetical), hypothetical, set, with_leading(set.size()));
+    if (!invisible.empty()) make_visible(plan(invisible, hypothetical), hypothetical, invisible);
   }
 
  private:
@@ -65,7 +65,7 @@ class Proposer {
   }
 
   MeasurementPlanner plan(const std::vector<PlannedHypothesis>& hypotheses,
-                          const ImaginedCampaign& imagined) const {
+                          const HypotheticalCampaign& hypothetical) const {
     std::vector<PlannedHypothesis> all;
     for (const Hypothesis& accepted : accepted_hypotheses(diagnosis_, state_.families)) {
       if (state_.families[accepted.family].effect) all.push_back({accepted, {}});
@@ -77,7 +77,7 @@ class Proposer {
     });
     const std::size_t given = all.size();
     all.insert(all.end(), hypotheses.begin(), hypotheses.end());
-    return {state_, std::move(all), given, imagined};
+    return {state_, std::move(all), given, hypothetical};
   }
 
   /// Alternatives as they were found; changes of resolution are no effects.
@@ -201,13 +201,13 @@ class Proposer {
     return at_hand && measurement.tools.empty() ? 1.0 : 1.0 / kThresholds.effort;
   }
 
-  std::size_t best_for(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+  std::size_t best_for(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
                        const std::vector<Pair>& pairs) const {
     std::size_t best = 0;
     double most = -1.0;
     for (std::size_t i = 0; i < planner.measurements(); ++i) {
       const double apart =
-          nearest(planner, planner.with(i), pairs).second * worth(imagined.measurements()[i]);
+          nearest(planner, planner.with(i), pairs).second * worth(hypothetical.measurements()[i]);
       if (apart <= most) continue;
       most = apart;
       best = i;
@@ -216,18 +216,18 @@ class Proposer {
   }
 
   /// One measurement that serves all pairs, then others for pairs that have a much better one.
-  void separate(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+  void separate(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
                 const std::vector<PlannedHypothesis>& hypotheses, const std::vector<Pair>& pairs) {
     if (pairs.empty() || planner.measurements() == 0) return;
-    const std::size_t common = best_for(planner, imagined, pairs);
-    propose(planner, imagined, hypotheses, nearest(planner, planner.now(), pairs).first, common);
+    const std::size_t common = best_for(planner, hypothetical, pairs);
+    propose(planner, hypothetical, hypotheses, nearest(planner, planner.now(), pairs).first, common);
     for (const Pair& pair : pairs) {
-      const std::size_t own = best_for(planner, imagined, {pair});
+      const std::size_t own = best_for(planner, hypothetical, {pair});
       const auto reached = [&](std::size_t i) {
         return planner.separation(planner.with(i), pair.first, pair.second);
       };
       if (own != common && reached(own) > kThresholds.much_better * reached(common)) {
-        propose(planner, imagined, hypotheses, pair, own);
+        propose(planner, hypothetical, hypotheses, pair, own);
       }
     }
   }
@@ -240,7 +240,7 @@ class Proposer {
     return after > 0.0 ? std::numeric_limits<double>::infinity() : 1.0;
   }
 
-  void propose(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+  void propose(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
                const std::vector<PlannedHypothesis>& hypotheses, Pair pair, std::size_t measurement) {
     if (diagnosis_.proposals.size() == kMostProposals) return;
     const auto apart = [&](const ProjectedHypotheses& where) {
@@ -261,7 +261,7 @@ class Proposer {
       out.reached = out.plain = out.separation;
       out.words = "Nothing on the menu tells " + both + ": they predict nearly the same readings.";
     } else {
-      set_measurement(imagined.measurements()[measurement], out);
+      set_measurement(hypothetical.measurements()[measurement], out);
       out.words += std::isinf(out.gain)
                        ? fmt::format("tells {}, which the present readings cannot at all", both)
                        : fmt::format("tells {} {} times better", both, factor(out.gain));
@@ -301,7 +301,7 @@ class Proposer {
   }
 
   /// Measurements that show most of what is hidden, one after another.
-  void make_visible(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+  void make_visible(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
                     const std::vector<PlannedHypothesis>& hypotheses) {
     std::vector<std::size_t> hidden;
     for (std::size_t i = 0; i < hypotheses.size(); ++i) {
@@ -317,7 +317,7 @@ class Proposer {
             0.0;  // a tie goes to the measurement that says most, in logarithms: units differ
         for (const std::size_t k : shown) {
           information +=
-              std::log(planner.information(planner.with(i), k) * worth(imagined.measurements()[i]));
+              std::log(planner.information(planner.with(i), k) * worth(hypothetical.measurements()[i]));
         }
         if (shown.size() < most.size()) continue;
         if (shown.empty() || (shown.size() == most.size() && information <= most_information)) continue;
@@ -326,7 +326,7 @@ class Proposer {
         best = i;
       }
       if (most.empty()) break;
-      propose_visible(planner, imagined, hypotheses, most, hidden.size(), best);
+      propose_visible(planner, hypothetical, hypotheses, most, hidden.size(), best);
       std::erase_if(hidden, [&](std::size_t i) { return std::ranges::find(most, i) != most.end(); });
     }
   }
@@ -341,11 +341,11 @@ class Proposer {
     return shown;
   }
 
-  void propose_visible(const MeasurementPlanner& planner, const ImaginedCampaign& imagined,
+  void propose_visible(const MeasurementPlanner& planner, const HypotheticalCampaign& hypothetical,
                        const std::vector<PlannedHypothesis>& hypotheses,
                        const std::vector<std::size_t>& shown, std::size_t hidden, std::size_t measurement) {
     MeasurementProposal out;
-    set_measurement(imagined.measurements()[measurement], out);
+    set_measurement(hypothetical.measurements()[measurement], out);
     const std::size_t first = shown.front();
     const bool seen = planner.visible_fraction(planner.now(), first) > kThresholds.invisible_share;
     const double before = seen ? planner.information(planner.now(), first) : 0.0;

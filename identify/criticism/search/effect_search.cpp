@@ -53,7 +53,7 @@ void EffectSearch::run() {
   start();
   climb();
   settle([this] { climb(); });
-  give_up();
+  reject();
   if (!options_.climb) keep_one_step();
   if (!something_stands_out()) find_scans_hidden_in_noise();
   restate_ladder();
@@ -284,7 +284,7 @@ void EffectSearch::add(const FamilyTest& test) {
   added_.push_back({test, accept(test, *projector_), {}});
   find_noise();
   if (refine_shape_of_last()) find_noise();
-  while (take_up_removed() > 0) find_noise();
+  while (reinstate_outliers() > 0) find_noise();
   add_step(families_[test.family].label());
 }
 
@@ -321,7 +321,7 @@ Eigen::MatrixXd EffectSearch::accept(const FamilyTest& test, Projector& projecto
 }
 
 /// Those that are no outliers of the model reached.
-std::size_t EffectSearch::take_up_removed() {
+std::size_t EffectSearch::reinstate_outliers() {
   const NoiseProblem& problem = model_.problem();
   const Eigen::VectorXd solution = projector_->solution();
   const std::vector<double> sigma = total_sigma(problem.data, model_.stated_sigma(), noise_);

@@ -104,7 +104,7 @@ class EffectSearch {
   const FamilyTest* best_by_the_variables_of_a_scan() const;
   std::vector<FamilyTest> added_tests() const;
   bool explain_together(std::size_t first) const;
-  std::vector<FamilyTest> held_by_a_wander(const NoiseProblem& problem) const;
+  std::vector<FamilyTest> absorbed_by_drift(const NoiseProblem& problem) const;
   std::vector<FamilyTest> above_doubtful_noise() const;
   bool add_hidden_in_noise();
   /// What a scan has seen at another noise.
@@ -113,29 +113,29 @@ class EffectSearch {
     GenericTest test;
     Eigen::VectorXd moved;
   };
-  std::vector<ScanBesideNoise> scans_held_by_a_wander(const NoiseProblem& problem) const;
+  std::vector<ScanBesideNoise> scans_absorbed_by_drift(const NoiseProblem& problem) const;
   void find_scans_hidden_in_noise();
   void add(const FamilyTest& test);
   bool refine_shape_of_last();
   Eigen::MatrixXd accept(const FamilyTest& test, Projector& projector) const;
-  std::size_t take_up_removed();
+  std::size_t reinstate_outliers();
   void add_step(const std::string& added);
   void restate_ladder();
   void settle(const std::function<void()>& after_a_change);
   bool reconsider(bool may_change);
   bool still_moves(const std::vector<std::string>& drivers) const;
   bool leaves_more(const AddedEffect& effect) const;
-  std::string why_no_name(std::size_t added) const;
+  std::string rejection_reason(std::size_t added) const;
   bool lies_beyond_its_scan(std::size_t added) const;
   Eigen::Index first_column(std::size_t added) const;
   ConstancyTest constancy_of(const Family& family, const Eigen::MatrixXd& columns, Eigen::Index first,
                              const Projector& projector) const;
   double constancy_of_rival(std::size_t added, const FamilyTest& rival) const;
   void find_no_names();
-  void leave_rivals_that_vary();
+  void drop_inconsistent_rivals();
   const FamilyTest* standing_rival(std::size_t added) const;
-  void give_up();
-  void refuse_but(const std::set<std::size_t>& stood);
+  void reject();
+  void recheck(const std::set<std::size_t>& stood);
   void keep(const std::vector<FamilyTest>& tests);
   void keep_one_step();
   void add_again(const std::vector<FamilyTest>& tests);

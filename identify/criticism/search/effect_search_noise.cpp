@@ -77,9 +77,10 @@ void EffectSearch::find_outstanding() {
 
 /// Effects that would stand out were there hardly a wander: noise that was estimated without an effect can
 /// have taken it for one.
-std::vector<FamilyTest> EffectSearch::held_by_a_wander(const NoiseProblem& problem) const {
+std::vector<FamilyTest> EffectSearch::absorbed_by_drift(const NoiseProblem& problem) const {
   std::vector<FamilyTest> tests;
-  for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
+  for (const NoiseAlternative& other :
+       noise_with_reduced_drift(problem, *noise_estimate_, options_.threads)) {
     const auto projector = projector_of(without(problem.data, heldout_), other.noise);
     for (FamilyTest& test : test_families(model_, families_, *projector, options_.threads)) {
       if (!may_be_added(test) || test.score.lm < other.loss - kThresholds.worth_joint_estimate) continue;
@@ -106,12 +107,11 @@ std::vector<FamilyTest> EffectSearch::above_doubtful_noise() const {
 bool EffectSearch::add_hidden_in_noise() {
   if (options_.progress) options_.progress("effects that noise may hold", 0.9);
   const NoiseProblem problem = problem_with_added();
-  std::vector<FamilyTest> tests = held_by_a_wander(problem);
+  std::vector<FamilyTest> tests = absorbed_by_drift(problem);
   std::ranges::move(above_doubtful_noise(), std::back_inserter(tests));
   for (FamilyTest& test : tests) {
     const double least = chi_squared_quantile(log10_family_risk() - log10_families_, test.score.dof);
-    test_beside_noise(model_, families_[test.family], problem, *noise_estimate_, noise_options(), least,
-                      test);
+    test_jointly(model_, families_[test.family], problem, *noise_estimate_, noise_options(), least, test);
   }
   const auto best = std::ranges::min_element(tests, {}, &FamilyTest::log10_p);
   if (best == tests.end() || family_wise_log10_p(*best) > log10_family_risk()) return false;
@@ -120,14 +120,15 @@ bool EffectSearch::add_hidden_in_noise() {
 }
 
 /// Scans that would stand out were there hardly a wander, the most improbable of each instrument's.
-std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
+std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_absorbed_by_drift(
     const NoiseProblem& problem) const {
   struct Candidate {
     std::size_t scan;
     double log10_p;
   };
   std::vector<ScanBesideNoise> held;
-  for (const NoiseAlternative& other : noise_with_less_wander(problem, *noise_estimate_, options_.threads)) {
+  for (const NoiseAlternative& other :
+       noise_with_reduced_drift(problem, *noise_estimate_, options_.threads)) {
     const auto projector = projector_of(without(problem.data, heldout_), other.noise);
     const std::vector<GenericTest> scans = generic_scan(model_, variables_, *projector, options_.threads);
     std::vector<Candidate> candidates;
@@ -156,11 +157,11 @@ std::vector<EffectSearch::ScanBesideNoise> EffectSearch::scans_held_by_a_wander(
 void EffectSearch::find_scans_hidden_in_noise() {
   if (options_.progress) options_.progress("what noise may hold", 0.92);
   const NoiseProblem problem = problem_with_added();
-  for (ScanBesideNoise& held : scans_held_by_a_wander(problem)) {
+  for (ScanBesideNoise& held : scans_absorbed_by_drift(problem)) {
     GenericTest& test = held.test;
     const double least = chi_squared_quantile(log10_scan_risk() - log10_generic_, test.dof);
     const auto [ratio, freedom] =
-        test_beside_noise(model_, held.moved, problem, *noise_estimate_, noise_options(), least);
+        test_jointly(model_, held.moved, problem, *noise_estimate_, noise_options(), least);
     test.lm = ratio;
     test.log10_p = std::min(0.0, log10_exceedance_of_estimated(ratio, test.dof, freedom));
     const bool known = scan_stands_out_[held.scan] && generic_[held.scan].log10_p <= test.log10_p;

@@ -42,7 +42,7 @@ void EffectSearch::find_no_names() {
     const std::size_t family = added_[i].test.family;
     const EffectName name = families_[family].name();
     by_driver[{name.kind, name.target, name.driver}].push_back(family);
-    const std::string reason = why_no_name(i);
+    const std::string reason = rejection_reason(i);
     if (!reason.empty()) given_up_[family] = reason;
   }
   for (const auto& [key, members] : by_driver) {
@@ -59,7 +59,7 @@ bool EffectSearch::leaves_more(const AddedEffect& effect) const {
 }
 
 /// Empty for a name that stands.
-std::string EffectSearch::why_no_name(std::size_t added) const {
+std::string EffectSearch::rejection_reason(std::size_t added) const {
   const AddedEffect& effect = added_[added];
   const Family& family = families_[effect.test.family];
   if (leaves_more(effect)) return "what it leaves stands out more than it does";
@@ -116,7 +116,7 @@ Eigen::Index EffectSearch::first_column(std::size_t added) const {
 }
 
 /// Rivals whose amplitude varies, where the added effect's plainly does not.
-void EffectSearch::leave_rivals_that_vary() {
+void EffectSearch::drop_inconsistent_rivals() {
   for (std::size_t i = 0; i < added_.size(); ++i) {
     AddedEffect& effect = added_[i];
     const Family& family = families_[effect.test.family];
@@ -139,7 +139,7 @@ const FamilyTest* EffectSearch::standing_rival(std::size_t added) const {
   return nullptr;
 }
 
-void EffectSearch::give_up() {
+void EffectSearch::reject() {
   find_no_names();
   if (!given_up_.empty()) {
     std::vector<FamilyTest> kept;
@@ -154,19 +154,19 @@ void EffectSearch::give_up() {
       }
     }
     keep(kept);
-    refuse_but(stood);
+    recheck(stood);
   }
-  leave_rivals_that_vary();
+  drop_inconsistent_rivals();
 }
 
 /// What has come in place of others, if it is no name either, and what is weaker than what these have left.
-void EffectSearch::refuse_but(const std::set<std::size_t>& stood) {
+void EffectSearch::recheck(const std::set<std::size_t>& stood) {
   std::vector<FamilyTest> kept;
   for (std::size_t i = 0; i < added_.size(); ++i) {
     const std::size_t family = added_[i].test.family;
     std::string reason;
     if (!stood.contains(family)) {
-      reason = why_no_name(i);
+      reason = rejection_reason(i);
     } else if (leaves_more(added_[i])) {
       reason = "what has no name stands out more than it does";
     }

@@ -10,8 +10,8 @@
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
-std::vector<NoiseAlternative> noise_with_less_wander(const NoiseProblem& problem,
-                                                     const NoiseEstimate& estimate, int threads) {
+std::vector<NoiseAlternative> noise_with_reduced_drift(const NoiseProblem& problem,
+                                                       const NoiseEstimate& estimate, int threads) {
   const std::vector<NoiseParameters> wandering = estimate.parameters();
   const auto wanders = [](const NoiseParameters& noise) { return noise.wander > 0.0; };
   if (std::ranges::none_of(wandering, wanders)) return {};
@@ -27,9 +27,8 @@ std::vector<NoiseAlternative> noise_with_less_wander(const NoiseProblem& problem
   return alternatives;
 }
 
-LikelihoodRatio test_beside_noise(const LinearModel& model, const Eigen::VectorXd& moved,
-                                  NoiseProblem problem, const NoiseEstimate& estimate,
-                                  const NoiseOptions& options, double least_ratio) {
+LikelihoodRatio test_jointly(const LinearModel& model, const Eigen::VectorXd& moved, NoiseProblem problem,
+                             const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio) {
   NoiseOptions plain = options;
   plain.uncertainty = false;
   problem.residual -= moved;
@@ -52,12 +51,12 @@ LikelihoodRatio test_beside_noise(const LinearModel& model, const Eigen::VectorX
   return test;
 }
 
-void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
-                       const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
-                       FamilyTest& test) {
+void test_jointly(const LinearModel& model, const Family& family, NoiseProblem problem,
+                  const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
+                  FamilyTest& test) {
   const Eigen::VectorXd moved = family_columns(model, family, test.shape) * test.score.amplitude;
   const auto [ratio, freedom] =
-      test_beside_noise(model, moved, std::move(problem), estimate, options, least_ratio);
+      test_jointly(model, moved, std::move(problem), estimate, options, least_ratio);
   test.score.lm = ratio;
   test.score.log10_p = log10_exceedance_of_estimated(test.score.lm, test.score.dof, freedom);
   test.log10_p = std::min(0.0, test.score.log10_p + std::log10(test.multiplicity));

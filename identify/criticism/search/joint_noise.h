@@ -27,8 +27,8 @@ struct NoiseAlternative {
 
 /// One per instrument that wanders, the others as they are: with so little of its wander left that it holds
 /// hardly any effect.
-std::vector<NoiseAlternative> noise_with_less_wander(const NoiseProblem& problem,
-                                                     const NoiseEstimate& estimate, int threads);
+std::vector<NoiseAlternative> noise_with_reduced_drift(const NoiseProblem& problem,
+                                                       const NoiseEstimate& estimate, int threads);
 
 struct LikelihoodRatio {
   double value = 0.0;
@@ -37,14 +37,13 @@ struct LikelihoodRatio {
 
 /// `moved`: what a hypothesis moves the readings by, from whatever noise it was found with: another lower
 /// bound. `estimate`: for `problem`. A ratio below `least_ratio` is an upper bound, without its freedom.
-LikelihoodRatio test_beside_noise(const LinearModel& model, const Eigen::VectorXd& moved,
-                                  NoiseProblem problem, const NoiseEstimate& estimate,
-                                  const NoiseOptions& options, double least_ratio);
+LikelihoodRatio test_jointly(const LinearModel& model, const Eigen::VectorXd& moved, NoiseProblem problem,
+                             const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio);
 
 /// Sets LM to the likelihood ratio and log10 p by it; the multiplicity of scanned shapes counts. The
 /// amplitude stays that of `test`.
-void test_beside_noise(const LinearModel& model, const Family& family, NoiseProblem problem,
-                       const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
-                       FamilyTest& test);
+void test_jointly(const LinearModel& model, const Family& family, NoiseProblem problem,
+                  const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
+                  FamilyTest& test);
 
 }  // namespace volcal

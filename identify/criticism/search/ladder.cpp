@@ -105,7 +105,7 @@ std::vector<bool> heldout_lines(const LinearModel& model, double share) {
   return heldout;
 }
 
-bool error_has_hardly_fallen(std::span<const LadderStep> ladder) {
+bool heldout_error_not_reduced(std::span<const LadderStep> ladder) {
   const LadderStep& first = ladder.front();
   const LadderStep& last = ladder.back();
   return last.systematic_low > 0.0 && last.systematic > kThresholds.heldout_error_left * first.systematic;

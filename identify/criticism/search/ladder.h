@@ -22,7 +22,7 @@ std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseP
 
 /// The names explain the readings that they were chosen on, and not those that were held out: these are still
 /// off by more than noise, and by at least four fifths of what they were before.
-bool error_has_hardly_fallen(std::span<const LadderStep> ladder);
+bool heldout_error_not_reduced(std::span<const LadderStep> ladder);
 
 /// Figures of the model that `projector` holds, with the accepted columns; `loglik` is the held-out
 /// log-likelihood of the step before, and becomes this one's.

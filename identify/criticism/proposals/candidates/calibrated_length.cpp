@@ -47,7 +47,7 @@ void set_noise(const Campaign& campaign, Setup& setup) {
   setup.repeatability = bar->repeatability;
 }
 
-Setup circle(const MenuContext& context, const Plane& plane, double radius, double start_s) {
+Setup circle(const CandidateContext& context, const Plane& plane, double radius, double start_s) {
   const Machine& machine = context.campaign.machine;
   const AxisPosition centre = middle(machine);
   Setup setup;
@@ -81,7 +81,7 @@ Setup circle(const MenuContext& context, const Plane& plane, double radius, doub
 
 }  // namespace
 
-std::vector<ExtraMeasurement> calibrated_lengths(const MenuContext& context) {
+std::vector<ExtraMeasurement> calibrated_lengths(const CandidateContext& context) {
   const Machine& machine = context.campaign.machine;
   double shortest = std::numeric_limits<double>::infinity();
   for (const AxisName axis : linear_axes(machine)) shortest = std::min(shortest, machine.axis(axis).travel());

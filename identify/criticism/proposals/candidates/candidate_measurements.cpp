@@ -8,7 +8,7 @@
 namespace volcal {
 
 // One line per entry.
-#define VOLCAL_MENU(ENTRY)                                                                           \
+#define VOLCAL_CANDIDATES(ENTRY)                                                                     \
   ENTRY("revisit", "measure at a station again hours later, warm", revisits)                         \
   ENTRY("cold-start", "measure at a station again the next day, at the temperatures of the start",   \
         cold_starts)                                                                                 \
@@ -18,12 +18,13 @@ namespace volcal {
   ENTRY("opposite-approach", "approach the same positions from the other side", opposite_approaches) \
   ENTRY("further-station", "measure from the opposite side of the volume", further_stations)
 
-#define VOLCAL_DECLARE(action, summary, make) std::vector<ExtraMeasurement> make(const MenuContext& context);
-#define VOLCAL_ENTRY(action, summary, make) MenuEntry{action, summary, make},
-VOLCAL_MENU(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE(action, summary, make) \
+  std::vector<ExtraMeasurement> make(const CandidateContext& context);
+#define VOLCAL_ENTRY(action, summary, make) CandidateKind{action, summary, make},
+VOLCAL_CANDIDATES(VOLCAL_DECLARE)
 
-std::span<const MenuEntry> measurement_menu() {
-  static constexpr auto kEntries = std::to_array<MenuEntry>({VOLCAL_MENU(VOLCAL_ENTRY)});
+std::span<const CandidateKind> candidate_kinds() {
+  static constexpr auto kEntries = std::to_array<CandidateKind>({VOLCAL_CANDIDATES(VOLCAL_ENTRY)});
   return kEntries;
 }
 
@@ -33,9 +34,9 @@ std::size_t ExtraMeasurement::readings() const {
   return count;
 }
 
-std::vector<ExtraMeasurement> possible_measurements(const MenuContext& context) {
+std::vector<ExtraMeasurement> candidate_measurements(const CandidateContext& context) {
   std::vector<ExtraMeasurement> all;
-  for (const MenuEntry& entry : measurement_menu()) {
+  for (const CandidateKind& entry : candidate_kinds()) {
     std::vector<ExtraMeasurement> made = entry.make(context);
     for (ExtraMeasurement& each : made) each.action = entry.action;
     std::ranges::move(made, std::back_inserter(all));

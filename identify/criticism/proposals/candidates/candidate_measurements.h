@@ -24,20 +24,20 @@ struct ExtraMeasurement {
   std::size_t readings() const;
 };
 
-struct MenuContext {
+struct CandidateContext {
   const Campaign& campaign;
   const KinematicChain& chain;
   std::size_t readings = 48;  ///< about as many as each entry may take
 };
 
-struct MenuEntry {
+struct CandidateKind {
   std::string_view action;
   std::string_view summary;
-  std::vector<ExtraMeasurement> (*make)(const MenuContext& context);
+  std::vector<ExtraMeasurement> (*make)(const CandidateContext& context);
 };
 
-std::span<const MenuEntry> measurement_menu();
+std::span<const CandidateKind> candidate_kinds();
 /// All entries' measurements, in the menu's order.
-std::vector<ExtraMeasurement> possible_measurements(const MenuContext& context);
+std::vector<ExtraMeasurement> candidate_measurements(const CandidateContext& context);
 
 }  // namespace volcal

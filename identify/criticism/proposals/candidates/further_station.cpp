@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNear = 0.2;  // m: a station so near to another says little new
 
-std::vector<Eigen::Vector3d> points_of(const MenuContext& context, const Setup& setup,
+std::vector<Eigen::Vector3d> points_of(const CandidateContext& context, const Setup& setup,
                                        const Readings& readings) {
   const Machine& machine = context.campaign.machine;
   std::vector<Eigen::Vector3d> points;
@@ -47,7 +47,7 @@ bool is_new(const Campaign& campaign, const Eigen::Vector3d& place) {
 }  // namespace
 
 /// Every station mirrored at the middle of what it measured, along one coordinate.
-std::vector<ExtraMeasurement> further_stations(const MenuContext& context) {
+std::vector<ExtraMeasurement> further_stations(const CandidateContext& context) {
   std::vector<ExtraMeasurement> all;
   for (const Setup* setup : one_setup_per_station(context.campaign)) {
     const auto station = setup->options.vector("station");

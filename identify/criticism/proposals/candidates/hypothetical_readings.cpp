@@ -87,8 +87,9 @@ std::vector<std::size_t> spread_rows(const Setup& setup, std::size_t count) {
   return out;
 }
 
-Setup continued_setup(const MenuContext& context, const Setup& setup, const std::vector<std::size_t>& rows,
-                      const std::string& name, double start_s, Temperatures temperatures) {
+Setup continued_setup(const CandidateContext& context, const Setup& setup,
+                      const std::vector<std::size_t>& rows, const std::string& name, double start_s,
+                      Temperatures temperatures) {
   Setup out;
   out.name = name;
   out.instrument = setup.instrument;
@@ -137,7 +138,7 @@ std::string place_and_tool(const Campaign& campaign, const Setup& setup) {
 
 double end_of(const Campaign& campaign) { return time_span(campaign).second; }
 
-void complete_readings(const MenuContext& context, double start_s, double seconds_per_reading,
+void complete_readings(const CandidateContext& context, double start_s, double seconds_per_reading,
                        Temperatures temperatures, std::size_t channels, Readings& readings) {
   const std::size_t count = readings.source_line.size();
   if (has_time(context.campaign)) {

@@ -13,7 +13,7 @@ namespace volcal {
 /// lines, in their order of measurement.
 std::vector<std::size_t> spread_rows(const Setup& setup, std::size_t count);
 
-/// Temperatures that imagined readings have.
+/// Temperatures that hypothetical readings have.
 enum class Temperatures {
   Last,   ///< every channel stays where it was last
   First,  ///< every channel is back where the campaign began
@@ -21,8 +21,9 @@ enum class Temperatures {
 
 /// A further setup like `setup`: its instrument, tool, station and keys, the given rows with their positions
 /// and directions, taken one after another from `start_s` on. No statement of a prior is made twice.
-Setup continued_setup(const MenuContext& context, const Setup& setup, const std::vector<std::size_t>& rows,
-                      const std::string& name, double start_s, Temperatures temperatures);
+Setup continued_setup(const CandidateContext& context, const Setup& setup,
+                      const std::vector<std::size_t>& rows, const std::string& name, double start_s,
+                      Temperatures temperatures);
 
 /// First setup of every station (instruments that have stations), else of every setup.
 std::vector<const Setup*> one_setup_per_station(const Campaign& campaign);
@@ -37,7 +38,7 @@ inline constexpr double kGoldenShare = 0.6180339887498949;
 inline constexpr double kPause = 600.0;  ///< s, between setups
 
 /// Fills times, temperatures and the nominal reading columns of a setup whose positions are set.
-void complete_readings(const MenuContext& context, double start_s, double seconds_per_reading,
+void complete_readings(const CandidateContext& context, double start_s, double seconds_per_reading,
                        Temperatures temperatures, std::size_t channels, Readings& readings);
 
 }  // namespace volcal

@@ -41,7 +41,7 @@ void jitter(const Axis& axis, double step, std::size_t stream, std::vector<doubl
 
 }  // namespace
 
-std::vector<ExtraMeasurement> jittered_positions(const MenuContext& context) {
+std::vector<ExtraMeasurement> jittered_positions(const CandidateContext& context) {
   std::vector<ExtraMeasurement> all;
   for (const Setup* setup : one_setup_per_station(context.campaign)) {
     Setup moved =

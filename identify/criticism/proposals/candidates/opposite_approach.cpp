@@ -33,7 +33,7 @@ void reverse(std::vector<std::int8_t>& direction, std::size_t rows) {
 
 }  // namespace
 
-std::vector<ExtraMeasurement> opposite_approaches(const MenuContext& context) {
+std::vector<ExtraMeasurement> opposite_approaches(const CandidateContext& context) {
   std::vector<ExtraMeasurement> all;
   for (const Setup* setup : one_setup_per_station(context.campaign)) {
     Setup opposite = continued_setup(context, *setup, spread_rows(*setup, context.readings),

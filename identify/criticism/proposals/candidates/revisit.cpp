@@ -12,7 +12,7 @@ constexpr double kHour = 3600.0;
 constexpr double kHoursLater = 3.0;
 constexpr double kOvernight = 16.0;
 
-std::vector<ExtraMeasurement> again(const MenuContext& context, double hours, Temperatures temperatures,
+std::vector<ExtraMeasurement> again(const CandidateContext& context, double hours, Temperatures temperatures,
                                     const std::string& when) {
   const Campaign& campaign = context.campaign;
   std::vector<ExtraMeasurement> all;
@@ -31,11 +31,11 @@ std::vector<ExtraMeasurement> again(const MenuContext& context, double hours, Te
 
 }  // namespace
 
-std::vector<ExtraMeasurement> revisits(const MenuContext& context) {
+std::vector<ExtraMeasurement> revisits(const CandidateContext& context) {
   return again(context, kHoursLater, Temperatures::Last, fmt::format("after {:.0f} h", kHoursLater));
 }
 
-std::vector<ExtraMeasurement> cold_starts(const MenuContext& context) {
+std::vector<ExtraMeasurement> cold_starts(const CandidateContext& context) {
   if (temperature_channels(context.campaign).empty()) return {};
   return again(context, kOvernight, Temperatures::First, "the next day, at the temperatures of the start");
 }

@@ -30,7 +30,7 @@ Tool longer_tool(const Machine& machine) {
   return tool;
 }
 
-ExtraMeasurement with_tool(const MenuContext& context, const Setup& setup, std::size_t tool,
+ExtraMeasurement with_tool(const CandidateContext& context, const Setup& setup, std::size_t tool,
                            const std::string& name) {
   ExtraMeasurement extra;
   extra.setup = setup.name;
@@ -46,7 +46,7 @@ ExtraMeasurement with_tool(const MenuContext& context, const Setup& setup, std::
 }  // namespace
 
 /// Every tool of the machine that a station has not seen, and a longer one.
-std::vector<ExtraMeasurement> second_tools(const MenuContext& context) {
+std::vector<ExtraMeasurement> second_tools(const CandidateContext& context) {
   const Campaign& campaign = context.campaign;
   const auto& tools = campaign.machine.tools;
   std::vector<ExtraMeasurement> all;

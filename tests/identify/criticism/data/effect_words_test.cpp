@@ -68,16 +68,16 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
 
 /// What scans see nearly alike is told in this order.
 TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
-  EXPECT_EQ(how_far_fetched({"station P1"}, "X"), 0);
-  EXPECT_EQ(how_far_fetched({"instrument ball-bar"}, "beam"), 0);
-  EXPECT_EQ(how_far_fetched({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
-  EXPECT_EQ(how_far_fetched({"x", "dir_x"}, "Y"), 1);
-  EXPECT_EQ(how_far_fetched({"station P1", "time"}, "X"), 1) << "a station drifts in time";
-  EXPECT_EQ(how_far_fetched({"station P1", "T_air"}, "X"), 2);
-  EXPECT_EQ(how_far_fetched({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
-  EXPECT_EQ(how_far_fetched({"length", "time"}, "beam"), 2);
-  EXPECT_EQ(how_far_fetched({"x", "time"}, "X"), 1);
-  EXPECT_EQ(how_far_fetched({"time", "T_air"}, "X"), 3);
+  EXPECT_EQ(complexity_rank({"station P1"}, "X"), 0);
+  EXPECT_EQ(complexity_rank({"instrument ball-bar"}, "beam"), 0);
+  EXPECT_EQ(complexity_rank({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
+  EXPECT_EQ(complexity_rank({"x", "dir_x"}, "Y"), 1);
+  EXPECT_EQ(complexity_rank({"station P1", "time"}, "X"), 1) << "a station drifts in time";
+  EXPECT_EQ(complexity_rank({"station P1", "T_air"}, "X"), 2);
+  EXPECT_EQ(complexity_rank({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
+  EXPECT_EQ(complexity_rank({"length", "time"}, "beam"), 2);
+  EXPECT_EQ(complexity_rank({"x", "time"}, "X"), 1);
+  EXPECT_EQ(complexity_rank({"time", "T_air"}, "X"), 3);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 
 std::vector<ExtraMeasurement> possible(const Campaign& campaign, std::size_t readings = 48) {
   const KinematicChain chain(campaign.machine);
-  return possible_measurements({campaign, chain, readings});
+  return candidate_measurements({campaign, chain, readings});
 }
 
 std::vector<ExtraMeasurement> of_action(const std::vector<ExtraMeasurement>& all, const std::string& action) {
@@ -51,7 +51,7 @@ TEST(MeasurementMenu, SetupsAreCompleteAndNew) {
       for (const auto& value : readings.value) EXPECT_EQ(value.size(), readings.size());
     }
   }
-  for (const MenuEntry& entry : measurement_menu()) {
+  for (const CandidateKind& entry : candidate_kinds()) {
     EXPECT_FALSE(entry.summary.empty());
     if (entry.action == "jittered-positions" || entry.action == "opposite-approach") continue;
     EXPECT_FALSE(of_action(all, std::string(entry.action)).empty()) << entry.action;
@@ -156,10 +156,11 @@ class Planner : public ::testing::Test {
                         0.8,    1};
 };
 
-/// Rows that were measured, imagined once more, have the derivatives that they had; a dead path of their own.
-TEST_F(Planner, ImaginedRowsAreThoseOfTheSamePositions) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
-  const ImaginedRows rows = imagined.rows(0);  // revisit of P1_short
+/// Rows that were measured, as if they were measured once more, have the derivatives that they had; a dead
+/// path of their own.
+TEST_F(Planner, HypotheticalRowsAreThoseOfTheSamePositions) {
+  const HypotheticalCampaign hypothetical(campaign_, result_, model_.noise_groups(), possible(campaign_));
+  const HypotheticalRows rows = hypothetical.rows(0);  // revisit of P1_short
   const auto picked = spread_rows(campaign_.setups[0], 48);
   ASSERT_EQ(rows.model.rows(), static_cast<Eigen::Index>(picked.size()));
   ASSERT_EQ(rows.nuisance.cols(), 1);
@@ -184,15 +185,15 @@ TEST_F(Planner, ImaginedRowsAreThoseOfTheSamePositions) {
 
 /// Gram matrices of the planner against (H^T S^-1 H - B^T A^-1 B) with everything stacked.
 TEST_F(Planner, AgreesWithStackedMatrices) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
+  const HypotheticalCampaign hypothetical(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const std::vector<PlannedHypothesis> both = {planned("station-drift"), planned("dead-path")};
-  const MeasurementPlanner planner(state_, both, 0, imagined);
+  const MeasurementPlanner planner(state_, both, 0, hypothetical);
   const NoiseProblem& problem = model_.problem();
   Eigen::MatrixXd effects(problem.jacobian.rows(), 4);
   effects << family_columns(model_, families_[both[0].hypothesis.family], both[0].hypothesis.shape),
       family_columns(model_, families_[both[1].hypothesis.family], both[1].hypothesis.shape);
-  for (std::size_t i = 0; i < imagined.measurements().size(); i += 3) {
-    const ImaginedRows rows = imagined.rows(i);
+  for (std::size_t i = 0; i < hypothetical.measurements().size(); i += 3) {
+    const HypotheticalRows rows = hypothetical.rows(i);
     const Eigen::Index n = effects.rows(), m = rows.model.rows(), p = problem.jacobian.cols();
     const Eigen::Index q = rows.nuisance.cols();
     Eigen::MatrixXd j = Eigen::MatrixXd::Zero(n + m, p + q), h(n + m, 4);
@@ -200,8 +201,8 @@ TEST_F(Planner, AgreesWithStackedMatrices) {
     j.topLeftCorner(n, p) = problem.jacobian;
     j.bottomRows(m) << rows.model, rows.nuisance;
     h.topRows(n) = effects;
-    h.bottomRows(m) << imagined.columns(i, rows, *families_[both[0].hypothesis.family].effect, {}),
-        imagined.columns(i, rows, *families_[both[1].hypothesis.family].effect, {});
+    h.bottomRows(m) << hypothetical.columns(i, rows, *families_[both[0].hypothesis.family].effect, {}),
+        hypothetical.columns(i, rows, *families_[both[1].hypothesis.family].effect, {});
     for (Eigen::Index k = 0; k < n; ++k) weight[k] = 1.0 / problem.data.sigma[static_cast<std::size_t>(k)];
     for (Eigen::Index k = 0; k < m; ++k) weight[n + k] = 1.0 / rows.data.sigma[static_cast<std::size_t>(k)];
     j = weight.asDiagonal() * j;
@@ -215,14 +216,14 @@ TEST_F(Planner, AgreesWithStackedMatrices) {
     const Eigen::MatrixXd gram = h.transpose() * h - cross.transpose() * scaled.ldlt().solve(cross);
     const Eigen::VectorXd unit = gram.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::MatrixXd difference = unit.asDiagonal() * (gram - planner.with(i).gram) * unit.asDiagonal();
-    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-6) << imagined.measurements()[i].words;
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-6) << hypothetical.measurements()[i].words;
   }
 }
 
 /// More readings never take separation away.
 TEST_F(Planner, SeparationGrows) {
-  const ImaginedCampaign imagined(campaign_, result_, model_.noise_groups(), possible(campaign_));
-  const MeasurementPlanner planner(state_, {planned("station-drift"), planned("dead-path")}, 0, imagined);
+  const HypotheticalCampaign hypothetical(campaign_, result_, model_.noise_groups(), possible(campaign_));
+  const MeasurementPlanner planner(state_, {planned("station-drift"), planned("dead-path")}, 0, hypothetical);
   const double now = planner.separation(planner.now(), 0, 1);
   EXPECT_GT(now, 0.0);
   for (std::size_t i = 0; i < planner.measurements(); ++i) {

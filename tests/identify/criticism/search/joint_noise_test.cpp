@@ -52,7 +52,7 @@ TEST_F(BesideNoise, NothingToDoWhereNothingWanders) {
   std::mt19937_64 random(8);
   const NoiseEstimate noise = estimate(white_residual(model(), random));
   ASSERT_EQ(noise.instruments.at(0).parameters.wander, 0.0);
-  EXPECT_TRUE(noise_with_less_wander(problem_, noise, 1).empty());
+  EXPECT_TRUE(noise_with_reduced_drift(problem_, noise, 1).empty());
 }
 
 TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
@@ -64,21 +64,21 @@ TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
   moved *= 1.5 * white.norm() / moved.norm();
   const NoiseEstimate noise = estimate(white + moved);
   ASSERT_GT(noise.instruments.at(0).parameters.wander, 0.0);
-  const auto alternatives = noise_with_less_wander(problem_, noise, 1);
+  const auto alternatives = noise_with_reduced_drift(problem_, noise, 1);
   ASSERT_EQ(alternatives.size(), 1U);
   EXPECT_LT(alternatives[0].noise[0].wander, 0.5 * noise.instruments.at(0).parameters.wander);
   EXPECT_GT(alternatives[0].loss, 0.0);
   FamilyTest test = tested_at(alternatives[0].noise);
   const double bound = test.score.lm - alternatives[0].loss;
   EXPECT_GT(bound, 0.0);
-  test_beside_noise(model(), family(), problem_, noise, {}, 0.0, test);
+  test_jointly(model(), family(), problem_, noise, {}, 0.0, test);
   EXPECT_GE(test.score.lm, bound - 0.1);
   EXPECT_LT(test.log10_p, tested_at(noise.parameters()).log10_p);
   EXPECT_LT(test.log10_p, -6.0);
   EXPECT_GT(test.log10_p, log10_chi_squared_exceedance(test.score.lm, 3) + 1.0)
       << "a wander is known from its correlation times";
   const double ratio = test.score.lm;
-  test_beside_noise(model(), family(), problem_, noise, {}, 2.0 * ratio, test);
+  test_jointly(model(), family(), problem_, noise, {}, 2.0 * ratio, test);
   EXPECT_GE(test.score.lm, ratio) << "an upper bound will do";
   EXPECT_LT(test.score.lm, 2.0 * ratio);
 }
@@ -114,7 +114,7 @@ TEST(BesideNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   const std::vector<Family> servo = families_of(fitted.model, "servo-mismatch");
   const Projector projector(problem, problem.data, noise.parameters(), 1, fitted.model.parts());
   FamilyTest test = test_families(fitted.model, servo, projector, 1).at(0);
-  test_beside_noise(fitted.model, servo.at(0), problem, noise, {}, 0.0, test);
+  test_jointly(fitted.model, servo.at(0), problem, noise, {}, 0.0, test);
   const auto readings = static_cast<double>(bar.observations);
   EXPECT_GE(test.score.log10_p, log10_chi_squared_exceedance(test.score.lm, test.score.dof));
   EXPECT_LE(test.score.log10_p, log10_exceedance_of_estimated(test.score.lm, test.score.dof, 0.5 * readings));
@@ -144,7 +144,7 @@ TEST_F(BesideNoise, StaysWithinChanceUnderATrueWander) {
     if (noise.instruments.at(0).parameters.wander == 0.0) continue;
     ++wandering;
     FamilyTest test = tested_at(noise.parameters());
-    test_beside_noise(model(), family(), problem_, noise, {}, 0.0, test);
+    test_jointly(model(), family(), problem_, noise, {}, 0.0, test);
     ratios += test.score.lm;
   }
   ASSERT_GT(wandering, kDraws / 2);

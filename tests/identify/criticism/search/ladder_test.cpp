@@ -16,12 +16,12 @@ LadderStep step(double systematic, double low) {
 
 TEST(Ladder, AnErrorThatHardlyFallsIsAboveTheNoiseAndNearlyAsLargeAsBefore) {
   const LadderStep before = step(0.50e-6, 0.32e-6);
-  const auto hardly_fallen = [&](const LadderStep& after) {
-    return error_has_hardly_fallen(std::vector{before, step(0.49e-6, 0.30e-6), after});
+  const auto not_reduced = [&](const LadderStep& after) {
+    return heldout_error_not_reduced(std::vector{before, step(0.49e-6, 0.30e-6), after});
   };
-  EXPECT_TRUE(hardly_fallen(step(0.47e-6, 0.26e-6)));
-  EXPECT_FALSE(hardly_fallen(step(0.47e-6, 0.0))) << "may be noise";
-  EXPECT_FALSE(hardly_fallen(step(0.35e-6, 0.10e-6))) << "has fallen";
+  EXPECT_TRUE(not_reduced(step(0.47e-6, 0.26e-6)));
+  EXPECT_FALSE(not_reduced(step(0.47e-6, 0.0))) << "may be noise";
+  EXPECT_FALSE(not_reduced(step(0.35e-6, 0.10e-6))) << "has fallen";
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ void consider_families(const LinearModel& model, const std::vector<Family>& fami
     leading.consider(test.log10_p + log10_count, [&](Screening& found) {
       const Family& family = families[test.family];
       found.leading = family.label();
-      found.rms = root_mean_square(family_columns(model, family, test.shape) * test.score.amplitude);
+      found.rms = root_mean_square(displacement(model, family, test));
     });
   }
 }

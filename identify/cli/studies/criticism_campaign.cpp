@@ -71,7 +71,7 @@ class Yardstick {
         result_(fitted(simulated_.campaign, {})),
         model_(simulated_.campaign, result_),
         smooth_(model_.problem(), model_.problem().data, true_noise(), 1),
-        free_(without_smoothing(model_), model_.problem().data, true_noise(), 1) {}
+        free_(model_.with_smoothing({}).problem(), model_.problem().data, true_noise(), 1) {}
 
   /// Change of the readings by an effect that has an amplitude or an rms.
   Eigen::VectorXd change(const sim::Study& study, const sim::HiddenEffect& effect, double* amplitude) const {
@@ -133,11 +133,6 @@ class Yardstick {
             .solution);
     out.share = gram(count, count) > 0.0 ? mixed.dot(out.amplitude) / gram(count, count) : 0.0;
     return out;
-  }
-
-  static const NoiseProblem& without_smoothing(LinearModel& model) {
-    model.set_smoothing({});
-    return model.problem();
   }
 
   std::vector<NoiseParameters> true_noise() const {

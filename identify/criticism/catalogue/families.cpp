@@ -248,6 +248,10 @@ Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, c
   return columns;
 }
 
+Eigen::VectorXd displacement(const LinearModel& model, const Family& family, const FamilyTest& test) {
+  return family_columns(model, family, test.shape) * test.score.amplitude;
+}
+
 std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
                                       const Projector& projector, int threads) {
   return FamilyTester(model, families, projector).run(threads);

@@ -48,6 +48,10 @@ struct FamilyTest {
                               ///< and of independent components only those that raise it
 };
 
+/// What a family moves the readings by, at the shape and the amplitudes of its test; all observations, m or
+/// rad.
+Eigen::VectorXd displacement(const LinearModel& model, const Family& family, const FamilyTest& test);
+
 /// Takes a test to a shape with its score; the multiplicity stays.
 void update_test(FamilyTest& test, const Family& family, const Eigen::VectorXd& shape, const ScoreTest& score,
                  const Projector& projector);

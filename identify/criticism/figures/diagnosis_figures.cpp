@@ -5,8 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <memory>
+#include <set>
 
+#include "volcal/identify/criticism/figures/figure_statistics.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/stats/channels.h"
 #include "volcal/identify/stats/even_sample.h"
@@ -24,16 +25,20 @@ constexpr double kSeen = 0.05;  // of the information along the best seen direct
 
 class FigureMaker {
  public:
-  explicit FigureMaker(const FigureSource& source)
-      : source_(source), model_(source.model), problem_(source.model.problem()) {
-    for (const double variance : noise_variance(problem_.data, source.noise))
+  FigureMaker(const ModelState& given, const ModelState& reached)
+      : given_state_(given),
+        state_(reached),
+        setting_(reached.setting()),
+        model_(reached.model()),
+        problem_(model_.problem()) {
+    for (const double variance : noise_variance(problem_.data, state_.noise()))
       deviation_.push_back(std::sqrt(variance));
   }
 
   DiagnosisFigures run() {
     find_residuals();
     draw_observations();
-    for (const ScanVariable& variable : source_.variables) {
+    for (const ScanVariable& variable : setting_.variables) {
       if (variable.name.find(' ') == std::string::npos) add_variable(variable);
     }
     add_categories();
@@ -51,33 +56,34 @@ class FigureMaker {
 
   /// Residuals of both models, and the leading effect, for which the model without it is needed anyway.
   void find_residuals() {
-    const auto& columns = source_.accepted_columns;
-    reached_ = left_over(problem_, columns, problem_.residual, source_.projector.solution());
-    if (columns.empty()) {
+    std::vector<Eigen::MatrixXd> others;
+    std::set<std::size_t> all;
+    for (const AddedEffect& effect : state_.added()) {
+      all.insert(others.size());
+      others.push_back(effect.columns);
+    }
+    reached_ = left_over(problem_, others, problem_.residual, state_.projector().solution());
+    if (others.empty()) {
       given_ = reached_;
-      add_leading(source_.projector, {}, strongest());
+      add_leading(state_.projector(), {}, strongest());
       return;
     }
-    Projector rest(problem_, without(problem_.data, source_.heldout), source_.noise, source_.threads,
-                   model_.parts());
-    given_ = left_over(problem_, {}, problem_.residual, rest.solution());
+    const auto rest = state_.projector_without(all);
+    given_ = left_over(problem_, {}, problem_.residual, rest->solution());
     const auto leading = std::ranges::find_if(
-        source_.accepted, [&](std::size_t family) { return !source_.families[family].resolution; });
-    std::vector<Eigen::MatrixXd> others = columns;
-    if (leading != source_.accepted.end())
-      others.erase(others.begin() + (leading - source_.accepted.begin()));
-    if (leading == source_.accepted.end()) {
-      for (const Eigen::MatrixXd& other : others) rest.accept(other);
-      add_leading(rest, others, strongest());
+        state_.added(), [&](const AddedEffect& each) { return !state_.family_of(each).resolution; });
+    if (leading == state_.added().end()) {
+      for (const Eigen::MatrixXd& other : others) rest->accept(other);
+      add_leading(*rest, others, strongest());
       return;
     }
+    others.erase(others.begin() + (leading - state_.added().begin()));
     // The amplitude comes from all readings, and so does the line through the points.
-    Projector all(problem_, problem_.data, source_.noise, source_.threads, model_.parts());
-    for (const Eigen::MatrixXd& other : others) all.accept(other);
+    Projector readings(problem_, problem_.data, state_.noise(), setting_.threads, model_.parts());
+    for (const Eigen::MatrixXd& other : others) readings.accept(other);
     figures_.leading.accepted = true;
-    add_leading(all, others,
-                {*leading, columns[static_cast<std::size_t>(leading - source_.accepted.begin())].leftCols(
-                               source_.families[*leading].amplitudes())});
+    add_leading(readings, others,
+                {leading->test.family, leading->columns.leftCols(state_.family_of(*leading).amplitudes())});
   }
 
   struct Leading {
@@ -87,20 +93,20 @@ class FigureMaker {
 
   Leading strongest() const {
     const FamilyTest* best = nullptr;
-    for (const FamilyTest& test : source_.tests) {
-      if (source_.families[test.family].resolution || test.score.dof == 0) continue;
+    for (const FamilyTest& test : state_.tests().families) {
+      if (setting_.families[test.family].resolution || test.score.dof == 0) continue;
       if (best == nullptr || test.gain > best->gain) best = &test;
     }
     if (best == nullptr) return {};
-    return {best->family, family_columns(model_, source_.families[best->family], best->shape)};
+    return {best->family, family_columns(model_, setting_.families[best->family], best->shape)};
   }
 
   void add_leading(const Projector& rest, std::span<const Eigen::MatrixXd> accepted, const Leading& leading) {
     if (leading.columns.cols() == 0) return;
-    const NoiseData data = without(problem_.data, source_.heldout);
+    const NoiseData data = without(problem_.data, setting_.heldout);
     const PartialRegression partial =
-        partial_regression(problem_, data, source_.noise, rest, accepted, leading.columns);
-    const Family& family = source_.families[leading.family];
+        partial_regression(problem_, data, state_.noise(), rest, accepted, leading.columns);
+    const Family& family = setting_.families[leading.family];
     const EffectAmplitude& amplitude = family.effect->amplitudes().front();
     AddedVariableFigure& figure = figures_.leading;
     figure.label = family.label();
@@ -139,7 +145,7 @@ class FigureMaker {
       drawn.setup = setup;
       drawn.source_line = setup_of(i).readings.source_line[row];
       drawn.angle = is_angle(i);
-      drawn.held_out = source_.heldout[i];
+      drawn.held_out = setting_.heldout[i];
       drawn.noise = deviation_[i];
       drawn.given = given_[at];
       drawn.reached = reached_[at];
@@ -169,7 +175,7 @@ class FigureMaker {
         any = any || own[i] >= 0;
       }
       if (!any) continue;
-      const std::vector<double> variance = mean_variance(problem_.data, source_.noise, own, bins, felt);
+      const std::vector<double> variance = mean_variance(problem_.data, state_.noise(), own, bins, felt);
       figure.given[kind] = binned_mean(abscissa, given_, own, variance, felt);
       figure.reached[kind] = binned_mean(abscissa, reached_, own, variance, felt);
     }
@@ -269,7 +275,7 @@ class FigureMaker {
 
   void add_generic() {
     std::map<std::string, Eigen::Index> place;
-    for (const ScanVariable& variable : source_.variables) {
+    for (const ScanVariable& variable : setting_.variables) {
       place.emplace(variable.name, static_cast<Eigen::Index>(place.size()));
       figures_.generic.variables.push_back(variable.name);
     }
@@ -285,20 +291,22 @@ class FigureMaker {
         cell = std::min(cell, std::min(0.0, test.log10_p + multiplicity));
       }
     };
-    fill(source_.generic_given, figures_.generic.given);
-    fill(source_.generic_reached, figures_.generic.reached);
+    fill(given_state_.tests().scans, figures_.generic.given);
+    fill(state_.tests().scans, figures_.generic.reached);
   }
 
   void add_autocorrelation() {
-    const Whitener whitener(problem_.data, source_.noise);
+    const Whitener whitener(problem_.data, state_.noise());
     const Eigen::VectorXd whitened = whitener.whiten(reached_);
-    for (std::size_t group = 0; group < source_.noise.size(); ++group) {
-      Autocorrelation one = autocorrelation(problem_.data, source_.noise, group, reached_, whitened);
+    for (std::size_t group = 0; group < state_.noise().size(); ++group) {
+      Autocorrelation one = autocorrelation(problem_.data, state_.noise(), group, reached_, whitened);
       if (!one.lag.empty()) figures_.autocorrelation.push_back(std::move(one));
     }
   }
 
-  const FigureSource& source_;
+  const ModelState& given_state_;
+  const ModelState& state_;
+  const SearchSetting& setting_;
   const LinearModel& model_;
   const NoiseProblem& problem_;
   std::vector<double> deviation_;
@@ -310,6 +318,8 @@ class FigureMaker {
 
 }  // namespace
 
-DiagnosisFigures diagnosis_figures(const FigureSource& source) { return FigureMaker(source).run(); }
+DiagnosisFigures diagnosis_figures(const ModelState& given, const ModelState& reached) {
+  return FigureMaker(given, reached).run();
+}
 
 }  // namespace volcal

@@ -1,8 +1,9 @@
 #pragma once
 /// An adjusted campaign as a linear model about its solution: what every test of model criticism starts from.
+/// Immutable: other smoothing, or further readings in use, give another model, which shares what does not
+/// change.
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,49 +20,48 @@ namespace volcal {
 /// Observations stand in setup, row, channel order. SI.
 class LinearModel {
  public:
-  /// `result` must come from fit() of this campaign; both must outlive the object.
+  /// `result` must come from fit() of this campaign; the campaign must outlive the object.
   LinearModel(const Campaign& campaign, const FitResult& result);
 
   using Observation = ObservationPlace;
 
-  const Campaign& campaign() const { return campaign_; }
-  const MeasurementModel& model() const { return model_; }
-  std::size_t size() const { return observations_.size(); }
-  const std::vector<Observation>& observations() const { return observations_; }
-  const std::vector<SetupView>& views() const { return views_; }
-  const std::vector<std::string>& noise_groups() const { return noise_groups_; }
+  const Campaign& campaign() const { return fixed_->campaign; }
+  const MeasurementModel& model() const { return fixed_->model; }
+  std::size_t size() const { return observations().size(); }
+  const std::vector<Observation>& observations() const { return fixed_->observations; }
+  const std::vector<SetupView>& views() const { return fixed_->views; }
+  const std::vector<std::string>& noise_groups() const { return fixed_->noise_groups; }
   /// Derivatives to the parameters in datum coordinates, residuals (reading minus prediction), priors and
-  /// what the noise model needs. Readings that the fit removed have an infinite sigma.
-  const NoiseProblem& problem() const { return problem_; }
+  /// what the noise model needs. Observations that are left out have an infinite sigma.
+  const NoiseProblem& problem() const { return *problem_; }
 
   /// Observations that are left out: at first those that the fit removed.
   const std::vector<std::size_t>& removed() const { return removed_; }
-  /// Takes up again those that a better model explains: a fit that lacks an effect takes what the effect
-  /// moves most for outliers. Returns how many.
-  std::size_t take_up(const std::function<bool(std::size_t observation)>& explained);
-  /// Leaves out again all that the fit removed, and smooths as it did.
-  void return_to_fit();
+  /// With some of removed() in use again: a fit that lacks an effect takes what the effect moves most for
+  /// outliers.
+  LinearModel with_reinstated(const std::vector<std::size_t>& observations) const;
 
-  /// Smoothing of functions that have as many knots as the readings can tell apart; goes into the priors of
+  /// Smoothing of functions that have as many knots as the readings can tell apart; part of the priors of
   /// problem().
   const std::vector<SmoothingTerm>& smoothing() const { return smoothing_; }
-  void set_smoothing(std::vector<SmoothingTerm> smoothing);
-  /// Chosen by evidence (smoothing.h) from [J G y]^T Sigma^-1 [J G y], G columns of effects without prior: a
-  /// fit that lacks an effect takes part of it for detail of the functions, or for noise that hides detail.
-  void smooth(const Eigen::MatrixXd& gram, std::size_t observations);
+  LinearModel with_smoothing(std::vector<SmoothingTerm> smoothing) const;
+  /// With smoothing by evidence (smoothing.h) from [J G y]^T Sigma^-1 [J G y], G columns of effects without
+  /// prior: a fit that lacks an effect takes part of it for detail of the functions, or for noise that hides
+  /// detail.
+  LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const;
   /// Of all observations, those that are left out as well.
-  const std::vector<double>& stated_sigma() const { return stated_sigma_; }
+  const std::vector<double>& stated_sigma() const { return fixed_->stated_sigma; }
   /// Of the fit's outlier test.
-  double outlier_critical_value() const { return outlier_critical_value_; }
+  double outlier_critical_value() const { return fixed_->outlier_critical_value; }
 
   /// Boundaries 0 ... N of the setups among the observations.
-  const std::vector<Eigen::Index>& parts() const { return parts_; }
+  const std::vector<Eigen::Index>& parts() const { return fixed_->parts; }
   /// Columns of the readings that an effect's amplitudes would add, rows of one setup: observations x
   /// amplitudes.
   void columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
                Eigen::Ref<Eigen::MatrixXd> out) const;
   double sensitivity(Eigen::Index observation, int disturbance) const {
-    return sensitivity_(observation, disturbance);
+    return fixed_->sensitivity(observation, disturbance);
   }
   /// Derivative of every observation to the displacement of the functional point along a direction of the
   /// workpiece (0..2), or to the reading itself (3).
@@ -70,24 +70,30 @@ class LinearModel {
   Eigen::VectorXd motion(ErrorSymbol symbol) const;
 
  private:
-  void add_sensitivity(const Eigen::VectorXd& parameters);
+  struct Fixed {
+    Fixed(const Campaign& of, const FitResult& result);
+    void find_sensitivity(const Eigen::VectorXd& parameters);
 
-  const Campaign& campaign_;
-  MeasurementModel model_;
-  std::vector<Observation> observations_;
-  std::vector<Eigen::Index> parts_;
-  std::vector<std::string> noise_groups_;
-  std::vector<SetupView> views_;
-  Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity_;
-  NoiseProblem problem_;
-  GaussianPrior base_prior_;  ///< of the reduced parameters, without smoothing
-  Eigen::VectorXd reduced_;   ///< where the model is linearised
-  std::vector<SmoothingTerm> smoothing_as_fitted_;
+    const Campaign& campaign;
+    MeasurementModel model;
+    std::vector<Observation> observations;
+    std::vector<Eigen::Index> parts;
+    std::vector<std::string> noise_groups;
+    std::vector<SetupView> views;
+    Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity;
+    GaussianPrior base_prior;  ///< of the reduced parameters, without smoothing
+    Eigen::VectorXd reduced;   ///< where the model is linearised
+    std::vector<double> stated_sigma;
+    double outlier_critical_value;
+  };
+
+  /// `problem` becomes that of this model.
+  void set_smoothing(std::vector<SmoothingTerm> smoothing, const std::shared_ptr<NoiseProblem>& problem);
+
+  std::shared_ptr<const Fixed> fixed_;
+  std::shared_ptr<const NoiseProblem> problem_;
   std::vector<SmoothingTerm> smoothing_;
-  std::vector<double> stated_sigma_;
-  std::vector<std::size_t> removed_by_fit_;
   std::vector<std::size_t> removed_;
-  double outlier_critical_value_;
 };
 
 /// The same residuals with some observations left out (their sigma made infinite).

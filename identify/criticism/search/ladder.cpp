@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/heldout_errors.h"
@@ -25,43 +28,68 @@ double prior_rank(const Eigen::MatrixXd& precision) {
   return static_cast<double>((values.array() > kSmallestEigenvalue).count());
 }
 
-/// Derivatives of the held-out readings to all parameters, accepted columns last.
+/// Derivatives of observations to all parameters, columns of effects last.
 Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const NoiseProblem& problem,
-                        const std::vector<Eigen::MatrixXd>& accepted, Eigen::Index parameters) {
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(observations.size()), parameters);
+                        const Eigen::MatrixXd& effects) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(observations.size()),
+                       problem.jacobian.cols() + effects.cols());
   rows.leftCols(problem.jacobian.cols()) = problem.jacobian(observations, Eigen::all);
-  Eigen::Index at = problem.jacobian.cols();
-  for (const Eigen::MatrixXd& columns : accepted) {
-    rows.middleCols(at, columns.cols()) = columns(observations, Eigen::all);
-    at += columns.cols();
-  }
+  rows.rightCols(effects.cols()) = effects(observations, Eigen::all);
   return rows;
-}
-
-Eigen::VectorXd column_of(Eigen::Index parameter, const NoiseProblem& problem,
-                          const std::vector<Eigen::MatrixXd>& accepted) {
-  Eigen::Index at = problem.jacobian.cols();
-  if (parameter < at) return problem.jacobian.col(parameter);
-  for (const Eigen::MatrixXd& columns : accepted) {
-    if (parameter < at + columns.cols()) return columns.col(parameter - at);
-    at += columns.cols();
-  }
-  return Eigen::VectorXd::Zero(problem.jacobian.rows());
 }
 
 HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
                                   std::span<const NoiseParameters> noise, const Projector& projector,
-                                  const std::vector<Eigen::MatrixXd>& accepted,
-                                  const Eigen::VectorXd& solution) {
+                                  const Eigen::MatrixXd& effects, const Eigen::VectorXd& solution) {
   const RowsOf rows = [&](const std::vector<Eigen::Index>& observations) {
-    return rows_of(observations, problem, accepted, solution.size());
+    return rows_of(observations, problem, effects);
   };
-  const ColumnOf column = [&](Eigen::Index parameter) { return column_of(parameter, problem, accepted); };
+  const Eigen::Index own = problem.jacobian.cols();
+  const ColumnOf column = [&](Eigen::Index parameter) -> Eigen::VectorXd {
+    if (parameter < own) return problem.jacobian.col(parameter);
+    return effects.col(parameter - own);
+  };
   const std::vector<HeldoutBlock> blocks =
       heldout_errors(problem.data, heldout, noise, projector, rows, column, projector.threads());
   Eigen::VectorXd residual = problem.residual;
   for (const HeldoutBlock& block : blocks) residual(block.observation) -= rows(block.observation) * solution;
   return heldout_figures(blocks, residual);
+}
+
+/// Figures of the model that `projector` holds, with columns of effects; `loglik` is the held-out
+/// log-likelihood of the step before, and becomes this one's.
+LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
+                       std::span<const NoiseParameters> noise, const Projector& projector,
+                       const Eigen::MatrixXd& effects, std::optional<double>& loglik) {
+  const NoiseProblem& problem = model.problem();
+  const std::vector<double> variance = noise_variance(problem.data, noise);
+  const Eigen::VectorXd solution = projector.solution();
+  std::vector<Eigen::Index> fitted, held;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (std::isfinite(variance[i])) (heldout[i] ? held : fitted).push_back(static_cast<Eigen::Index>(i));
+  }
+  LadderStep step;
+  const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, effects);
+  const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
+  step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
+  const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
+                     static_cast<double>(projector.parameters());
+  step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
+  if (held.empty()) {
+    step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
+    return step;
+  }
+  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, effects, solution);
+  const double excess = (figures.squares - figures.expected) / figures.count;
+  const double spread = kCoverageFactor * figures.spread / figures.count;
+  step.rms_heldout = std::sqrt(figures.squares / figures.count);
+  step.noise_floor = std::sqrt(figures.expected / figures.count);
+  step.systematic = std::sqrt(std::max(0.0, excess));
+  step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
+  step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
+  step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
+  loglik = figures.log_likelihood;
+  return step;
 }
 
 }  // namespace
@@ -111,38 +139,23 @@ bool heldout_error_not_reduced(std::span<const LadderStep> ladder) {
   return last.systematic_low > 0.0 && last.systematic > kThresholds.heldout_error_left * first.systematic;
 }
 
-LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
-                       std::span<const NoiseParameters> noise, const Projector& projector,
-                       const std::vector<Eigen::MatrixXd>& accepted, std::optional<double>& loglik) {
-  const NoiseProblem& problem = model.problem();
-  const std::vector<double> variance = noise_variance(problem.data, noise);
-  const Eigen::VectorXd solution = projector.solution();
-  std::vector<Eigen::Index> fitted, held;
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    if (std::isfinite(variance[i])) (heldout[i] ? held : fitted).push_back(static_cast<Eigen::Index>(i));
+std::vector<LadderStep> ladder_of(const ModelState& state) {
+  const SearchSetting& setting = state.setting();
+  std::vector<LadderStep> ladder;
+  std::optional<double> loglik;
+  Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
+  for (std::size_t i = 0; i <= state.added().size(); ++i) {
+    const LinearModel model = state.model().with_smoothing(state.smoothing_of_steps()[i]);
+    Projector projector(model.problem(), without(model.problem().data, setting.heldout), state.noise(),
+                        setting.threads, model.parts());
+    for (std::size_t k = 0; k < i; ++k) projector.accept(state.added()[k].columns);
+    if (i > 0) append_columns(state.added()[i - 1].columns, effects);
+    LadderStep step = ladder_step(model, setting.heldout, state.noise(), projector, effects, loglik);
+    step.model = std::to_string(i);
+    if (i > 0) step.added = state.family_of(state.added()[i - 1]).label();
+    ladder.push_back(std::move(step));
   }
-  LadderStep step;
-  const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, accepted, solution.size());
-  const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
-  step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
-  const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
-                     static_cast<double>(projector.parameters());
-  step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  if (held.empty()) {
-    step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
-    return step;
-  }
-  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, accepted, solution);
-  const double excess = (figures.squares - figures.expected) / figures.count;
-  const double spread = kCoverageFactor * figures.spread / figures.count;
-  step.rms_heldout = std::sqrt(figures.squares / figures.count);
-  step.noise_floor = std::sqrt(figures.expected / figures.count);
-  step.systematic = std::sqrt(std::max(0.0, excess));
-  step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
-  step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
-  step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
-  loglik = figures.log_likelihood;
-  return step;
+  return ladder;
 }
 
 }  // namespace volcal

@@ -1,13 +1,11 @@
 #pragma once
 /// Judging a step on readings that did not choose it.
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
-#include "volcal/identify/criticism/projection/linear_model.h"
-#include "volcal/identify/criticism/projection/projector.h"
+#include "volcal/identify/criticism/search/model_state.h"
 
 namespace volcal {
 
@@ -24,10 +22,8 @@ std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseP
 /// off by more than noise, and by at least four fifths of what they were before.
 bool heldout_error_not_reduced(std::span<const LadderStep> ladder);
 
-/// Figures of the model that `projector` holds, with the accepted columns; `loglik` is the held-out
-/// log-likelihood of the step before, and becomes this one's.
-LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
-                       std::span<const NoiseParameters> noise, const Projector& projector,
-                       const std::vector<Eigen::MatrixXd>& accepted, std::optional<double>& loglik);
+/// The given model, then with every added effect, all against the noise of the model reached: noise estimated
+/// without an effect holds part of it, and would hide its fall.
+std::vector<LadderStep> ladder_of(const ModelState& state);
 
 }  // namespace volcal

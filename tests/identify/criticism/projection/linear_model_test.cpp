@@ -18,24 +18,23 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(LinearModel, TakesUpReadingsAndLeavesThemOutAgain) {
+TEST(LinearModel, ReinstatesReadingsInAnotherModel) {
   testing_support::FittedStudy study(testing_support::hiding({}, {3, 3, 3}));
   for (const std::size_t observation : {4U, 9U, 20U}) study.result.residuals[observation].removed = true;
-  LinearModel model(study.simulated.campaign, study.result);
+  const LinearModel model(study.simulated.campaign, study.result);
   const auto& sigma = model.problem().data.sigma;
   EXPECT_THAT(model.removed(), ElementsAre(4U, 9U, 20U));
   EXPECT_TRUE(std::isinf(sigma[4]) && std::isinf(sigma[9]) && std::isinf(sigma[20]));
   EXPECT_TRUE(std::isfinite(sigma[5]));
 
-  EXPECT_EQ(model.take_up([](std::size_t observation) { return observation != 9U; }), 2U);
-  EXPECT_THAT(model.removed(), ElementsAre(9U));
-  EXPECT_EQ(sigma[4], model.stated_sigma()[4]);
-  EXPECT_EQ(sigma[20], model.stated_sigma()[20]);
-  EXPECT_TRUE(std::isinf(sigma[9]));
-  EXPECT_EQ(model.take_up([](std::size_t) { return true; }), 1U);
-  EXPECT_THAT(model.removed(), IsEmpty());
+  const LinearModel other = model.with_reinstated({4U, 20U});
+  const auto& of_other = other.problem().data.sigma;
+  EXPECT_THAT(other.removed(), ElementsAre(9U));
+  EXPECT_EQ(of_other[4], model.stated_sigma()[4]);
+  EXPECT_EQ(of_other[20], model.stated_sigma()[20]);
+  EXPECT_TRUE(std::isinf(of_other[9]));
+  EXPECT_THAT(other.with_reinstated({9U}).removed(), IsEmpty());
 
-  model.return_to_fit();
   EXPECT_THAT(model.removed(), ElementsAre(4U, 9U, 20U));
   EXPECT_TRUE(std::isinf(sigma[4]) && std::isinf(sigma[9]) && std::isinf(sigma[20]));
 }
@@ -66,14 +65,13 @@ TEST(LinearModel, LocalRowsAreTheSameColumns) {
 /// a column without prior explains asks for no roughness.
 TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
   const testing_support::FittedStudy study(testing_support::hiding({}, {7, 4, 4}));
-  LinearModel model(study.simulated.campaign, study.result);
+  const LinearModel model(study.simulated.campaign, study.result);
   const auto roughness = [&](const Eigen::VectorXd& residual, bool explained) {
-    model.return_to_fit();
     Projector projector = testing_support::white_projector(model, residual);
     if (explained) projector.accept(residual);
-    model.smooth(projector.gram(), projector.observations());
+    const LinearModel smoothed = model.smoothed(projector.gram(), projector.observations());
     const auto term =
-        std::ranges::find(model.smoothing(), *ErrorSymbol::parse("EXX"), &SmoothingTerm::symbol);
+        std::ranges::find(smoothed.smoothing(), *ErrorSymbol::parse("EXX"), &SmoothingTerm::symbol);
     return 1.0 / std::sqrt(term->lambda);
   };
   Eigen::VectorXd wave = model.direction(0);
@@ -87,7 +85,6 @@ TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
   EXPECT_GT(rough, 1.3 * roughness(noise, false));
   EXPECT_LT(roughness(wave + 1e-3 * noise, true), rough);
   const auto as_fitted = study.result.adjustment->smoothing.front().lambda;
-  model.return_to_fit();
   EXPECT_EQ(model.smoothing().front().lambda, as_fitted);
 }
 

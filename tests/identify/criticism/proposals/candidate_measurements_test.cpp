@@ -156,8 +156,8 @@ class Planner : public ::testing::Test {
                         0.8,    1};
 };
 
-/// Rows that were measured, as if they were measured once more, have the derivatives that they had; a dead
-/// path of their own.
+/// Rows that were measured, hypothetical once more, have the derivatives that they had; a dead path of their
+/// own.
 TEST_F(Planner, HypotheticalRowsAreThoseOfTheSamePositions) {
   const HypotheticalCampaign hypothetical(campaign_, result_, model_.noise_groups(), possible(campaign_));
   const HypotheticalRows rows = hypothetical.rows(0);  // revisit of P1_short

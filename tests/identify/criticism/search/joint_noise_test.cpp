@@ -8,8 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/hidden_studies.h"
-#include "volcal/identify/criticism/search/effect_search.h"
+#include "tests/support/search_states.h"
 #include "volcal/identify/stats/chi_squared.h"
 
 namespace volcal {
@@ -21,10 +20,9 @@ using testing_support::white_residual;
 
 /// A displacement that swings with the square of the position changes slowly along the path, as a wander
 /// does.
-class BesideNoise : public ::testing::Test {
+class JointNoise : public ::testing::Test {
  protected:
-  BesideNoise()
-      : families_(families_of(model(), "station-drift", "station P1")), problem_(model().problem()) {
+  JointNoise() : families_(families_of(model(), "station-drift", "station P1")), problem_(model().problem()) {
     problem_.prior_mean.setZero();
   }
 
@@ -48,14 +46,14 @@ class BesideNoise : public ::testing::Test {
   NoiseProblem problem_;
 };
 
-TEST_F(BesideNoise, NothingToDoWhereNothingWanders) {
+TEST_F(JointNoise, NothingToDoWhereNothingWanders) {
   std::mt19937_64 random(8);
   const NoiseEstimate noise = estimate(white_residual(model(), random));
   ASSERT_EQ(noise.instruments.at(0).parameters.wander, 0.0);
   EXPECT_TRUE(noise_with_reduced_drift(problem_, noise, 1).empty());
 }
 
-TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
+TEST_F(JointNoise, FindsWhatAWanderHasTakenUp) {
   std::mt19937_64 random(8);
   const Eigen::VectorXd white = white_residual(model(), random);
   Eigen::VectorXd amplitude(3);
@@ -85,7 +83,7 @@ TEST_F(BesideNoise, FindsWhatAWanderHasTakenUp) {
 
 /// A ball-bar's servo mismatch moves no reading of the tracer beside it, whose noise wanders; the bar's is
 /// white, and known from all its readings.
-TEST(BesideNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
+TEST(JointNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   sim::Study study = testing_support::hiding({}, {5, 4, 3});
   sim::BallBarCircles circles;
   circles.planes = {"XY"};
@@ -121,7 +119,7 @@ TEST(BesideNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
 }
 
 /// Under a true wander the ratio of an effect that is not there is chi-squared with its three amplitudes.
-TEST_F(BesideNoise, StaysWithinChanceUnderATrueWander) {
+TEST_F(JointNoise, StaysWithinChanceUnderATrueWander) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   constexpr int kDraws = 12;
@@ -150,6 +148,32 @@ TEST_F(BesideNoise, StaysWithinChanceUnderATrueWander) {
   ASSERT_GT(wandering, kDraws / 2);
   EXPECT_LT(ratios / wandering, 3.0 + 3.1 * std::sqrt(6.0 / wandering));
   EXPECT_GT(ratios / wandering, 0.5);
+}
+
+/// On one circle a drift of a few seconds follows a servo mismatch as well as its own shape does.
+TEST(JointNoiseTestOfAState, FindsTheEffectThatDriftHasAbsorbed) {
+  sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
+  servo.options.set("axis", "X");
+  sim::Study study = testing_support::hiding({servo}, {5, 4, 4});
+  sim::BallBarCircles circles;
+  circles.planes = {"XY"};
+  circles.records_feed = true;
+  study.measurements.emplace_back().settings = circles;
+  const testing_support::FittedStudy fitted(study);
+  const ModelState state = ModelState(fitted.model, testing_support::setting_of(fitted.model)).tested();
+  const JointNoiseTest joint(state);
+  const auto effect = joint.effect([&](const FamilyTest& test) { return test.score.dof > 0; });
+  ASSERT_TRUE(effect.has_value());
+  EXPECT_EQ(state.setting().families[effect->family].name().kind, "servo-mismatch");
+  EXPECT_FALSE(joint.effect([](const FamilyTest&) { return false; }).has_value());
+}
+
+TEST(JointNoiseTestOfAState, ChangesNothingWhereNothingIsHidden) {
+  const LinearModel& model = model_of_nothing_hidden();
+  const ModelState state = ModelState(model, testing_support::setting_of(model)).tested();
+  const JointNoiseTest joint(state);
+  EXPECT_FALSE(joint.effect([](const FamilyTest& test) { return test.score.dof > 0; }).has_value());
+  EXPECT_EQ(joint.scans().scan_exceeds, state.tests().scan_exceeds);
 }
 
 }  // namespace

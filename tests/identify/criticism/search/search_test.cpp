@@ -1,6 +1,6 @@
 // What the search tells and what it keeps to itself. Campaigns come from sim/.
 
-#include "volcal/identify/criticism/search/effect_search.h"
+#include "volcal/identify/criticism/search/search.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
   return all;
 }
 
-TEST(EffectSearch, AStepTellsTheFirstEffectAndThatMoreHasAName) {
+TEST(Search, AStepTellsTheFirstEffectAndThatMoreHasAName) {
   const FittedStudy study(hiding({reversal("EXX", 0.7e-6), reversal("EYY", 0.5e-6)}, kGrid));
   const Diagnosis step = diagnosed(study, false);
   EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
@@ -56,7 +56,7 @@ TEST(EffectSearch, AStepTellsTheFirstEffectAndThatMoreHasAName) {
 }
 
 /// Two channels that read the same: every thermal effect has a twin, and no set is lost.
-TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
+TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
   sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 1.2e-6),
                     second = hidden("thermal-tilt", "ECX", 1.2e-6);
   for (sim::HiddenEffect* effect : {&first, &second}) effect->options.set("channel", "column");
@@ -83,7 +83,7 @@ TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
 }
 
 /// A scan of both temperatures sees both effects at once, and does better than either name.
-TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
+TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
   sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 2.5e-6), second = first;
   first.options.set("channel", "column");
   second.options.set("channel", "ram");
@@ -92,24 +92,24 @@ TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
   campaign.environment.channels.push_back(
       {.name = "ram", .start = 20.0, .drift = 0.0, .amplitude = 1.0, .period = 2500.0});
   FittedStudy study(campaign);
-  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false), {});
+  Search search(study.model, std::vector<bool>(study.model.size(), false), {});
   search.run();
   double best_name = 0.0, best_scan = 0.0;
-  for (const FamilyTest& test : search.first_tests()) best_name = std::max(best_name, test.gain);
-  for (const GenericTest& test : search.first_generic()) best_scan = std::max(best_scan, test.gain);
+  for (const FamilyTest& test : search.given().tests().families) best_name = std::max(best_name, test.gain);
+  for (const GenericTest& test : search.given().tests().scans) best_scan = std::max(best_scan, test.gain);
   EXPECT_GT(best_scan, best_name + 2.0);
   std::set<std::string> drivers;
-  for (const AddedEffect& added : search.added()) {
-    const EffectName name = search.families()[added.test.family].name();
+  for (const AddedEffect& added : search.reached().added()) {
+    const EffectName name = search.reached().setting().families[added.test.family].name();
     EXPECT_EQ(name.kind, "thermal-drift");
     drivers.insert(name.driver);
   }
   EXPECT_EQ(drivers, (std::set<std::string>{"T_column", "T_ram"}));
-  EXPECT_EQ(search.added().size(), 2U);
+  EXPECT_EQ(search.reached().added().size(), 2U);
 }
 
 /// Backlash that grows along the travel and passes through zero on it: of either part there is little alone.
-TEST(EffectSearch, NamesTwoEffectsThatHideEachOther) {
+TEST(Search, NamesTwoEffectsThatHideEachOther) {
   sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden("reversal-position", "EYY", 0.0);
   constant.rms.reset();
   growing.rms.reset();
@@ -120,7 +120,7 @@ TEST(EffectSearch, NamesTwoEffectsThatHideEachOther) {
               ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
 }
 
-TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
+TEST(Search, WhatIsInNoCatalogueGetsNoName) {
   sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);
   bump.options.set("width", 0.12);
@@ -136,7 +136,7 @@ TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
 }
 
 /// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
-TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
+TEST(Search, AReversalThatIsTakenUpOnTheWayGetsNoName) {
   sim::HiddenEffect memory = hidden("direction-memory", "EYY", 1.5e-6);
   memory.options.set("length", 0.05);
   const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({memory}, kGrid)), true);
@@ -147,7 +147,7 @@ TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
 }
 
 /// A screw that no name of the catalogue stands for is told by its period.
-TEST(EffectSearch, AWaveWithoutANameIsToldByItsPeriod) {
+TEST(Search, AWaveWithoutANameIsToldByItsPeriod) {
   sim::HiddenEffect lead = hidden("screw-lead", "EXX", 0.6e-6);
   lead.options.set("period", 10.3e-3);
   const FittedStudy study(hiding({lead}, kGrid));
@@ -196,7 +196,7 @@ void expect_shares_of_motion(const LinearModel& model) {
 }
 
 /// What moves along circles is seen where the catalogue has no name for it.
-TEST(EffectSearch, WhatCirclesShowIsSeenWithoutAName) {
+TEST(Search, WhatCirclesShowIsSeenWithoutAName) {
   sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 1e-6};
   servo.options.set("axis", "X");
   sim::Study study = hiding({servo}, kGrid);
@@ -211,7 +211,7 @@ TEST(EffectSearch, WhatCirclesShowIsSeenWithoutAName) {
 }
 
 /// The shortest lag that is looked for explains nearly all of what follows a temperature at once.
-TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
+TEST(Search, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
   sim::HiddenEffect tilt = hidden("thermal-tilt", "EAZ", 5e-6);
   tilt.options.set("channel", "column");
   sim::Study campaign = hiding({tilt}, kGrid);
@@ -219,19 +219,20 @@ TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
   FittedStudy study(campaign);
   SearchOptions options;
   options.leave_out = {"thermal-drift"};
-  EffectSearch search(study.model, std::vector<bool>(study.model.size(), false), options);
+  Search search(study.model, std::vector<bool>(study.model.size(), false), options);
   search.run();
   std::set<std::string> reasons;
-  for (const auto& [family, reason] : search.given_up()) {
-    if (search.families()[family].name().kind == "lagged-temperature") reasons.insert(reason);
+  for (const auto& [family, reason] : search.rejected()) {
+    if (search.reached().setting().families[family].name().kind == "lagged-temperature")
+      reasons.insert(reason);
   }
   EXPECT_THAT(reasons, ::testing::Contains("its time constant lies beyond what was looked for"));
-  for (const AddedEffect& added : search.added())
-    EXPECT_NE(search.families()[added.test.family].name().kind, "lagged-temperature");
+  for (const AddedEffect& added : search.reached().added())
+    EXPECT_NE(search.reached().setting().families[added.test.family].name().kind, "lagged-temperature");
 }
 
 /// On one circle a wander of a few seconds follows a servo mismatch as well as its own shape does.
-TEST(EffectSearch, FindsWhatTheNoiseHasTakenUp) {
+TEST(Search, FindsWhatTheNoiseHasTakenUp) {
   sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
   servo.options.set("axis", "X");
   sim::Study study = hiding({servo}, kGrid);

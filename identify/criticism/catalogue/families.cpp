@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
@@ -97,29 +98,15 @@ class FamilyTester {
   }
 
   void test(const FamilyBlock& block) {
-    CandidateColumns candidates{block.columns, {}, [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
-                                  fill(block, setup, rows);
-                                }};
+    std::vector<Hypothesis> all;
     for (const std::size_t family : block.family) {
-      candidates.groups.insert(candidates.groups.end(), families_[family].scan.size(),
-                               families_[family].amplitudes());
+      for (const Eigen::VectorXd& shape : families_[family].scan) all.push_back({family, shape});
     }
-    const ProjectedColumns projected = projector_.project(candidates);
+    const ProjectedColumns projected = projector_.project(columns_of(model_, families_, std::move(all)));
     Eigen::Index first = 0;
     for (const std::size_t family : block.family) {
       tests_[family] = best_shape(projected, family, first, families_[family].amplitudes());
       first += shapes(family) * families_[family].amplitudes();
-    }
-  }
-
-  void fill(const FamilyBlock& block, std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) const {
-    Eigen::Index at = 0;
-    for (const std::size_t family : block.family) {
-      const Eigen::Index amplitudes = families_[family].amplitudes();
-      for (const Eigen::VectorXd& shape : families_[family].scan) {
-        family_columns(model_, families_[family], shape, setup, rows.middleCols(at, amplitudes));
-        at += amplitudes;
-      }
     }
   }
 
@@ -245,6 +232,25 @@ Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, c
     family_columns(model, family, shape, setup,
                    columns.middleRows(parts[setup], parts[setup + 1] - parts[setup]));
   }
+  return columns;
+}
+
+CandidateColumns columns_of(const LinearModel& model, const std::vector<Family>& families,
+                            std::vector<Hypothesis> hypotheses) {
+  CandidateColumns columns;
+  for (const Hypothesis& each : hypotheses) {
+    columns.groups.push_back(families[each.family].amplitudes());
+    columns.count += columns.groups.back();
+  }
+  columns.fill = [&model, &families, all = std::move(hypotheses)](std::size_t setup,
+                                                                  Eigen::Ref<Eigen::MatrixXd> rows) {
+    Eigen::Index at = 0;
+    for (const Hypothesis& each : all) {
+      const Family& family = families[each.family];
+      family_columns(model, family, each.shape, setup, rows.middleCols(at, family.amplitudes()));
+      at += family.amplitudes();
+    }
+  };
   return columns;
 }
 

@@ -37,6 +37,15 @@ Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, c
 void family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
                     std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out);
 
+/// A family at a shape.
+struct Hypothesis {
+  std::size_t family = 0;
+  Eigen::VectorXd shape;
+};
+/// Columns of hypotheses side by side, each a group.
+CandidateColumns columns_of(const LinearModel& model, const std::vector<Family>& families,
+                            std::vector<Hypothesis> hypotheses);
+
 /// The test of a family at its best shape.
 struct FamilyTest {
   std::size_t family = 0;

@@ -94,17 +94,8 @@ class RivalSearch {
 
   /// Gram matrix of the focus, then the rivals, projected off the model.
   Eigen::MatrixXd gram_of(const std::vector<Hypothesis>& all) const {
-    CandidateColumns candidates;
-    for (const Hypothesis& each : all) candidates.count += width(each);
+    CandidateColumns candidates = columns_of(state_.model, state_.families, all);
     candidates.groups = {candidates.count};
-    candidates.fill = [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
-      Eigen::Index at = 0;
-      for (const Hypothesis& each : all) {
-        family_columns(state_.model, state_.families[each.family], each.shape, setup,
-                       rows.middleCols(at, width(each)));
-        at += width(each);
-      }
-    };
     const ProjectedColumns projected = projector_.project(candidates);
     Eigen::MatrixXd gram = projected.grams.front();
     clear_invisible(projected.norm, gram);

@@ -28,11 +28,6 @@ struct CriticismState {
   int threads = 1;
 };
 
-/// A family at a shape.
-struct Hypothesis {
-  std::size_t family = 0;
-  Eigen::VectorXd shape;
-};
 /// The family of a finding at the shape that was found; nullopt when the family is not among those tested.
 std::optional<Hypothesis> hypothesis_of(const EffectFinding& finding, std::span<const Family> families);
 /// What was taken into the model: effects and changes of resolution.

@@ -37,26 +37,19 @@ MeasurementPlanner::MeasurementPlanner(const CriticismState& state, std::vector<
   run_parallel(measurements(), state.threads, [&](std::size_t i) { with_[i] = extended(i); });
 }
 
-Eigen::MatrixXd MeasurementPlanner::family_rows(std::size_t setup) const {
-  const auto& parts = state_.model.parts();
-  Eigen::MatrixXd rows(parts[setup + 1] - parts[setup], columns_);
-  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    const auto& [family, shape] = hypotheses_[i].hypothesis;
-    family_columns(state_.model, state_.families[family], shape, setup,
-                   rows.middleCols(range_[i].first, range_[i].count));
-  }
-  return rows;
-}
-
 void MeasurementPlanner::add_campaign() {
   const NoiseProblem& problem = state_.model.problem();
   const Whitener whitener(problem.data, state_.noise);
   const auto& parts = state_.model.parts();
+  std::vector<Hypothesis> all;
+  for (const PlannedHypothesis& each : hypotheses_) all.push_back(each.hypothesis);
+  const CandidateColumns columns = columns_of(state_.model, state_.families, std::move(all));
   std::vector<Eigen::MatrixXd> sums(parts.size() - 1);
   run_parallel(sums.size(), state_.threads, [&](std::size_t setup) {
     const Eigen::Index count = parts[setup + 1] - parts[setup];
     Eigen::MatrixXd rows(count, parameters_ + columns_);
-    rows << problem.jacobian.middleRows(parts[setup], count), family_rows(setup);
+    rows.leftCols(parameters_) = problem.jacobian.middleRows(parts[setup], count);
+    columns.fill(setup, rows.rightCols(columns_));
     sums[setup] = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
     add_gram_upper(whitener.whiten_part(static_cast<std::size_t>(parts[setup]), rows), 1.0, sums[setup]);
   });

@@ -50,7 +50,6 @@ class MeasurementPlanner {
   void clear_small_columns(ProjectedHypotheses& where) const;
   ProjectedHypotheses project(const Eigen::MatrixXd& gram, Eigen::Index parameters) const;
   ProjectedHypotheses extended(std::size_t measurement) const;
-  Eigen::MatrixXd family_rows(std::size_t setup) const;
   double one_sided(const ProjectedHypotheses& where, std::size_t own, std::size_t rival) const;
 
   const CriticismState& state_;

@@ -135,35 +135,27 @@ class Proposer {
     }
     const FamilyTest& test = state_.tests[family];
     if (test.log10_p < state_.log10_level) return {{family, test.shape}, test.score.amplitude};
-    return {{family, least_visible_shape(state_.families[family])}, {}};
+    return {{family, least_visible_shape(family)}, {}};
   }
 
   /// Of the shapes that are looked for and the usual one.
-  Eigen::VectorXd least_visible_shape(const Family& family) const {
-    std::vector<Eigen::VectorXd> shapes = family.scan;
-    shapes.push_back(family.effect->shape_values());
-    const Eigen::Index amplitudes = family.amplitudes();
-    CandidateColumns candidates;
-    candidates.count = static_cast<Eigen::Index>(shapes.size()) * amplitudes;
-    candidates.groups = std::vector<Eigen::Index>(shapes.size(), amplitudes);
-    candidates.fill = [&](std::size_t setup, Eigen::Ref<Eigen::MatrixXd> rows) {
-      Eigen::Index at = 0;
-      for (const Eigen::VectorXd& shape : shapes) {
-        family_columns(state_.model, family, shape, setup, rows.middleCols(at, amplitudes));
-        at += amplitudes;
-      }
-    };
-    const ProjectedColumns projected = state_.projector.project(candidates);
+  Eigen::VectorXd least_visible_shape(std::size_t family) const {
+    std::vector<Hypothesis> all;
+    for (const Eigen::VectorXd& shape : state_.families[family].scan) all.push_back({family, shape});
+    all.push_back({family, state_.families[family].effect->shape_values()});
+    const Eigen::Index amplitudes = state_.families[family].amplitudes();
+    const ProjectedColumns projected =
+        state_.projector.project(columns_of(state_.model, state_.families, all));
     std::size_t least = 0;
     double least_fraction = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
       const double known = projected.norm.segment(projected.first[i], amplitudes).squaredNorm();
       const double fraction = known > 0.0 ? projected.grams[i].trace() / known : 0.0;
       if (fraction >= least_fraction) continue;
       least_fraction = fraction;
       least = i;
     }
-    return shapes[least];
+    return all[least].shape;
   }
 
   static std::vector<Pair> all_pairs(std::size_t count) {

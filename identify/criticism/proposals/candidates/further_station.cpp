@@ -53,8 +53,8 @@ std::vector<ExtraMeasurement> further_stations(const CandidateContext& context) 
     const auto station = setup->options.vector("station");
     if (!station) continue;
     for (int along = 0; along < 3; ++along) {
-      Setup other = continued_setup(context, *setup, spread_rows(*setup, context.readings), "",
-                                    end_of(context.campaign) + kPause, Temperatures::Last);
+      ExtraMeasurement extra = taken_again(context, *setup, "");
+      Setup& other = extra.setups.front();
       const std::vector<Eigen::Vector3d> points = points_of(context, *setup, other.readings);
       double low = points.front()[along], high = low;
       for (const Eigen::Vector3d& point : points) {
@@ -73,10 +73,9 @@ std::vector<ExtraMeasurement> further_stations(const CandidateContext& context) 
       other.options.set("station", place);
       other.options.set("station", where);
       look_from(place, points, other.readings);
-      ExtraMeasurement extra;
+      extra.setup.clear();
       extra.words = fmt::format("measure from {} with tool {}", where,
                                 context.campaign.machine.tools[setup->tool].name);
-      extra.setups.push_back(std::move(other));
       all.push_back(std::move(extra));
     }
   }

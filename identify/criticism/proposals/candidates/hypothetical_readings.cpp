@@ -87,9 +87,9 @@ std::vector<std::size_t> spread_rows(const Setup& setup, std::size_t count) {
   return out;
 }
 
-Setup continued_setup(const CandidateContext& context, const Setup& setup,
-                      const std::vector<std::size_t>& rows, const std::string& name, double start_s,
-                      Temperatures temperatures) {
+ExtraMeasurement taken_again(const CandidateContext& context, const Setup& setup, const std::string& name,
+                             std::string words, double later_s, Temperatures temperatures) {
+  const std::vector<std::size_t> rows = spread_rows(setup, context.readings);
   Setup out;
   out.name = name;
   out.instrument = setup.instrument;
@@ -114,8 +114,32 @@ Setup continued_setup(const CandidateContext& context, const Setup& setup,
   to.run = picked(from.run, rows);
   to.feed = picked(from.feed, rows);
   to.source_line.assign(rows.size(), 0);
-  complete_readings(context, start_s, usual_gap(from), temperatures, from.channels(), to);
-  return out;
+  complete_readings(context, end_of(context.campaign) + later_s, usual_gap(from), temperatures,
+                    from.channels(), to);
+  ExtraMeasurement extra;
+  extra.setup = setup.name;
+  extra.words = std::move(words);
+  extra.setups.push_back(std::move(out));
+  return extra;
+}
+
+std::vector<ExtraMeasurement> altered_again(
+    const CandidateContext& context, const std::string& suffix,
+    const std::function<std::string(const Setup& measured, const Axis& axis, Readings& again)>& alter,
+    const std::function<std::string(const std::string& place, const std::string& changes)>& words) {
+  std::vector<ExtraMeasurement> all;
+  for (const Setup* setup : one_setup_per_station(context.campaign)) {
+    ExtraMeasurement extra = taken_again(context, *setup, setup->name + suffix);
+    std::string changes;
+    for (const Axis& axis : context.campaign.machine.axes) {
+      const std::string change = alter(*setup, axis, extra.setups.front().readings);
+      if (!change.empty()) changes += (changes.empty() ? "" : ", ") + change;
+    }
+    if (changes.empty()) continue;
+    extra.words = words(place_and_tool(context.campaign, *setup), changes);
+    all.push_back(std::move(extra));
+  }
+  return all;
 }
 
 std::vector<const Setup*> one_setup_per_station(const Campaign& campaign) {

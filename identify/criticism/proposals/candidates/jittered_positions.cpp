@@ -42,29 +42,17 @@ void jitter(const Axis& axis, double step, std::size_t stream, std::vector<doubl
 }  // namespace
 
 std::vector<ExtraMeasurement> jittered_positions(const CandidateContext& context) {
-  std::vector<ExtraMeasurement> all;
-  for (const Setup* setup : one_setup_per_station(context.campaign)) {
-    Setup moved =
-        continued_setup(context, *setup, spread_rows(*setup, context.readings), setup->name + " off the grid",
-                        end_of(context.campaign) + kPause, Temperatures::Last);
-    std::string axes;
-    for (const Axis& axis : context.campaign.machine.axes) {
-      const std::size_t k = index_of(axis.name);
-      const double step = is_rotary(axis.name) ? 0.0 : grid_step(setup->readings.position[k]);
-      if (step == 0.0) continue;
-      jitter(axis, step, k, moved.readings.position[k]);
-      axes += fmt::format("{}{} off its step of {:.4g} mm", axes.empty() ? "" : ", ", letter_of(axis.name),
-                          step * 1e3);
-    }
-    if (axes.empty()) continue;
-    ExtraMeasurement extra;
-    extra.setup = setup->name;
-    extra.words =
-        fmt::format("measure {} at jittered positions ({})", place_and_tool(context.campaign, *setup), axes);
-    extra.setups.push_back(std::move(moved));
-    all.push_back(std::move(extra));
-  }
-  return all;
+  const auto alter = [](const Setup& measured, const Axis& axis, Readings& again) -> std::string {
+    const std::size_t k = index_of(axis.name);
+    const double step = is_rotary(axis.name) ? 0.0 : grid_step(measured.readings.position[k]);
+    if (step == 0.0) return {};
+    jitter(axis, step, k, again.position[k]);
+    return fmt::format("{} off its step of {:.4g} mm", letter_of(axis.name), step * 1e3);
+  };
+  return altered_again(context, " off the grid", alter,
+                       [](const std::string& place, const std::string& axes) {
+                         return fmt::format("measure {} at jittered positions ({})", place, axes);
+                       });
 }
 
 }  // namespace volcal

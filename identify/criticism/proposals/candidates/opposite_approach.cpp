@@ -34,27 +34,16 @@ void reverse(std::vector<std::int8_t>& direction, std::size_t rows) {
 }  // namespace
 
 std::vector<ExtraMeasurement> opposite_approaches(const CandidateContext& context) {
-  std::vector<ExtraMeasurement> all;
-  for (const Setup* setup : one_setup_per_station(context.campaign)) {
-    Setup opposite = continued_setup(context, *setup, spread_rows(*setup, context.readings),
-                                     setup->name + " from the other side", end_of(context.campaign) + kPause,
-                                     Temperatures::Last);
-    std::string axes;
-    for (const Axis& axis : context.campaign.machine.axes) {
-      const std::size_t k = index_of(axis.name);
-      if (!one_sided(setup->readings, k)) continue;
-      reverse(opposite.readings.direction[k], opposite.readings.size());
-      axes += fmt::format("{}{}", axes.empty() ? "" : ", ", letter_of(axis.name));
-    }
-    if (axes.empty()) continue;
-    ExtraMeasurement extra;
-    extra.setup = setup->name;
-    extra.words = fmt::format("measure {} again, approaching {} from the other side",
-                              place_and_tool(context.campaign, *setup), axes);
-    extra.setups.push_back(std::move(opposite));
-    all.push_back(std::move(extra));
-  }
-  return all;
+  const auto alter = [](const Setup& measured, const Axis& axis, Readings& again) -> std::string {
+    const std::size_t k = index_of(axis.name);
+    if (!one_sided(measured.readings, k)) return {};
+    reverse(again.direction[k], again.size());
+    return {letter_of(axis.name)};
+  };
+  return altered_again(
+      context, " from the other side", alter, [](const std::string& place, const std::string& axes) {
+        return fmt::format("measure {} again, approaching {} from the other side", place, axes);
+      });
 }
 
 }  // namespace volcal

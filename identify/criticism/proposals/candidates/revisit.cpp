@@ -18,13 +18,9 @@ std::vector<ExtraMeasurement> again(const CandidateContext& context, double hour
   std::vector<ExtraMeasurement> all;
   if (!has_time(campaign)) return all;
   for (const Setup* setup : one_setup_per_station(campaign)) {
-    ExtraMeasurement extra;
-    extra.setup = setup->name;
-    extra.words = fmt::format("measure {} again {}", place_and_tool(campaign, *setup), when);
-    extra.setups.push_back(continued_setup(context, *setup, spread_rows(*setup, context.readings),
-                                           setup->name + " again " + when, end_of(campaign) + hours * kHour,
-                                           temperatures));
-    all.push_back(std::move(extra));
+    all.push_back(taken_again(context, *setup, setup->name + " again " + when,
+                              fmt::format("measure {} again {}", place_and_tool(campaign, *setup), when),
+                              hours * kHour, temperatures));
   }
   return all;
 }

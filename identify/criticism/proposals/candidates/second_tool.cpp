@@ -32,14 +32,9 @@ Tool longer_tool(const Machine& machine) {
 
 ExtraMeasurement with_tool(const CandidateContext& context, const Setup& setup, std::size_t tool,
                            const std::string& name) {
-  ExtraMeasurement extra;
-  extra.setup = setup.name;
-  extra.words = fmt::format("measure at {} with tool {}", place_name(setup), name);
-  Setup other =
-      continued_setup(context, setup, spread_rows(setup, context.readings), setup.name + " with tool " + name,
-                      end_of(context.campaign) + kPause, Temperatures::Last);
-  other.tool = tool;
-  extra.setups.push_back(std::move(other));
+  ExtraMeasurement extra = taken_again(context, setup, setup.name + " with tool " + name,
+                                       fmt::format("measure at {} with tool {}", place_name(setup), name));
+  extra.setups.front().tool = tool;
   return extra;
 }
 

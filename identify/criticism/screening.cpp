@@ -45,8 +45,8 @@ double root_mean_square(const Eigen::VectorXd& moved) {
 }
 
 std::string words_of(const GenericTest& test) {
-  std::string text = fmt::format("something that depends on {}, along {}", fmt::join(test.variables, " and "),
-                                 test.direction);
+  std::string text = fmt::format("something that depends on {}, along {}",
+                                 fmt::join(names_of(test.variables), " and "), test.direction);
   if (!test.rotation.empty()) text += ", as " + test.rotation;
   if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * 1e3);
   return text;

@@ -49,7 +49,7 @@ std::vector<UnknownFinding> rejected_findings(const ModelState& reached, const R
     const Family& family = setting.families[each.first];
     if (reached.has(each.first) || setting.family_wise_log10_p(test) > log10_family_risk()) continue;
     const Eigen::VectorXd moved = displacement(reached.model(), family, test);
-    unknown.push_back({scan_variables_of(family.name()),
+    unknown.push_back({names_of(scan_variables_of(family.name())),
                        {},
                        direction_of_change(reached.model(), moved),
                        {},
@@ -89,11 +89,11 @@ std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Re
   std::vector<const GenericTest*> order = reached.tests().exceeding_scans();
   std::ranges::sort(order, {}, &GenericTest::log10_p);
   put_simplest_first(order);
-  std::set<std::vector<std::string>> seen;
+  std::set<std::vector<Variable>> seen;
   std::vector<UnknownFinding> unknown;
   for (const GenericTest* scan : order) {
     if (!seen.insert(scan->variables).second || unknown.size() == kMostUnknown) continue;
-    unknown.push_back({scan->variables,
+    unknown.push_back({names_of(scan->variables),
                        {},
                        scan->direction,
                        scan->rotation,

@@ -49,6 +49,12 @@ struct FittedStudy {
   LinearModel model;
 };
 
+inline std::vector<Variable> variables_named(const std::vector<std::string>& names) {
+  std::vector<Variable> variables;
+  for (const std::string& name : names) variables.push_back(Variable::parse(name).value());
+  return variables;
+}
+
 /// A campaign with nothing hidden, and its recorded variables; made once per program.
 inline const LinearModel& model_of_nothing_hidden() {
   static const FittedStudy fitted(hiding({}, {5, 4, 3}));

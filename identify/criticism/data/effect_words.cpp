@@ -75,21 +75,6 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"EXPRESSION", "the expression", "custom"},
 });
 
-constexpr auto kScanWords = std::to_array<EffectWord>({
-    {"AXIS", "position of an axis"},
-    {"dir_AXIS", "direction of approach of an axis"},
-    {"speed_AXIS", "share of the feed along an axis, with its sign, of readings taken in motion"},
-    {"time", "time since the first reading of the campaign"},
-    {"T_CHANNEL", "temperature of a channel"},
-    {"length", "length that is measured"},
-    {"elevation", "angle of the beam above the horizontal, at the nominal station"},
-    {"run", "number of the run"},
-    {"feed", "feed rate"},
-    {"instrument INSTRUMENT", "whether the reading is of this instrument"},
-    {"tool TOOL", "whether this tool is carried"},
-    {"station STATION", "whether the reading was taken from this station"},
-});
-
 /// Pattern of a word; only what stands for something in the files varies.
 std::regex expression_of(std::string_view pattern) {
   constexpr std::pair<std::string_view, std::string_view> kPlaces[] = {
@@ -100,7 +85,6 @@ std::regex expression_of(std::string_view pattern) {
       {"RUN", "-?[0-9]+"},
       {"TOOL", ".+"},
       {"STATION", ".+"},
-      {"INSTRUMENT", ".+"},
       {"SETUP", ".+"},
       {"CHANNEL", ".+"},
       {"TARGET", ".+"},
@@ -170,18 +154,15 @@ const EffectWord* find_word(NamePart part, const EffectName& name) {
   return find_in(effect_words(part), name.kind, text);
 }
 
-std::span<const EffectWord> scan_words() { return kScanWords; }
-const EffectWord* find_scan_word(const std::string& variable) { return find_in(kScanWords, {}, variable); }
-
-int complexity_rank(const std::vector<std::string>& variables, const std::string& direction) {
-  const auto holds = [&](std::string_view beginning) {
-    return std::ranges::any_of(variables,
-                               [&](const std::string& name) { return name.starts_with(beginning); });
+int complexity_rank(const std::vector<Variable>& variables, const std::string& direction) {
+  const auto holds = [&](Variable::Kind kind) {
+    return std::ranges::find(variables, kind, &Variable::kind) != variables.end();
   };
-  if (variables.size() < 2) return direction == "beam" && holds("station ") ? 1 : 0;
-  if (holds("time") && holds("T_")) return 3;
-  const bool far_fetched = direction == "beam" ? holds("time") : holds("station ") && holds("T_");
-  return far_fetched ? 2 : 1;
+  const bool station = holds(Variable::Kind::Station), temperature = holds(Variable::Kind::Temperature),
+             time = holds(Variable::Kind::Time), beam = direction == "beam";
+  if (variables.size() < 2) return beam && station ? 1 : 0;
+  if (time && temperature) return 3;
+  return (beam ? time : station && temperature) ? 2 : 1;
 }
 
 }  // namespace volcal

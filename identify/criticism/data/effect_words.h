@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "volcal/identify/criticism/data/variable.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
@@ -32,23 +33,14 @@ EffectName resolution_name(ErrorSymbol symbol);
 
 enum class NamePart { Target, Driver, Shape };
 
-struct EffectWord {
-  std::string_view pattern;  ///< "readings of SETUP"
-  std::string_view meaning;
-  std::string_view kind = {};  ///< the only kind that has it; empty: any
-};
-
 std::span<const EffectWord> effect_words(NamePart part);
 /// The word that this part of a name is; nullptr when there is none.
 const EffectWord* find_word(NamePart part, const EffectName& name);
 
-/// What the scans without a catalogue may see: `variables` and `direction` of an unknown effect.
-std::span<const EffectWord> scan_words();
-const EffectWord* find_scan_word(const std::string& variable);
 /// How much has to be believed of what a scan saw, 0 = least: one variable before two, but for a station
 /// along its beam, which is a dead path and no parameter of the model where it shows; time before
 /// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
 /// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
-int complexity_rank(const std::vector<std::string>& variables, const std::string& direction);
+int complexity_rank(const std::vector<Variable>& variables, const std::string& direction);
 
 }  // namespace volcal

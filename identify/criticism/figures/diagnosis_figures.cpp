@@ -39,7 +39,7 @@ class FigureMaker {
     find_residuals();
     draw_observations();
     for (const ScanVariable& variable : setting_.variables) {
-      if (variable.name.find(' ') == std::string::npos) add_variable(variable);
+      if (!variable.variable.is_indicator()) add_variable(variable);
     }
     add_categories();
     add_vectors();
@@ -184,7 +184,7 @@ class FigureMaker {
 
   void add_variable(const ScanVariable& variable) {
     const Eigen::VectorXd abscissa = (variable.centre + variable.scale * variable.value.array()).matrix();
-    add_figure({.name = variable.name, .categories = {}, .drawn = {}, .given = {}, .reached = {}}, abscissa,
+    add_figure({.name = variable.name(), .categories = {}, .drawn = {}, .given = {}, .reached = {}}, abscissa,
                equal_bins(abscissa, kBins), kBins);
   }
 
@@ -274,10 +274,10 @@ class FigureMaker {
   }
 
   void add_generic() {
-    std::map<std::string, Eigen::Index> place;
+    std::map<Variable, Eigen::Index> place;
     for (const ScanVariable& variable : setting_.variables) {
-      place.emplace(variable.name, static_cast<Eigen::Index>(place.size()));
-      figures_.generic.variables.push_back(variable.name);
+      place.emplace(variable.variable, static_cast<Eigen::Index>(place.size()));
+      figures_.generic.variables.push_back(variable.name());
     }
     const auto count = static_cast<Eigen::Index>(place.size());
     const auto fill = [&](const std::vector<GenericTest>& tests, std::vector<Eigen::MatrixXd>& maps) {

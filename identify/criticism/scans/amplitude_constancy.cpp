@@ -1,7 +1,5 @@
 #include "volcal/identify/criticism/scans/amplitude_constancy.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,26 +11,27 @@ namespace {
 constexpr int kWaves = 8;
 constexpr double kTests = 4.0;  // groups of variables, smooth and rough
 
-constexpr const char* kSinceTurning = "travel since ";
+bool is_since_turning(const ScanVariable& variable) {
+  return variable.variable.kind == Variable::Kind::TravelSinceTurning;
+}
 
-bool is_since_turning(const ScanVariable& variable) { return variable.name.starts_with(kSinceTurning); }
-
-std::set<std::string> own_variables(const Family& family) {
-  std::set<std::string> own;
-  for (const std::string& name : scan_variables_of(family.name())) {
-    own.insert(name);
-    if (name.starts_with("dir_")) own.insert(kSinceTurning + name);
+std::set<Variable> own_variables(const Family& family) {
+  std::set<Variable> own;
+  for (const Variable& variable : scan_variables_of(family.name())) {
+    own.insert(variable);
+    if (variable.kind == Variable::Kind::Direction)
+      own.insert({Variable::Kind::TravelSinceTurning, variable.axis});
   }
   for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
-    if (amplitude.target.kind != TargetKind::Motion) continue;
-    own.insert(std::string(1, lower_letter_of(amplitude.target.symbol.axis)));
+    if (amplitude.target.kind == TargetKind::Motion)
+      own.insert({Variable::Kind::Position, amplitude.target.symbol.axis});
   }
   return own;
 }
 
 /// The machine does not know from which station it is read.
 bool may_vary_with(const Family& family, const ScanVariable& variable) {
-  if (!variable.name.starts_with("station ")) return true;
+  if (variable.variable.kind != Variable::Kind::Station) return true;
   return std::ranges::any_of(family.effect->amplitudes(), [](const EffectAmplitude& amplitude) {
     return amplitude.target.kind == TargetKind::Station || amplitude.target.kind == TargetKind::Reading;
   });
@@ -83,26 +82,25 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
       const auto& place = model.observations()[i];
       value[static_cast<Eigen::Index>(i)] = travelled[place.setup][place.row];
     }
-    add_scan_variable(variables, fmt::format("{}dir_{}", kSinceTurning, lower_letter_of(axis.name)),
-                      std::move(value));
+    add_scan_variable(variables, {Variable::Kind::TravelSinceTurning, axis.name}, std::move(value));
   }
   return variables;
 }
 
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector) {
-  const std::set<std::string> own = own_variables(family);
+  const std::set<Variable> own = own_variables(family);
   const auto count = static_cast<double>(std::ranges::count_if(variables, [&](const ScanVariable& variable) {
     return !is_since_turning(variable) && may_vary_with(family, variable);
   }));
   const double own_count = std::max(1.0, static_cast<double>(own.size()));
   ConstancyTest least;
   for (const ScanVariable& variable : variables) {
-    const bool is_own = own.contains(variable.name);
+    const bool is_own = own.contains(variable.variable);
     if (!may_vary_with(family, variable) || (is_since_turning(variable) && !is_own)) continue;
     const double tried = kTests * (is_own ? own_count : count);
     const double log10_p = std::min(0.0, log10_p_of(variable, moved, projector) + std::log10(tried));
-    if (log10_p < least.log10_p) least = {variable.name, log10_p};
+    if (log10_p < least.log10_p) least = {variable.name(), log10_p};
   }
   return least;
 }

@@ -1,12 +1,10 @@
 #include "volcal/identify/criticism/scans/generic_scan.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <span>
 
-#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/criticism/projection/score_statistics.h"
 #include "volcal/identify/criticism/scans/wave_scan.h"
@@ -24,18 +22,6 @@ struct Features {
   Eigen::MatrixXd powers;
   Eigen::MatrixXd waves;
 };
-
-bool is_of_the_beam(const std::string& variable) {
-  return variable == "length" || variable == "elevation" || variable.starts_with("instrument ");
-}
-
-bool is_machine_state(const std::string& variable) {
-  return variable.size() == 1 || variable.starts_with("dir_") || variable.starts_with("speed_");
-}
-
-bool is_of_environment(const std::string& variable) {
-  return variable == "time" || variable.starts_with("T_");
-}
 
 /// What a function of the variables may do.
 struct ScanAction {
@@ -63,14 +49,13 @@ std::vector<ScanAction> scan_actions(const LinearModel& model) {
 /// Has an action a reason to follow these variables? The machine does not know the beam, nor which station
 /// looks at it; a station that moves does so in time; and a beam does not know the machine but by its own
 /// length and elevation.
-bool has_reason(const std::string& a, const std::string& b, ScanAction::Kind kind) {
-  const auto of_either = [&](const auto& is) { return is(a) || is(b); };
-  if (kind == ScanAction::Kind::Beam) return !of_either(is_machine_state);
-  if (of_either(is_of_the_beam)) return false;
-  const auto is_station = [](const std::string& name) { return name.starts_with("station "); };
-  const auto is_tool = [](const std::string& name) { return name.starts_with("tool "); };
-  if (!of_either(is_station)) return true;
-  return kind == ScanAction::Kind::Displacement && !of_either(is_machine_state) && !of_either(is_tool);
+bool has_reason(const Variable& a, const Variable& b, ScanAction::Kind kind) {
+  const bool machine = a.is_machine_state() || b.is_machine_state();
+  if (kind == ScanAction::Kind::Beam) return !machine;
+  if (a.is_of_the_beam() || b.is_of_the_beam()) return false;
+  const auto either = [&](Variable::Kind of) { return a.kind == of || b.kind == of; };
+  if (!either(Variable::Kind::Station)) return true;
+  return kind == ScanAction::Kind::Displacement && !machine && !either(Variable::Kind::Tool);
 }
 
 /// Of the readings in use.
@@ -159,7 +144,7 @@ class GenericScanner {
     std::size_t tests = 0;
     const auto add = [&](ScanItem item) {
       for (std::size_t k = 0; k < actions_.size(); ++k) {
-        if (has_reason(variables_[item.a].name, variables_[item.b].name, actions_[k].kind))
+        if (has_reason(variables_[item.a].variable, variables_[item.b].variable, actions_[k].kind))
           item.actions.push_back(k);
       }
       if (item.actions.empty()) return;
@@ -189,7 +174,7 @@ class GenericScanner {
   }
 
   bool follow_the_clock(std::size_t a, std::size_t b) const {
-    return is_of_environment(variables_[a].name) && is_of_environment(variables_[b].name);
+    return variables_[a].variable.is_of_environment() && variables_[b].variable.is_of_environment();
   }
 
   Eigen::Index pair_waves(std::size_t variable) const {
@@ -198,8 +183,7 @@ class GenericScanner {
 
   /// Indicators of tools, and of stations, do not meet in one reading.
   static bool exclude_each_other(const ScanVariable& a, const ScanVariable& b) {
-    const auto family = [](const std::string& name) { return name.substr(0, name.find(' ')); };
-    return a.name.find(' ') != std::string::npos && family(a.name) == family(b.name);
+    return a.variable.kind == b.variable.kind && a.variable.is_indicator();
   }
 
   /// Rows of one setup.
@@ -290,8 +274,8 @@ class GenericScanner {
   }
 
   void test(const ScanItem& item, const ProjectedColumns& projected, Eigen::Index first) {
-    std::vector<std::string> names = {variables_[item.a].name};
-    if (item.b != item.a) names.push_back(variables_[item.b].name);
+    std::vector<Variable> names = {variables_[item.a].variable};
+    if (item.b != item.a) names.push_back(variables_[item.b].variable);
     std::size_t test = item.first_test;
     const auto add = [&](const ScanAction& action, Eigen::Index begin, Eigen::Index several) {
       tests_[test++] =
@@ -331,7 +315,7 @@ class GenericScanner {
     return action.kind == ScanAction::Kind::Rotation ? action.rotation.name() : "";
   }
 
-  GenericTest polynomial(const std::vector<std::string>& names, const ScanAction& action,
+  GenericTest polynomial(const std::vector<Variable>& names, const ScanAction& action,
                          const ScoreTest& score) const {
     return {names,
             action.direction,
@@ -344,7 +328,7 @@ class GenericScanner {
             explained_rms(score.lm)};
   }
 
-  GenericTest kernel(const std::vector<std::string>& names, const ScanAction& action,
+  GenericTest kernel(const std::vector<Variable>& names, const ScanAction& action,
                      const ProjectedColumns& projected, Eigen::Index first, Eigen::Index columns) const {
     const KernelTest test = kernel_test(projected, first, columns);
     return {names,
@@ -371,9 +355,8 @@ class GenericScanner {
 Eigen::VectorXd wave_displacement(const LinearModel& model, const Projector& projector,
                                   const GenericTest& test) {
   const auto direction = std::ranges::find(kScanDirections, test.direction) - std::begin(kScanDirections);
-  const auto letter = static_cast<char>(std::toupper(test.variables.front()[0]));
   const Eigen::MatrixXd columns =
-      wave_columns(model, *axis_from_letter(letter), static_cast<int>(direction), test.period);
+      wave_columns(model, test.variables.front().axis, static_cast<int>(direction), test.period);
   return columns * score_test(projector.project(columns), 0, columns.cols()).amplitude;
 }
 
@@ -397,7 +380,7 @@ std::vector<GenericTest> wave_tests(const LinearModel& model, const Projector& p
   std::vector<GenericTest> tests;
   for (const WaveTest& wave : wave_scan(model, projector, threads)) {
     // The period counts as one degree of freedom in the gain, as that of a name does.
-    tests.push_back({{std::string(1, lower_letter_of(wave.axis))},
+    tests.push_back({{{Variable::Kind::Position, wave.axis}},
                      kScanDirections[wave.direction],
                      "",
                      false,

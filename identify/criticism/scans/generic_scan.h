@@ -21,9 +21,9 @@
 namespace volcal {
 
 struct GenericTest {
-  std::vector<std::string> variables;  ///< one or two
-  std::string direction;               ///< of kScanDirections; of a rotation, where it shows most
-  std::string rotation;                ///< "EBX" if looked for with the arms of this error motion, else empty
+  std::vector<Variable> variables;  ///< one or two
+  std::string direction;            ///< of kScanDirections; of a rotation, where it shows most
+  std::string rotation;             ///< "EBX" if looked for with the arms of this error motion, else empty
   bool kernel = false;
   double log10_p = 0.0;  ///< for this test alone
   double lm = 0.0;

@@ -1,19 +1,18 @@
 #include "volcal/identify/criticism/scans/scan_variables.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
-#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
 namespace {
+
+using Kind = Variable::Kind;
 
 /// Readings of a ball-bar are taken while the axes move.
 bool is_in_motion(const Setup& setup) { return setup.instrument == "ball-bar"; }
@@ -46,10 +45,9 @@ class ScanVariables {
   void add_positions_and_directions() {
     for (const Axis& axis : campaign_.machine.axes) {
       const std::size_t k = index_of(axis.name);
-      const std::string letter(1, lower_letter_of(axis.name));
-      add(letter,
+      add({Kind::Position, axis.name},
           [k](const Setup& setup, std::size_t, std::size_t row) { return setup.readings.position[k][row]; });
-      add("dir_" + letter, [k](const Setup& setup, std::size_t, std::size_t row) {
+      add({Kind::Direction, axis.name}, [k](const Setup& setup, std::size_t, std::size_t row) {
         const auto& direction = setup.readings.direction[k];
         return direction.empty() ? 0.0 : static_cast<double>(direction[row]);
       });
@@ -58,22 +56,23 @@ class ScanVariables {
 
   void add_time_and_temperatures() {
     const double start = time_span(campaign_).first;
-    add("time", [start](const Setup& setup, std::size_t, std::size_t row) {
+    add({Kind::Time}, [start](const Setup& setup, std::size_t, std::size_t row) {
       return setup.readings.time.empty() ? start : setup.readings.time[row];
     });
     for (const std::string& channel : temperature_channels(campaign_)) {
-      add("T_" + channel, [&channel](const Setup& setup, std::size_t, std::size_t row) {
-        const auto found = setup.readings.temperature.find(channel);
-        return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
-                                                         : found->second[row];
-      });
+      add({.kind = Kind::Temperature, .subject = channel},
+          [&channel](const Setup& setup, std::size_t, std::size_t row) {
+            const auto found = setup.readings.temperature.find(channel);
+            return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
+                                                             : found->second[row];
+          });
     }
   }
 
   void add_motion() {
     for (const Axis& axis : campaign_.machine.axes) {
       if (is_rotary(axis.name)) continue;
-      add(fmt::format("speed_{:c}", lower_letter_of(axis.name)),
+      add({Kind::Speed, axis.name},
           [k = index_of(axis.name)](const Setup& setup, std::size_t, std::size_t row) {
             return share_of_path(setup, k, row);
           });
@@ -87,17 +86,18 @@ class ScanVariables {
     for (const auto& each : readings) {
       const std::string& instrument = each.first;
       if (instrument == most->first) continue;
-      add("instrument " + instrument, [&instrument](const Setup& setup, std::size_t, std::size_t) {
-        return setup.instrument == instrument ? 1.0 : 0.0;
-      });
+      add({.kind = Kind::Instrument, .subject = instrument},
+          [&instrument](const Setup& setup, std::size_t, std::size_t) {
+            return setup.instrument == instrument ? 1.0 : 0.0;
+          });
     }
   }
 
   void add_beam_geometry() {
-    add("length", [this](const Setup&, std::size_t setup, std::size_t row) {
+    add({Kind::Length}, [this](const Setup&, std::size_t setup, std::size_t row) {
       return model_.views()[setup].length[static_cast<Eigen::Index>(row)];
     });
-    add("elevation", [this](const Setup& setup, std::size_t of, std::size_t row) {
+    add({Kind::Elevation}, [this](const Setup& setup, std::size_t of, std::size_t row) {
       const auto station = setup.options.vector("station");
       if (!station) return 0.0;
       const Eigen::Vector3d beam = model_.views()[of].nominal_point_w[row] - *station;
@@ -106,24 +106,25 @@ class ScanVariables {
   }
 
   void add_run_and_feed() {
-    add("run", [](const Setup& setup, std::size_t, std::size_t row) {
+    add({Kind::Run}, [](const Setup& setup, std::size_t, std::size_t row) {
       return setup.readings.run.empty() ? 0.0 : static_cast<double>(setup.readings.run[row]);
     });
-    add("feed", [](const Setup& setup, std::size_t, std::size_t row) {
+    add({Kind::Feed}, [](const Setup& setup, std::size_t, std::size_t row) {
       return setup.readings.feed.empty() ? 0.0 : setup.readings.feed[row];
     });
   }
 
   void add_tools_and_stations() {
     for (const std::string& tool : tools_in_use(campaign_)) {
-      add("tool " + tool, [&](const Setup& setup, std::size_t, std::size_t) {
+      add({.kind = Kind::Tool, .subject = tool}, [&](const Setup& setup, std::size_t, std::size_t) {
         return campaign_.machine.tools[setup.tool].name == tool ? 1.0 : 0.0;
       });
     }
     for (const std::string& station : station_names(campaign_)) {
-      add("station " + station, [&station](const Setup& setup, std::size_t, std::size_t) {
-        return station_of(setup) == station ? 1.0 : 0.0;
-      });
+      add({.kind = Kind::Station, .subject = station},
+          [&station](const Setup& setup, std::size_t, std::size_t) {
+            return station_of(setup) == station ? 1.0 : 0.0;
+          });
     }
   }
 
@@ -132,13 +133,13 @@ class ScanVariables {
  private:
   /// `of_reading(setup, its number, row)` is the value.
   template <class OfReading>
-  void add(const std::string& name, const OfReading& of_reading) {
+  void add(const Variable& variable, const OfReading& of_reading) {
     Eigen::VectorXd value(static_cast<Eigen::Index>(model_.size()));
     for (std::size_t i = 0; i < model_.size(); ++i) {
       const auto& [setup, row, channel] = model_.observations()[i];
       value[static_cast<Eigen::Index>(i)] = of_reading(campaign_.setups[setup], setup, row);
     }
-    add_scan_variable(variables_, name, std::move(value));
+    add_scan_variable(variables_, variable, std::move(value));
   }
 
   const LinearModel& model_;
@@ -148,7 +149,8 @@ class ScanVariables {
 
 }  // namespace
 
-void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value) {
+void add_scan_variable(std::vector<ScanVariable>& variables, const Variable& variable,
+                       Eigen::VectorXd value) {
   const double low = value.minCoeff(), high = value.maxCoeff();
   if (!(high - low > 1e-9 * std::max(1.0, std::abs(high)))) return;
   value = ((value.array() - low) * (2.0 / (high - low)) - 1.0).matrix();
@@ -156,7 +158,7 @@ void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& 
   const double shift = two_valued ? value.mean() : 0.0;
   value.array() -= shift;
   const double scale = 0.5 * (high - low);
-  variables.push_back({name, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
+  variables.push_back({variable, std::move(value), two_valued, low + scale * (1.0 + shift), scale});
 }
 
 std::vector<ScanVariable> scan_variables(const LinearModel& model) {
@@ -188,24 +190,26 @@ Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count) {
   return waves;
 }
 
-std::vector<std::string> scan_variables_of(const EffectName& name) {
-  std::vector<std::string> words;
+std::vector<Variable> scan_variables_of(const EffectName& name) {
+  std::vector<Variable> variables;
+  const auto add = [&variables](const std::string& word) {
+    if (auto variable = Variable::parse(word)) variables.push_back(*std::move(variable));
+  };
   for (const std::string& text : {name.target, name.driver}) {
-    if (text.starts_with("tool ") || text.starts_with("station ")) words.push_back(text);
+    if (text.starts_with("tool ") || text.starts_with("station ")) add(text);
   }
   if (name.driver == "dir" || name.driver.starts_with("dir ")) {  // the sense of a circle in a plane
-    for (const char letter : name.target) words.push_back(fmt::format("dir_{:c}", std::tolower(letter)));
-    if (name.driver.ends_with(" feed")) words.emplace_back("feed");
+    for (const char letter : name.target) variables.push_back({Kind::Direction, *axis_from_letter(letter)});
+    if (name.driver.ends_with(" feed")) variables.push_back({Kind::Feed});
   } else if (name.driver.starts_with("run ")) {
-    words.emplace_back("run");
+    variables.push_back({Kind::Run});
   } else if (name.driver == "ball-bar") {
-    words.emplace_back("instrument ball-bar");
+    variables.push_back({.kind = Kind::Instrument, .subject = name.driver});
   } else if (!name.driver.starts_with("tool")) {
     std::istringstream drivers(name.driver);
-    for (std::string word; drivers >> word;) words.push_back(word);
+    for (std::string word; drivers >> word;) add(word);
   }
-  std::erase_if(words, [](const std::string& word) { return find_scan_word(word) == nullptr; });
-  return words;
+  return variables;
 }
 
 }  // namespace volcal

@@ -6,25 +6,28 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/data/variable.h"
 #include "volcal/identify/criticism/projection/linear_model.h"
 
 namespace volcal {
 
 /// A recorded variable over all observations, scaled to -1..1.
 struct ScanVariable {
-  std::string name;  ///< "x", "time", "T_air", "dir_x", "speed_x", "length", "tool side", "station P1"
+  Variable variable;
   Eigen::VectorXd value;
   bool two_valued = false;  ///< powers say nothing new
   double centre = 0.0;      ///< what was recorded = centre + scale value, SI
   double scale = 1.0;
+
+  std::string name() const { return variable.name(); }
 };
 std::vector<ScanVariable> scan_variables(const LinearModel& model);
 /// `value` over all observations, as recorded; nothing is added where it is constant.
-void add_scan_variable(std::vector<ScanVariable>& variables, const std::string& name, Eigen::VectorXd value);
+void add_scan_variable(std::vector<ScanVariable>& variables, const Variable& variable, Eigen::VectorXd value);
 
-/// Names of the recorded variables that an effect depends on: "T_column", "dir_x", "time" and "z" of its
-/// driver, "tool side_x" of either, "station P1" of its target. Empty where nothing recorded stands for it.
-std::vector<std::string> scan_variables_of(const EffectName& name);
+/// Recorded variables that an effect depends on: those of its driver, the tool or station of its target. None
+/// where nothing recorded stands for it.
+std::vector<Variable> scan_variables_of(const EffectName& name);
 
 /// v, v^2, v^3; of a two-valued variable v alone.
 Eigen::MatrixXd scan_powers(const ScanVariable& variable);

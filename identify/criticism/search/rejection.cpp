@@ -31,10 +31,10 @@ ConstancyTest constancy_of(const ModelState& state, const Family& family, const 
 
 /// Its own driver moves what an effect leaves: it has another shape, or is another effect. A wave is one
 /// beside it.
-bool Rejection::still_moves(const std::vector<std::string>& drivers) const {
+bool Rejection::still_moves(const std::vector<Variable>& drivers) const {
   return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
     if (scan->period > 0.0) return false;
-    return std::ranges::any_of(scan->variables, [&](const std::string& variable) {
+    return std::ranges::any_of(scan->variables, [&](const Variable& variable) {
       return std::ranges::find(drivers, variable) != drivers.end();
     });
   });
@@ -69,7 +69,8 @@ std::string Rejection::rejection_reason(std::size_t added) const {
   const Family& family = state_.family_of(effect);
   if (leaves_more(effect)) return "what it leaves stands out more than it does";
   const auto drivers = scan_variables_of(family.name());
-  if (still_moves(drivers)) return fmt::format("{} still moves what it leaves", fmt::join(drivers, " or "));
+  if (still_moves(drivers))
+    return fmt::format("{} still moves what it leaves", fmt::join(names_of(drivers), " or "));
   if (!family.effect) return {};
   const ConstancyTest varies = constancy(added);
   if (varies.log10_p <= std::log10(kThresholds.constancy_risk))

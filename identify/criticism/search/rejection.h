@@ -38,7 +38,7 @@ class Rejection {
   std::vector<AddedEffect> drop_inconsistent_rivals() const;
 
  private:
-  bool still_moves(const std::vector<std::string>& drivers) const;
+  bool still_moves(const std::vector<Variable>& drivers) const;
   bool lies_beyond_its_scan(std::size_t added) const;
   ConstancyTest constancy(std::size_t added) const;
   double log10_constancy_of_rival(std::size_t added, const FamilyTest& rival) const;

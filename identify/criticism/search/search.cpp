@@ -156,8 +156,8 @@ const FamilyTest* Search::best_by_variables_of_scan() const {
   const FamilyTest* best = nullptr;
   for (const FamilyTest& test : state_->tests().families) {
     if (!may_be_added(test) || (best != nullptr && test.gain <= best->gain)) continue;
-    const std::vector<std::string> own = scan_variables_of(setting_->families[test.family].name());
-    const bool among = std::ranges::all_of(own, [&](const std::string& variable) {
+    const std::vector<Variable> own = scan_variables_of(setting_->families[test.family].name());
+    const bool among = std::ranges::all_of(own, [&](const Variable& variable) {
       return std::ranges::find(least.variables, variable) != least.variables.end();
     });
     if (among && !own.empty()) best = &test;

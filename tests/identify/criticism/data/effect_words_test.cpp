@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/model/effects/registry.h"
 
@@ -61,23 +65,49 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   const EffectWord* shape = find_word(NamePart::Shape, {"servo-mismatch", "XY", "dir", "sin(2 phi)"});
   ASSERT_NE(shape, nullptr);
   EXPECT_EQ(shape->pattern, "sin(2 phi)");
-  EXPECT_EQ(find_scan_word("nonsense"), nullptr);
-  EXPECT_NE(find_scan_word("T_column 2"), nullptr);
   EXPECT_EQ(full_name({"reversal", "EXX", "dir_x", "step"}), "reversal:EXX:dir_x:step");
+}
+
+TEST(Variable, NamesAreReadAgain) {
+  using Kind = Variable::Kind;
+  const std::vector<std::pair<Variable, std::string>> all = {
+      {{Kind::Position, AxisName::Y}, "y"},
+      {{Kind::Direction, AxisName::A}, "dir_a"},
+      {{Kind::Speed, AxisName::X}, "speed_x"},
+      {{Kind::Time}, "time"},
+      {{.kind = Kind::Temperature, .subject = "column 2"}, "T_column 2"},
+      {{Kind::Length}, "length"},
+      {{Kind::Elevation}, "elevation"},
+      {{Kind::Run}, "run"},
+      {{Kind::Feed}, "feed"},
+      {{.kind = Kind::Instrument, .subject = "ball-bar"}, "instrument ball-bar"},
+      {{.kind = Kind::Tool, .subject = "side x"}, "tool side x"},
+      {{.kind = Kind::Station, .subject = "P1"}, "station P1"},
+      {{Kind::TravelSinceTurning, AxisName::Z}, "travel since dir_z"}};
+  for (const auto& [variable, name] : all) {
+    EXPECT_EQ(variable.name(), name);
+    EXPECT_EQ(Variable::parse(name), variable) << name;
+  }
+  EXPECT_EQ(scan_words().size() + 1, all.size()) << "travel is no variable of the scans";
+  for (const char* text : {"nonsense", "X", "dir_X", "dir_", "T_", "tool ", "times", ""})
+    EXPECT_EQ(Variable::parse(text), std::nullopt) << text;
 }
 
 /// What scans see nearly alike is told in this order.
 TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
-  EXPECT_EQ(complexity_rank({"station P1"}, "X"), 0);
-  EXPECT_EQ(complexity_rank({"instrument ball-bar"}, "beam"), 0);
-  EXPECT_EQ(complexity_rank({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
-  EXPECT_EQ(complexity_rank({"x", "dir_x"}, "Y"), 1);
-  EXPECT_EQ(complexity_rank({"station P1", "time"}, "X"), 1) << "a station drifts in time";
-  EXPECT_EQ(complexity_rank({"station P1", "T_air"}, "X"), 2);
-  EXPECT_EQ(complexity_rank({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
-  EXPECT_EQ(complexity_rank({"length", "time"}, "beam"), 2);
-  EXPECT_EQ(complexity_rank({"x", "time"}, "X"), 1);
-  EXPECT_EQ(complexity_rank({"time", "T_air"}, "X"), 3);
+  const auto rank = [](const std::vector<std::string>& names, const std::string& direction) {
+    return complexity_rank(testing_support::variables_named(names), direction);
+  };
+  EXPECT_EQ(rank({"station P1"}, "X"), 0);
+  EXPECT_EQ(rank({"instrument ball-bar"}, "beam"), 0);
+  EXPECT_EQ(rank({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
+  EXPECT_EQ(rank({"x", "dir_x"}, "Y"), 1);
+  EXPECT_EQ(rank({"station P1", "time"}, "X"), 1) << "a station drifts in time";
+  EXPECT_EQ(rank({"station P1", "T_air"}, "X"), 2);
+  EXPECT_EQ(rank({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
+  EXPECT_EQ(rank({"length", "time"}, "beam"), 2);
+  EXPECT_EQ(rank({"x", "time"}, "X"), 1);
+  EXPECT_EQ(rank({"time", "T_air"}, "X"), 3);
 }
 
 }  // namespace

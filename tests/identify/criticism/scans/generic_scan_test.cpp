@@ -29,7 +29,7 @@ std::vector<GenericTest> scanned(const Eigen::VectorXd& residual) {
 bool holds(const std::vector<GenericTest>& tests, const std::vector<std::string>& names,
            const std::string& direction) {
   return std::ranges::any_of(tests, [&](const GenericTest& test) {
-    return test.direction == direction && std::ranges::is_permutation(test.variables, names);
+    return test.direction == direction && std::ranges::is_permutation(names_of(test.variables), names);
   });
 }
 
@@ -52,7 +52,7 @@ TEST(GenericScan, LooksForWhatCouldHaveAReason) {
   for (const GenericTest& test : tests) {
     if (test.rotation.empty()) continue;
     rotations.insert(test.rotation);
-    for (const std::string& name : test.variables)
+    for (const std::string& name : names_of(test.variables))
       EXPECT_FALSE(name.starts_with("station") || name == "length" || name == "elevation") << test.rotation;
   }
   EXPECT_EQ(rotations,
@@ -69,7 +69,7 @@ TEST(GenericScan, FindsAProductOfTwoVariables) {
   const std::vector<GenericTest> tests =
       scanned(white_residual(model_of_nothing_hidden(), random) + 0.5e-6 * moved);
   const auto least = std::ranges::min_element(tests, {}, &GenericTest::log10_p);
-  EXPECT_THAT(least->variables, ::testing::UnorderedElementsAre("T_column", "dir_y"));
+  EXPECT_THAT(names_of(least->variables), ::testing::UnorderedElementsAre("T_column", "dir_y"));
   EXPECT_EQ(least->direction, "X");
   EXPECT_LT(least->log10_p, -10.0);
 }
@@ -83,8 +83,10 @@ std::vector<ScanVariable> two_temperatures() {
   const auto count = static_cast<Eigen::Index>(model_of_nothing_hidden().size());
   const Eigen::ArrayXd reading = Eigen::ArrayXd::LinSpaced(count, 0.0, static_cast<double>(count - 1));
   std::vector<ScanVariable> variables;
-  add_scan_variable(variables, "T_air", (0.13 * reading).sin().matrix());
-  add_scan_variable(variables, "T_column", (0.31 * reading).cos().matrix());
+  add_scan_variable(variables, {.kind = Variable::Kind::Temperature, .subject = "air"},
+                    (0.13 * reading).sin().matrix());
+  add_scan_variable(variables, {.kind = Variable::Kind::Temperature, .subject = "column"},
+                    (0.31 * reading).cos().matrix());
   return variables;
 }
 
@@ -102,7 +104,7 @@ TEST(GenericScan, FindsARotationByItsArms) {
   const Eigen::VectorXd moved = model.motion(*ErrorSymbol::parse("EAZ")).cwiseProduct(variables[0].value);
   const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 10e-6 * moved, variables);
   const GenericTest& least = least_probable(tests);
-  EXPECT_THAT(least.variables, ::testing::ElementsAre("T_air"));
+  EXPECT_THAT(names_of(least.variables), ::testing::ElementsAre("T_air"));
   EXPECT_EQ(least.rotation, "EAZ");
   EXPECT_THAT(least.direction, ::testing::AnyOf("Y", "Z"));
   double as_displacement = 0.0;
@@ -120,7 +122,7 @@ TEST(GenericScan, FindsADisplacementInSeveralDirectionsAtOnce) {
       (model.direction(0) - model.direction(1) + 0.8 * model.direction(2)).cwiseProduct(variables[0].value);
   const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 1e-6 * moved, variables);
   const GenericTest& least = least_probable(tests);
-  EXPECT_THAT(least.variables, ::testing::ElementsAre("T_air"));
+  EXPECT_THAT(names_of(least.variables), ::testing::ElementsAre("T_air"));
   EXPECT_TRUE(least.rotation.empty());
   EXPECT_THAT(least.direction, ::testing::AnyOf("X", "Y"));
   EXPECT_EQ(least.dof, 9.0) << "three powers along three directions";
@@ -134,7 +136,7 @@ TEST(GenericScan, FindsTheDifferenceOfTwoTemperatures) {
   const std::vector<GenericTest> tests =
       scanned(white_residual(model, random) + 1e-6 * model.direction(2).cwiseProduct(difference), variables);
   const GenericTest& least = least_probable(tests);
-  EXPECT_THAT(least.variables, ::testing::UnorderedElementsAre("T_air", "T_column"));
+  EXPECT_THAT(names_of(least.variables), ::testing::UnorderedElementsAre("T_air", "T_column"));
   EXPECT_EQ(least.direction, "Z");
 }
 

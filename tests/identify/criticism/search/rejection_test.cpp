@@ -23,7 +23,7 @@ const Eigen::Vector3i kGrid{5, 4, 3};
 
 GenericTest scan(const std::vector<std::string>& variables, double log10_p, double period = 0.0) {
   GenericTest test;
-  test.variables = variables;
+  test.variables = testing_support::variables_named(variables);
   test.direction = "Y";
   test.log10_p = log10_p;
   test.period = period;

@@ -248,21 +248,18 @@ TEST(Search, FindsWhatTheNoiseHasTakenUp) {
 
 TEST(ScanVariables, OfAnEffect) {
   using Names = std::vector<std::string>;
-  EXPECT_EQ(scan_variables_of({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));
-  EXPECT_EQ(scan_variables_of({"tool-offset", "tool side_x", "tool", "step"}), (Names{"tool side_x"}));
-  EXPECT_EQ(scan_variables_of({"station-drift", "station P1", "time", "linear"}),
-            (Names{"station P1", "time"}));
-  EXPECT_EQ(scan_variables_of({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
-  EXPECT_EQ(scan_variables_of({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
-  EXPECT_EQ(scan_variables_of({"servo-mismatch", "XY", "dir", "sin(2 phi)"}), (Names{"dir_x", "dir_y"}));
-  EXPECT_EQ(scan_variables_of({"servo-mismatch", "XY", "dir feed", "sin(2 phi)"}),
-            (Names{"dir_x", "dir_y", "feed"}));
-  EXPECT_EQ(scan_variables_of({"following-error", "EXX", "dir_x feed", "cos(phi)"}),
-            (Names{"dir_x", "feed"}));
-  EXPECT_EQ(scan_variables_of({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
-  EXPECT_EQ(scan_variables_of({"ball-bar-length", "readings", "ball-bar", "step"}),
-            Names{"instrument ball-bar"});
-  EXPECT_EQ(scan_variables_of({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
+  const auto names = [](const EffectName& name) { return names_of(scan_variables_of(name)); };
+  EXPECT_EQ(names({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));
+  EXPECT_EQ(names({"tool-offset", "tool side_x", "tool", "step"}), (Names{"tool side_x"}));
+  EXPECT_EQ(names({"station-drift", "station P1", "time", "linear"}), (Names{"station P1", "time"}));
+  EXPECT_EQ(names({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
+  EXPECT_EQ(names({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
+  EXPECT_EQ(names({"servo-mismatch", "XY", "dir", "sin(2 phi)"}), (Names{"dir_x", "dir_y"}));
+  EXPECT_EQ(names({"servo-mismatch", "XY", "dir feed", "sin(2 phi)"}), (Names{"dir_x", "dir_y", "feed"}));
+  EXPECT_EQ(names({"following-error", "EXX", "dir_x feed", "cos(phi)"}), (Names{"dir_x", "feed"}));
+  EXPECT_EQ(names({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
+  EXPECT_EQ(names({"ball-bar-length", "readings", "ball-bar", "step"}), Names{"instrument ball-bar"});
+  EXPECT_EQ(names({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
 }
 
 }  // namespace

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "measure.h"
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/fit.h"

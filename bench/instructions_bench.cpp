@@ -15,8 +15,8 @@
 
 #include "measure.h"
 #include "reference_problem.h"
-#include "volcal/identify/criticism/linear_model.h"
-#include "volcal/identify/criticism/projector.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/criticism/projection/projector.h"
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/io/readings_reader.h"
 #include "volcal/identify/montecarlo/draw_projection.h"

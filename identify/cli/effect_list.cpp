@@ -6,9 +6,9 @@
 #include <set>
 #include <span>
 
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/generic_scan.h"
-#include "volcal/identify/criticism/left_out.h"
+#include "volcal/identify/criticism/catalogue/left_out.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/io/json_text.h"
 #include "volcal/identify/solve/resolution.h"
 #include "volcal/model/effects/registry.h"

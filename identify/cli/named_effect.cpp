@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
 

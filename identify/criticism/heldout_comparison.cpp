@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "volcal/identify/criticism/ladder.h"
+#include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 

@@ -7,17 +7,13 @@
 #include <cmath>
 #include <iterator>
 
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/stats/threads.h"
 
 namespace volcal {
 namespace {
-
-// log10 of the family-wise risk that a right model is contradicted
-constexpr double kRisk = -3.0;
-constexpr double kRiskOfEstimatedNoise = -6.0;
-constexpr double kFewestSpare = 5.0;  // observations beyond what the parameters take
 
 /// The most improbable of all tests so far.
 class Leading {
@@ -49,8 +45,8 @@ double root_mean_square(const Eigen::VectorXd& moved) {
 }
 
 std::string words_of(const GenericTest& test) {
-  std::string text = fmt::format("something that depends on {}, along {}", fmt::join(test.variables, " and "),
-                                 test.direction);
+  std::string text = fmt::format("something that depends on {}, along {}",
+                                 fmt::join(names_of(test.variables), " and "), test.direction);
   if (!test.rotation.empty()) text += ", as " + test.rotation;
   if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * 1e3);
   return text;
@@ -64,7 +60,7 @@ void consider_families(const LinearModel& model, const std::vector<Family>& fami
     leading.consider(test.log10_p + log10_count, [&](Screening& found) {
       const Family& family = families[test.family];
       found.leading = family.label();
-      found.rms = root_mean_square(family_columns(model, family, test.shape) * test.score.amplitude);
+      found.rms = root_mean_square(displacement(model, family, test));
     });
   }
 }
@@ -82,7 +78,7 @@ void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
 }  // namespace
 
 Screening screen(const Campaign& campaign, const FitResult& result, int threads) {
-  if (result.dof < kFewestSpare) return {};
+  if (result.dof < kThresholds.screening_spare_observations) return {};
   threads = thread_count(threads);
   const LinearModel model(campaign, result);
   const std::vector<NoiseParameters> noise = fitted_noise(result, model.noise_groups());
@@ -94,17 +90,9 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads)
   std::vector<GenericTest> scans = generic_scan(model, scan_variables(model), projector, threads);
   std::ranges::move(wave_tests(model, projector, threads), std::back_inserter(scans));
   consider_scans(scans, leading);
-  return leading.take(families.size() + scans.size(),
-                      result.noise.more_than_white ? kRiskOfEstimatedNoise : kRisk);
-}
-
-std::string screening_sentence(const Screening& screening) {
-  if (!screening.contradicts) return {};
-  return fmt::format(
-      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
-      "tests "
-      "counted)",
-      screening.leading, screening.rms * 1e6, screening.log10_p, screening.tests);
+  return leading.take(families.size() + scans.size(), result.noise.more_than_white
+                                                          ? kThresholds.screening_log10_risk_of_drift
+                                                          : kThresholds.screening_log10_risk);
 }
 
 void judge(const Screening& screening, FitResult& result) {

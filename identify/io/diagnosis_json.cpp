@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/left_out.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/io/json_text.h"
 #include "volcal/identify/io/result_json_parts.h"
 #include "volcal/identify/io/toml_writer.h"

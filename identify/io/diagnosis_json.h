@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 
 namespace volcal {
 

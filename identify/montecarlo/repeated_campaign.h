@@ -38,7 +38,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/montecarlo/noise_sampler.h"
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/solve/datum.h"

@@ -104,7 +104,7 @@ Eigen::MatrixXd RestrictedLikelihood::prior_in_variables(const Eigen::MatrixXd& 
 void RestrictedLikelihood::hold_what_the_prior_decides(const Eigen::MatrixXd& precision) {
   if (precision.isZero(0.0) || transform_.cols() == 0) return;
   const SymmetricEigen share = eigen_decomposition(prior_in_variables(precision));
-  const auto kept = static_cast<Eigen::Index>((share.values.array() <= 1.0 - kSpeaks).count());
+  const auto kept = static_cast<Eigen::Index>((share.values.array() <= 1.0 - kMinInformation).count());
   const Eigen::MatrixXd all = transform_.transpose();
   transform_.setZero(precision.rows(), kept);
   add_transposed_product(all, share.vectors.leftCols(kept), transform_);

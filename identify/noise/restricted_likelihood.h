@@ -10,9 +10,10 @@
 ///
 /// The values hold for given columns of J: models with different columns cannot be compared by them. What
 /// neither the readings nor the prior determine is left out of x, and p counts what remains. Directions to
-/// which white readings contribute less than kSpeaks of the information are held where white readings and
-/// the prior put them: the prior decides, whatever the noise. With white noise as stated nothing changes by
-/// it; with other noise each changes l by the order of kSpeaks times the ratio of its variance to the stated.
+/// which white readings contribute less than kMinInformation of the information are held where white readings
+/// and the prior put them: the prior decides, whatever the noise. With white noise as stated nothing changes
+/// by it; with other noise each changes l by the order of kMinInformation times the ratio of its variance to
+/// the stated.
 
 #include <Eigen/Core>
 #include <memory>
@@ -23,7 +24,7 @@
 
 namespace volcal {
 
-inline constexpr double kSpeaks = 1e-3;
+inline constexpr double kMinInformation = 1e-3;
 
 /// The linear model about the current adjustment.
 struct NoiseProblem {

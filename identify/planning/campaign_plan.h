@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/detectable.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/planning/expected_result.h"
 #include "volcal/identify/planning/plan_search.h"
 

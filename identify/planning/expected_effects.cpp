@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/identify/criticism/catalogue/detectable.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/effect_words.h"
 #include "volcal/identify/stats/chi_squared.h"
 #include "volcal/identify/stats/threads.h"
 

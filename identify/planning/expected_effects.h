@@ -5,7 +5,9 @@
 
 #include <vector>
 
-#include "volcal/identify/criticism/detectable.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/model/description/campaign.h"
 
 namespace volcal {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/solve/result.h"
 #include "volcal/identify/stats/comparison.h"
 #include "volcal/identify/stats/standard_figures.h"

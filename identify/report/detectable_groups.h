@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/detectable.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 
 namespace volcal::report {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/report/report.h"

@@ -1,6 +1,6 @@
 #include "volcal/identify/report/plan_text.h"
 
-#include "volcal/identify/criticism/effect_words.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/report/campaign_notes_text.h"
 #include "volcal/identify/report/detectable_groups.h"

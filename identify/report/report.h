@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/solve/result.h"

@@ -95,6 +95,28 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',
                              "numeric may not include noise")
 
+    def test_rooms(self):
+        self.assert_accepted("identify/criticism/search/a.h", '#include "volcal/identify/criticism/scans/b.h"',
+                             '#include "volcal/identify/criticism/search/b.h"')
+        self.assert_accepted("identify/criticism/a.h", '#include "volcal/identify/criticism/search/b.h"')
+        self.assert_rejected("identify/criticism/scans/a.h", '#include "volcal/identify/criticism/search/b.h"',
+                             "identify/criticism/scans may not include identify/criticism/search")
+        self.assert_rejected("identify/criticism/data/a.h", '#include "volcal/identify/criticism/a.h"',
+                             "criticism-data may not include criticism")
+
+    def test_a_circle_of_rooms(self):
+        page = self.root / "docs" / "layers.md"
+        text = page.read_text(encoding="utf-8")
+        page.write_text(text.replace("| data projection |", "| data projection search |", 1), encoding="utf-8")
+        done = check(self.root)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("identify/criticism/catalogue", done.stderr)
+
+    def test_a_diagnosis_in_the_report(self):
+        self.assert_accepted("identify/report/a.h", '#include "volcal/identify/criticism/data/diagnosis_data.h"')
+        self.assert_rejected("identify/report/b.h", '#include "volcal/identify/criticism/diagnosis.h"',
+                             "report may not include criticism")
+
     def test_errors_in_criticism(self):
         self.assert_rejected("identify/criticism/a.h", '#include "volcal/identify/errors/error_tables.h"',
                              "criticism may not include errors")

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 
 namespace volcal::testing {
 

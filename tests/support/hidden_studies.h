@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/generic_scan.h"
-#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/sim/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -48,6 +48,12 @@ struct FittedStudy {
   FitResult result;
   LinearModel model;
 };
+
+inline std::vector<Variable> variables_named(const std::vector<std::string>& names) {
+  std::vector<Variable> variables;
+  for (const std::string& name : names) variables.push_back(Variable::parse(name).value());
+  return variables;
+}
 
 /// A campaign with nothing hidden, and its recorded variables; made once per program.
 inline const LinearModel& model_of_nothing_hidden() {

@@ -9,10 +9,11 @@
 
 #include "volcal/identify/cli/studies/criticism_names.h"
 #include "volcal/identify/cli/studies/criticism_plan.h"
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/families.h"
-#include "volcal/identify/criticism/linear_model.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/stats/channels.h"
@@ -70,7 +71,7 @@ class Yardstick {
         result_(fitted(simulated_.campaign, {})),
         model_(simulated_.campaign, result_),
         smooth_(model_.problem(), model_.problem().data, true_noise(), 1),
-        free_(without_smoothing(model_), model_.problem().data, true_noise(), 1) {}
+        free_(model_.with_smoothing({}).problem(), model_.problem().data, true_noise(), 1) {}
 
   /// Change of the readings by an effect that has an amplitude or an rms.
   Eigen::VectorXd change(const sim::Study& study, const sim::HiddenEffect& effect, double* amplitude) const {
@@ -132,11 +133,6 @@ class Yardstick {
             .solution);
     out.share = gram(count, count) > 0.0 ? mixed.dot(out.amplitude) / gram(count, count) : 0.0;
     return out;
-  }
-
-  static const NoiseProblem& without_smoothing(LinearModel& model) {
-    model.set_smoothing({});
-    return model.problem();
   }
 
   std::vector<NoiseParameters> true_noise() const {
@@ -234,7 +230,7 @@ class CampaignRun {
       return false;  // it has no effect on these readings
     }
     const Yardstick::Visible visible = yardstick_->visible(change);
-    if (scaled && visible.fraction < kVisibleFraction) return false;
+    if (scaled && visible.fraction < kThresholds.visible_fraction) return false;
     const double factor = scaled ? planned.signal / visible.signal : 1.0;
     if (!plausible(effect, amplitude * factor, *effect.rms * factor)) return false;
     HiddenRecord record;

@@ -6,15 +6,15 @@
 #include <cmath>
 #include <string_view>
 
-#include "volcal/identify/criticism/effect_words.h"
-#include "volcal/identify/criticism/separation.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::report {
 namespace {
 
-constexpr int kCosineDigits = 6;  // the page tells a squared sine of kSameSquaredSine from zero
+constexpr int kCosineDigits = 6;  // the page tells a squared sine of same_squared_sine from zero
 
 const EffectFinding* find_in(const std::vector<EffectFinding>& findings, const EffectName& name) {
   const auto found = std::ranges::find(findings, name, &EffectFinding::name);
@@ -112,7 +112,7 @@ Json confounding_page(const DiagnosisInput& input) {
   }
   return {{"effects", std::move(effects)},
           {"cosine", rounded_triangle(confounding.cosine, kCosineDigits, false)},
-          {"same", kSameSquaredSine},
+          {"same", kThresholds.same_squared_sine},
           {"proposals", std::move(proposals)}};
 }
 

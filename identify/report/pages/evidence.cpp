@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
 

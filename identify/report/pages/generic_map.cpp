@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/numbers.h"
 
 namespace volcal::report {
@@ -21,7 +22,7 @@ Json generic_map_page(const DiagnosisInput& input) {
                           {"reached", rounded_triangle(map.reached[d], kDigits, true)}});
   }
   return {{"variables", map.variables},
-          {"threshold", rounded(log10_generic_risk(), 4)},
+          {"threshold", rounded(log10_scan_risk(), 4)},
           {"tests", input.diagnosis.generic_tests},
           {"two_models", input.diagnosis.ladder.size() > 1},
           {"directions", std::move(directions)}};

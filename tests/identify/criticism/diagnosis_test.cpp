@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/solve/fit.h"
 
 namespace volcal {
@@ -51,8 +52,8 @@ void expect_figures_of_reversal(const Diagnosed& found) {
   EXPECT_LT(std::abs(reached.mean[1] - reached.mean[0]), 0.2 * std::abs(amplitude.value));
   const auto& names = figures.generic.variables;
   const auto y = std::ranges::find(names, "dir_y") - names.begin();
-  EXPECT_LT(figures.generic.given[1](y, y), log10_generic_risk());
-  EXPECT_GT(figures.generic.reached[1](y, y), log10_generic_risk());
+  EXPECT_LT(figures.generic.given[1](y, y), log10_scan_risk());
+  EXPECT_GT(figures.generic.reached[1](y, y), log10_scan_risk());
   const auto detectable =
       std::ranges::find(found.diagnosis.detectable, found.diagnosis.effects[0].name, &DetectableEffect::name);
   ASSERT_NE(detectable, found.diagnosis.detectable.end());

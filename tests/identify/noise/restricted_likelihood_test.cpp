@@ -92,7 +92,7 @@ TEST(RestrictedLikelihood, HoldsWhatThePriorDecides) {
   EXPECT_NEAR(likelihood.log_likelihood(white), test::dense_log_likelihood(problem, white), 1e-6);
   const double held_back = likelihood.log_likelihood(kNoise);
   const double dense = test::dense_log_likelihood(problem, kNoise);
-  EXPECT_NEAR(held_back, dense, 4.0 * kSpeaks * static_cast<double>(held));
+  EXPECT_NEAR(held_back, dense, 4.0 * kMinInformation * static_cast<double>(held));
   EXPECT_NE(held_back, dense);
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(p - held);
   const Eigen::VectorXd estimate = (information + problem.prior_precision)

@@ -1,0 +1,153 @@
+#include "volcal/identify/criticism/catalogue/left_out.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "volcal/identify/solve/resolution.h"
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/functions/legendre_polynomials.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kDegrees = 6;        // of one function
+constexpr int kSharedDegrees = 4;  // of each of several
+
+using Polynomials = std::array<double, kDegrees + 1>;  // by degree
+
+Polynomials legendre(double x) {
+  Polynomials values;
+  write_legendre_polynomials(kDegrees, x, values.data());
+  return values;
+}
+
+/// Polynomials of an axis' position over its measured range, zero at home.
+class OwnPosition {
+ public:
+  OwnPosition(const Campaign& campaign, AxisName axis)
+      : axis_(axis),
+        range_(measured_range(campaign, axis)),
+        home_(legendre(range_.scaled(campaign.machine.axis(axis).home))) {}
+
+  bool varies() const { return range_.max > range_.min; }
+  void fill(const SetupView& view, Eigen::Ref<Eigen::MatrixXd> columns) const {
+    const auto& position = view.setup.readings.position[index_of(axis_)];
+    for (Eigen::Index row = 0; row < columns.rows(); ++row) {
+      const Polynomials values = legendre(range_.scaled(position[static_cast<std::size_t>(row)]));
+      for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+        const auto degree = static_cast<std::size_t>(k) + 1;
+        columns(row, k) = values[degree] - home_[degree];
+      }
+    }
+  }
+
+ private:
+  AxisName axis_;
+  MeasuredRange range_;
+  Polynomials home_;
+};
+
+EffectSpec left_out_spec(const std::string& symbols) { return effect_spec(kLeftOut, {{"symbol", symbols}}); }
+
+/// Functions of the given symbols, `degrees` amplitudes each.
+std::unique_ptr<Effect> functions(const Campaign& campaign, const std::vector<ErrorSymbol>& symbols,
+                                  int degrees, const EffectName& name, const std::string& label) {
+  std::vector<EffectAmplitude> amplitudes;
+  std::vector<OwnPosition> positions;
+  for (const ErrorSymbol symbol : symbols) {
+    positions.emplace_back(campaign, symbol.axis);
+    const std::string own = symbols.size() > 1 ? symbol.name() + ":" : "";
+    for (int degree = 1; degree <= degrees; ++degree) {
+      const std::string number = std::to_string(degree);
+      amplitudes.push_back({.label = label + " " + own + "P" + number,
+                            .target = {.kind = TargetKind::Motion, .symbol = symbol},
+                            .key = own + "P" + number + "_" + std::string(edge_unit(symbol.component))});
+    }
+  }
+  return std::make_unique<FormulaEffect>(
+      name, std::move(amplitudes),
+      [positions, degrees](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        Eigen::MatrixXd drivers(static_cast<Eigen::Index>(view.rows()),
+                                degrees * static_cast<Eigen::Index>(positions.size()));
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+          positions[i].fill(view, drivers.middleCols(degrees * static_cast<Eigen::Index>(i), degrees));
+        }
+        return drivers;
+      },
+      [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
+}
+
+std::unique_ptr<Effect> squareness(LocationSymbol location) {
+  const SquarenessMotion motion = motion_of_squareness(location);
+  const std::string driver(1, lower_letter_of(location.axis));
+  return std::make_unique<FormulaEffect>(
+      EffectName{kLeftOut, location.name(), driver, "squareness"},
+      std::vector<EffectAmplitude>{{.label = location.name() + " left out",
+                                    .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
+                                    .key = "amplitude_urad"}},
+      [axis = location.axis, sign = motion.sign](const SetupView& view,
+                                                 const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        const auto& position = view.setup.readings.position[index_of(axis)];
+        return sign *
+               Eigen::Map<const Eigen::VectorXd>(position.data(), static_cast<Eigen::Index>(position.size()));
+      },
+      [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
+}
+
+std::vector<ErrorSymbol> lacking_functions(const MeasurementModel& model) {
+  std::vector<ErrorSymbol> symbols;
+  for (const ErrorSymbol symbol : linear_axis_motions(model.campaign().machine)) {
+    const bool moved = OwnPosition(model.campaign(), symbol.axis).varies();
+    if (moved && !model.layout().find(symbol)) symbols.push_back(symbol);
+  }
+  return symbols;
+}
+
+std::string joined_names(const std::vector<ErrorSymbol>& symbols) {
+  std::string text;
+  for (const ErrorSymbol symbol : symbols) text += (text.empty() ? "" : " ") + symbol.name();
+  return text;
+}
+
+}  // namespace
+
+std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
+  const Campaign& campaign = model.campaign();
+  std::vector<LeftOutError> errors;
+  std::vector<ErrorSymbol> rotations;
+  for (const ErrorSymbol symbol : lacking_functions(model)) {
+    if (is_rotation(symbol.component)) rotations.push_back(symbol);
+    const EffectName name{kLeftOut, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "function"};
+    errors.push_back({left_out_spec(symbol.name()),
+                      functions(campaign, {symbol}, kDegrees, name, symbol.name() + " left out")});
+  }
+  if (rotations.size() > 1) {
+    const std::string names = joined_names(rotations);
+    errors.push_back(
+        {left_out_spec(names), functions(campaign, rotations, kSharedDegrees,
+                                         {kLeftOut, names, "position", "functions"}, "rotations left out")});
+  }
+  for (const LocationSymbol& location : campaign.machine.datum.squareness()) {
+    if (!campaign.machine.has_axis(location.axis) || model.layout().find_location(location)) continue;
+    errors.push_back({left_out_spec(location.name()), squareness(location)});
+  }
+  return errors;
+}
+
+bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {
+  if (spec.kind != kLeftOut) return false;
+  for (const std::string& name : left_out_symbols(spec)) {
+    if (const auto location = LocationSymbol::parse(name)) std::erase(model.locations_off, *location);
+    const auto symbol = ErrorSymbol::parse(name);
+    if (!symbol) continue;
+    if (model.default_function.basis == "zero") {
+      model.functions[*symbol] = FunctionSpec{};
+    } else {
+      model.functions.erase(*symbol);
+    }
+  }
+  return true;
+}
+
+}  // namespace volcal

@@ -1,0 +1,27 @@
+#pragma once
+/// Errors that the model holds at zero, as hypotheses: a function with basis "zero" (a model of positioning
+/// and straightness alone leaves nine out), a squareness switched off. What a diagnosis names of them is no
+/// effect to add but a change of the model; its EffectSpec has the kind kLeftOut and the symbols.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+
+struct LeftOutError {
+  EffectSpec spec;
+  std::unique_ptr<Effect> effect;  ///< polynomials of the axis' own position; amplitudes m or rad
+};
+
+/// One for every error motion of a linear axis and every squareness that the model lacks, and one for all
+/// lacking rotations together when there are several.
+std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
+
+/// Gives what `spec` names back to the model; false when it is an effect of the catalogue.
+bool restore_left_out(const EffectSpec& spec, ModelSpec& model);
+
+}  // namespace volcal

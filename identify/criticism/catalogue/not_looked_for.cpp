@@ -1,0 +1,89 @@
+#include "volcal/identify/criticism/catalogue/not_looked_for.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "volcal/identify/solve/resolution.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+bool direction_is_known(const Campaign& campaign, AxisName axis) {
+  return std::ranges::any_of(campaign.setups, [&](const Setup& setup) {
+    const auto& direction = setup.readings.direction[index_of(axis)];
+    return std::ranges::any_of(direction, [](std::int8_t sign) { return sign != 0; });
+  });
+}
+
+bool moves_along(const Campaign& campaign, AxisName axis) {
+  const MeasuredRange range = measured_range(campaign, axis);
+  return range.max > range.min;
+}
+
+/// "dir_x" of the axes that move and whose directions are known nowhere.
+std::set<std::string> unknown_directions(const Campaign& campaign) {
+  std::set<std::string> names;
+  for (const Axis& axis : campaign.machine.axes) {
+    if (!moves_along(campaign, axis.name) || direction_is_known(campaign, axis.name)) continue;
+    names.insert(std::string("dir_") + static_cast<char>(std::tolower(letter_of(axis.name))));
+  }
+  return names;
+}
+
+std::set<std::string> kinds_driven_by(const std::vector<Family>& families,
+                                      const std::set<std::string>& drivers) {
+  std::set<std::string> kinds;
+  for (const Family& family : families) {
+    if (!family.effect) continue;
+    const EffectName& name = family.effect->name();
+    const bool driven = std::ranges::any_of(
+        drivers, [&](const std::string& driver) { return name.driver.find(driver) != std::string::npos; });
+    if (driven) kinds.insert(name.kind);
+  }
+  return kinds;
+}
+
+std::set<std::string> kinds_with_candidates(const Campaign& campaign) {
+  std::set<std::string> kinds;
+  for (const EffectKind* kind : effect_kinds()) {
+    if (!kind->candidates(campaign).empty()) kinds.insert(kind->schema().kind);
+  }
+  return kinds;
+}
+
+/// Kinds that could act if the readings recorded their times.
+std::set<std::string> kinds_in_time(const Campaign& campaign) {
+  Campaign timed = campaign;
+  double now = 0.0;
+  for (Setup& setup : timed.setups) {
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) setup.readings.time.push_back(now += 1.0);
+  }
+  std::set<std::string> more = kinds_with_candidates(timed);
+  for (const std::string& kind : kinds_with_candidates(campaign)) more.erase(kind);
+  return more;
+}
+
+}  // namespace
+
+std::vector<std::string> not_looked_for(const Campaign& campaign, const std::vector<Family>& families) {
+  std::vector<std::string> sentences;
+  const std::set<std::string> directions = unknown_directions(campaign);
+  if (const auto kinds = kinds_driven_by(families, directions); !kinds.empty()) {
+    sentences.push_back(fmt::format("Not looked for, as no reading records {}: {}.",
+                                    fmt::join(directions, ", "), fmt::join(kinds, ", ")));
+  }
+  const bool any_time =
+      std::ranges::any_of(campaign.setups, [](const Setup& setup) { return !setup.readings.time.empty(); });
+  if (any_time) return sentences;
+  if (const auto kinds = kinds_in_time(campaign); !kinds.empty()) {
+    sentences.push_back(
+        fmt::format("Not looked for, as no reading records its time (time_s): {}.", fmt::join(kinds, ", ")));
+  }
+  return sentences;
+}
+
+}  // namespace volcal

@@ -1,0 +1,63 @@
+#include "volcal/identify/criticism/data/diagnosis_data.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <stdexcept>
+
+namespace volcal {
+
+std::string to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Named:
+      return "NAMED";
+    case Verdict::NamedMoreRemains:
+      return "NAMED_MORE_REMAINS";
+    case Verdict::OneOf:
+      return "ONE_OF";
+    case Verdict::Unknown:
+      return "UNKNOWN";
+    case Verdict::NothingAbove:
+      return "NOTHING_ABOVE";
+    case Verdict::NotVisible:
+      return "NOT_VISIBLE";
+  }
+  return "";
+}
+
+Verdict verdict_from(const std::string& text) {
+  for (const Verdict verdict : {Verdict::Named, Verdict::NamedMoreRemains, Verdict::OneOf, Verdict::Unknown,
+                                Verdict::NothingAbove, Verdict::NotVisible}) {
+    if (to_string(verdict) == text) return verdict;
+  }
+  throw std::invalid_argument("\"" + text + "\" is no verdict");
+}
+
+std::string UnknownFinding::dependence() const {
+  std::string text = fmt::format("{}", fmt::join(variables, " and "));
+  if (!with_one_of.empty()) text += fmt::format(" and one of {}", fmt::join(with_one_of, ", "));
+  return text;
+}
+
+std::string UnknownFinding::action() const {
+  if (!rotation.empty()) return direction + ", as " + rotation;
+  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * 1e3) : direction;
+}
+
+std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {
+  std::vector<const std::vector<EffectFinding>*> sets;
+  if (!diagnosis.one_of.empty()) sets.push_back(&diagnosis.one_of);
+  for (const auto& set : diagnosis.further_one_of) sets.push_back(&set);
+  return sets;
+}
+
+std::string screening_sentence(const Screening& screening) {
+  if (!screening.contradicts) return {};
+  return fmt::format(
+      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
+      "tests "
+      "counted)",
+      screening.leading, screening.rms * 1e6, screening.log10_p, screening.tests);
+}
+
+}  // namespace volcal

@@ -1,0 +1,168 @@
+#include "volcal/identify/criticism/data/effect_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <regex>
+#include <sstream>
+#include <utility>
+
+namespace volcal {
+namespace {
+
+constexpr const char* kResolution = "resolution";
+
+constexpr auto kModelChanges = std::to_array<ModelChange>({
+    {kLeftOut, "an error function or squareness that the model file switches off: give it back to the model"},
+    {kResolution, "an error function that the readings ask to be finer: give it more knots"},
+});
+
+constexpr auto kTargets = std::to_array<EffectWord>({
+    {"SYMBOL", "error motion of an axis (EXX, EAY), or a squareness (EC0Y)"},
+    {"SYMBOL SYMBOL ...", "several error functions together", kLeftOut},
+    {"tool", "offset of every tool, tool coordinates"},
+    {"tool TOOL", "offset of one tool, tool coordinates"},
+    {"clamping in SETUP", "offset of the tool that one setup carries, tool coordinates"},
+    {"station STATION", "position of a station, workpiece coordinates, or all that is read from it"},
+    {"machine about AXIS", "rotation of the machine against the floor, about a workpiece axis"},
+    {"readings", "readings of the instruments that the effect is about"},
+    {"readings of SETUP", "readings of one setup"},
+    {"PLANE", "readings of circles in this plane"},
+    {"TARGET",
+     "as written in the model file: SYMBOL, tool [TOOL] AXIS, station STATION AXIS, COLUMN [of SETUP]",
+     "custom"},
+});
+
+constexpr auto kDrivers = std::to_array<EffectWord>({
+    {"AXIS", "position of an axis"},
+    {"AXIS AXIS", "positions of two axes"},
+    {"position", "positions of the axes that the errors belong to", kLeftOut},
+    {"dir_AXIS", "direction of approach of an axis"},
+    {"dir_AXIS AXIS", "direction of approach, and position, of an axis"},
+    {"dir_AXIS feed", "velocity of an axis"},
+    {"dir", "sense in which a circle is run through"},
+    {"dir feed", "sense in which a circle is run through, and feed"},
+    {"time", "time since the first reading of the campaign"},
+    {"time AXIS", "time, and position of an axis"},
+    {"T_CHANNEL", "temperature of a channel less 20 degC"},
+    {"length", "length that is measured"},
+    {"azimuth", "azimuth of a tracker"},
+    {"elevation", "elevation of a tracker"},
+    {"tool", "which tool is carried: the one that the target names"},
+    {"tool TOOL", "whether this tool is carried"},
+    {"setup", "whether the reading belongs to the setup that the target names"},
+    {"run RUN", "whether the reading belongs to this run"},
+    {"ball-bar", "whether a ball-bar reads"},
+    {"VARIABLES", "variables of the expression", "custom"},
+});
+
+constexpr auto kShapes = std::to_array<EffectWord>({
+    {"step", "on or off, or a change of sign: constant either side"},
+    {"linear", "proportional to the driver"},
+    {"quadratic", "to its square"},
+    {"cubic", "to its third power"},
+    {"product", "to the product of two drivers"},
+    {"periodic", "sine and cosine of the driver; the period is given or looked for"},
+    {"sin(2 phi)", "twice per turn of a circle"},
+    {"cos(phi)", "once per turn of a circle, most where the axis is fastest"},
+    {"1-exp(-t/tau)", "towards a final value; the time constant is given or looked for"},
+    {"lag", "follows the driver late; the time constant is given or looked for"},
+    {"function", "an error function of its own axis", kLeftOut},
+    {"functions", "error functions of their own axes", kLeftOut},
+    {"squareness", "an angle between two axes", kLeftOut},
+    {"finer", "an error function that needs more knots", kResolution},
+    {"EXPRESSION", "the expression", "custom"},
+});
+
+/// Pattern of a word; only what stands for something in the files varies.
+std::regex expression_of(std::string_view pattern) {
+  constexpr std::pair<std::string_view, std::string_view> kPlaces[] = {
+      {"SYMBOL ...", "E[XYZABC]0?[XYZABC]( E[XYZABC]0?[XYZABC])*"},
+      {"SYMBOL", "E[XYZABC]0?[XYZABC]"},
+      {"AXIS", "[xyzabc]"},
+      {"PLANE", "[XYZABC]{2}"},
+      {"RUN", "-?[0-9]+"},
+      {"TOOL", ".+"},
+      {"STATION", ".+"},
+      {"SETUP", ".+"},
+      {"CHANNEL", ".+"},
+      {"TARGET", ".+"},
+      {"VARIABLES", ".*"},
+      {"EXPRESSION", ".+"},
+  };
+  std::string text;
+  while (!pattern.empty()) {
+    const auto* const place =
+        std::ranges::find_if(kPlaces, [&](const auto& each) { return pattern.starts_with(each.first); });
+    if (place != std::end(kPlaces)) {
+      text += place->second;
+      pattern.remove_prefix(place->first.size());
+      continue;
+    }
+    if (std::string_view("()-^").find(pattern.front()) != std::string_view::npos) text += '\\';
+    text += pattern.front();
+    pattern.remove_prefix(1);
+  }
+  return std::regex(text);
+}
+
+const EffectWord* find_in(std::span<const EffectWord> words, const std::string& kind,
+                          const std::string& text) {
+  const auto found = std::ranges::find_if(words, [&](const EffectWord& word) {
+    const bool other_kind = !word.kind.empty() && word.kind != kind;
+    return !other_kind && std::regex_match(text, expression_of(word.pattern));
+  });
+  return found == words.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string full_name(const EffectName& name) {
+  return fmt::format("{}:{}:{}:{}", name.kind, name.target, name.driver, name.shape);
+}
+
+std::span<const ModelChange> model_change_kinds() { return kModelChanges; }
+
+std::vector<std::string> left_out_symbols(const EffectSpec& spec) {
+  std::istringstream words(spec.options.text("symbol").value_or(""));
+  std::vector<std::string> symbols;
+  for (std::string word; words >> word;) symbols.push_back(word);
+  return symbols;
+}
+
+EffectName resolution_name(ErrorSymbol symbol) {
+  return {kResolution, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "finer"};
+}
+
+std::span<const EffectWord> effect_words(NamePart part) {
+  switch (part) {
+    case NamePart::Target:
+      return kTargets;
+    case NamePart::Driver:
+      return kDrivers;
+    case NamePart::Shape:
+      break;
+  }
+  return kShapes;
+}
+
+const EffectWord* find_word(NamePart part, const EffectName& name) {
+  const std::string& text = part == NamePart::Target   ? name.target
+                            : part == NamePart::Driver ? name.driver
+                                                       : name.shape;
+  return find_in(effect_words(part), name.kind, text);
+}
+
+int complexity_rank(const std::vector<Variable>& variables, const std::string& direction) {
+  const auto holds = [&](Variable::Kind kind) {
+    return std::ranges::find(variables, kind, &Variable::kind) != variables.end();
+  };
+  const bool station = holds(Variable::Kind::Station), temperature = holds(Variable::Kind::Temperature),
+             time = holds(Variable::Kind::Time), beam = direction == "beam";
+  if (variables.size() < 2) return beam && station ? 1 : 0;
+  if (time && temperature) return 3;
+  return (beam ? time : station && temperature) ? 2 : 1;
+}
+
+}  // namespace volcal

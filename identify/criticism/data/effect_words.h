@@ -1,0 +1,46 @@
+#pragma once
+/// The words that names of effects are made of, and what they mean: what `volcal diagnose --list` prints,
+/// diagnosis.json holds, and --effect and --separate take.
+///
+/// A word in capitals stands for something of the user's files: SYMBOL (EXX, EC0Y), AXIS (x), PLANE (XY),
+/// TOOL, STATION, SETUP, CHANNEL, RUN. An effect whose words are not here fails its contract test.
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "volcal/identify/criticism/data/variable.h"
+#include "volcal/model/effects/effect.h"
+
+namespace volcal {
+
+/// "kind:target:driver:shape"
+std::string full_name(const EffectName& name);
+
+/// Kinds that are changes of the model and no effects to add: an error given back, more knots.
+struct ModelChange {
+  std::string_view kind;
+  std::string_view summary;
+};
+std::span<const ModelChange> model_change_kinds();
+/// The kind of an error that the model file switches off (left_out.h).
+inline constexpr const char* kLeftOut = "left-out";
+/// The symbols that the specification of such an error names: "EAX", "EC0Y".
+std::vector<std::string> left_out_symbols(const EffectSpec& spec);
+/// Name of more knots for an error function: resolution:EXX:x:finer.
+EffectName resolution_name(ErrorSymbol symbol);
+
+enum class NamePart { Target, Driver, Shape };
+
+std::span<const EffectWord> effect_words(NamePart part);
+/// The word that this part of a name is; nullptr when there is none.
+const EffectWord* find_word(NamePart part, const EffectName& name);
+
+/// How much has to be believed of what a scan saw, 0 = least: one variable before two, but for a station
+/// along its beam, which is a dead path and no parameter of the model where it shows; time before
+/// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
+/// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
+int complexity_rank(const std::vector<Variable>& variables, const std::string& direction);
+
+}  // namespace volcal

@@ -1,0 +1,157 @@
+#include "volcal/identify/criticism/effect_findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/criticism/catalogue/detectable.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kListed = 40;
+
+/// Amplitudes and shape of a finding into its specification, the shape in words.
+void state_values(const Family& family, const Eigen::VectorXd& shape, const Eigen::VectorXd& u,
+                  EffectFinding& out) {
+  const auto& amplitudes = family.effect->amplitudes();
+  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+    out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), out.amplitudes[k].value);
+  }
+  const auto& shapes = family.effect->shapes();
+  out.shape_text.clear();
+  for (std::size_t k = 0; k < shapes.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    const std::string stem(stem_of_key(shapes[k].key));
+    const double si = shapes[k].si_per_unit();
+    out.spec.options.set(stem, shape[at]);
+    out.shape_text += fmt::format("{}{} {:.4g}", k > 0 ? ", " : "", stem, shape[at] / si);
+    if (u[at] > 0.0) out.shape_text += fmt::format(" +- {:.2g}", kCoverageFactor * u[at] / si);
+    out.shape_text += " " + shapes[k].unit();
+  }
+}
+
+EffectFinding estimated(const ModelState& state, const AddedEffect& added, const Eigen::VectorXd& values,
+                        const Eigen::VectorXd& u) {
+  const Family& family = state.family_of(added);
+  EffectFinding out = finding(state.setting(), added.test);
+  if (!family.effect) return out;
+  for (std::size_t k = 0; k < out.amplitudes.size(); ++k) {
+    out.amplitudes[k].value = values[static_cast<Eigen::Index>(k)];
+    out.amplitudes[k].u = u[static_cast<Eigen::Index>(k)];
+  }
+  Eigen::VectorXd shape = added.test.shape, shape_u = Eigen::VectorXd::Zero(shape.size());
+  if (values.size() > family.amplitudes()) {
+    for (Eigen::Index k = 0; k < shape.size(); ++k) {
+      const EffectShape& own = family.effect->shapes()[static_cast<std::size_t>(k)];
+      const double moved = shape[k] + values.tail(shape.size())[k];
+      shape[k] = own.scan_min < own.scan_max ? std::clamp(moved, own.scan_min, own.scan_max) : moved;
+    }
+    shape_u = u.tail(shape.size());
+  }
+  state_values(family, shape, shape_u, out);
+  return out;
+}
+
+void list(const ModelState& state, const AddedEffect& added, const EffectFinding& own, Diagnosis& diagnosis) {
+  if (added.rivals.empty()) {
+    (own.resolution ? diagnosis.model_changes : diagnosis.effects).push_back(own);
+    return;
+  }
+  std::vector<EffectFinding> set{own};
+  for (const FamilyTest& rival : added.rivals) set.push_back(finding(state.setting(), rival));
+  if (diagnosis.one_of.empty()) {
+    diagnosis.one_of = std::move(set);
+  } else {
+    diagnosis.further_one_of.push_back(std::move(set));
+  }
+}
+
+/// By the amplitude that is hardest to find.
+DetectableEffect detectable(const EffectFinding& found, const Effect& effect, const Eigen::VectorXd& shape,
+                            bool visible, const FunctionalPointLevers& levers) {
+  std::size_t hardest = 0;
+  for (std::size_t k = 1; k < found.amplitudes.size(); ++k) {
+    if (!(found.amplitudes[k].mdb <= found.amplitudes[hardest].mdb)) hardest = k;
+  }
+  const AmplitudeFigure& amplitude = found.amplitudes[hardest];
+  return {found.name,     found.label,           found.shape_text,
+          amplitude.unit, amplitude.si_per_unit, found.visible_fraction,
+          visible,        amplitude.mdb,         amplitude.mdb * levers.rms(effect, shape, hardest)};
+}
+
+}  // namespace
+
+EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
+  const Family& family = setting.families[test.family];
+  EffectFinding out;
+  out.name = family.name();
+  out.label = family.label();
+  out.spec = family.spec;
+  out.log10_p = setting.family_wise_log10_p(test);
+  out.lm = test.score.lm;
+  out.dof = test.score.dof;
+  out.gain = test.gain;
+  out.visible_fraction = test.score.visible_fraction;
+  out.resolution = family.resolution.has_value();
+  if (!family.effect) return out;
+  const double found_from = std::sqrt(
+      detectable_noncentrality(setting.log10_level(), std::max(1, test.score.dof), kThresholds.power));
+  for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
+    const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
+    const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
+    out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u,
+                              u > 0.0 ? u * found_from : std::nan(""), amplitude.unit(),
+                              amplitude.si_per_unit()});
+  }
+  state_values(family, test.shape, Eigen::VectorXd::Zero(test.shape.size()), out);
+  return out;
+}
+
+void list_added(const ModelState& reached, Diagnosis& diagnosis) {
+  if (reached.added().empty()) return;
+  const auto projector = reached.projector_of_all_readings();
+  const Eigen::VectorXd solution = projector->solution();
+  const Eigen::MatrixXd covariance = projector->accepted_covariance();
+  Eigen::Index at = 0;
+  for (const AddedEffect& added : reached.added()) {
+    const Eigen::Index count = added.columns.cols();
+    const Eigen::VectorXd values = solution.segment(solution.size() - covariance.rows() + at, count);
+    const Eigen::VectorXd u = covariance.diagonal().segment(at, count).cwiseMax(0.0).cwiseSqrt();
+    at += count;
+    list(reached, added, estimated(reached, added, values, u), diagnosis);
+  }
+}
+
+void list_detectable(const ModelState& given, Diagnosis& diagnosis) {
+  const FunctionalPointLevers levers(given.model());
+  for (const FamilyTest& test : given.tests().families) {
+    const Family& family = given.setting().families[test.family];
+    if (family.resolution) continue;
+    const EffectFinding found = finding(given.setting(), test);
+    const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kThresholds.visible_fraction;
+    if (!visible) diagnosis.not_visible.push_back(found);
+    diagnosis.detectable.push_back(detectable(found, *family.effect, test.shape, visible, levers));
+  }
+}
+
+void list_ranking(const ModelState& reached, Diagnosis& diagnosis) {
+  std::vector<const FamilyTest*> order;
+  for (const FamilyTest& test : reached.tests().families) {
+    if (test.score.dof > 0 && !reached.has(test.family)) order.push_back(&test);
+  }
+  std::ranges::sort(order, std::greater{}, &FamilyTest::gain);
+  for (std::size_t i = 0; i < std::min(kListed, order.size()); ++i)
+    diagnosis.ranking.push_back(finding(reached.setting(), *order[i]));
+}
+
+}  // namespace volcal

@@ -1,0 +1,102 @@
+#pragma once
+/// An adjusted campaign as a linear model about its solution: what every test of model criticism starts from.
+/// Immutable: other smoothing, or further readings in use, give another model, which shares what does not
+/// change.
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/noise/noise_model.h"
+#include "volcal/identify/noise/restricted_likelihood.h"
+#include "volcal/identify/solve/campaign_noise.h"
+#include "volcal/identify/solve/result.h"
+#include "volcal/identify/solve/smoothing.h"
+#include "volcal/model/observation/measurement_model.h"
+
+namespace volcal {
+
+/// Observations stand in setup, row, channel order. SI.
+class LinearModel {
+ public:
+  /// `result` must come from fit() of this campaign; the campaign must outlive the object.
+  LinearModel(const Campaign& campaign, const FitResult& result);
+
+  using Observation = ObservationPlace;
+
+  const Campaign& campaign() const { return fixed_->campaign; }
+  const MeasurementModel& model() const { return fixed_->model; }
+  std::size_t size() const { return observations().size(); }
+  const std::vector<Observation>& observations() const { return fixed_->observations; }
+  const std::vector<SetupView>& views() const { return fixed_->views; }
+  const std::vector<std::string>& noise_groups() const { return fixed_->noise_groups; }
+  /// Derivatives to the parameters in datum coordinates, residuals (reading minus prediction), priors and
+  /// what the noise model needs. Observations that are left out have an infinite sigma.
+  const NoiseProblem& problem() const { return *problem_; }
+
+  /// Observations that are left out: at first those that the fit removed.
+  const std::vector<std::size_t>& removed() const { return removed_; }
+  /// With some of removed() in use again: a fit that lacks an effect takes what the effect moves most for
+  /// outliers.
+  LinearModel with_reinstated(const std::vector<std::size_t>& observations) const;
+
+  /// Smoothing of functions that have as many knots as the readings can tell apart; part of the priors of
+  /// problem().
+  const std::vector<SmoothingTerm>& smoothing() const { return smoothing_; }
+  LinearModel with_smoothing(std::vector<SmoothingTerm> smoothing) const;
+  /// With smoothing by evidence (smoothing.h) from [J G y]^T Sigma^-1 [J G y], G columns of effects without
+  /// prior: a fit that lacks an effect takes part of it for detail of the functions, or for noise that hides
+  /// detail.
+  LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const;
+  /// Of all observations, those that are left out as well.
+  const std::vector<double>& stated_sigma() const { return fixed_->stated_sigma; }
+  /// Of the fit's outlier test.
+  double outlier_critical_value() const { return fixed_->outlier_critical_value; }
+
+  /// Boundaries 0 ... N of the setups among the observations.
+  const std::vector<Eigen::Index>& parts() const { return fixed_->parts; }
+  /// Columns of the readings that an effect's amplitudes would add, rows of one setup: observations x
+  /// amplitudes.
+  void columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
+               Eigen::Ref<Eigen::MatrixXd> out) const;
+  double sensitivity(Eigen::Index observation, int disturbance) const {
+    return fixed_->sensitivity(observation, disturbance);
+  }
+  /// Derivative of every observation to the displacement of the functional point along a direction of the
+  /// workpiece (0..2), or to the reading itself (3).
+  Eigen::VectorXd direction(int which) const;
+  /// The same to an error motion.
+  Eigen::VectorXd motion(ErrorSymbol symbol) const;
+
+ private:
+  struct Fixed {
+    Fixed(const Campaign& of, const FitResult& result);
+    void find_sensitivity(const Eigen::VectorXd& parameters);
+
+    const Campaign& campaign;
+    MeasurementModel model;
+    std::vector<Observation> observations;
+    std::vector<Eigen::Index> parts;
+    std::vector<std::string> noise_groups;
+    std::vector<SetupView> views;
+    Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity;
+    GaussianPrior base_prior;  ///< of the reduced parameters, without smoothing
+    Eigen::VectorXd reduced;   ///< where the model is linearised
+    std::vector<double> stated_sigma;
+    double outlier_critical_value;
+  };
+
+  /// `problem` becomes that of this model.
+  void set_smoothing(std::vector<SmoothingTerm> smoothing, const std::shared_ptr<NoiseProblem>& problem);
+
+  std::shared_ptr<const Fixed> fixed_;
+  std::shared_ptr<const NoiseProblem> problem_;
+  std::vector<SmoothingTerm> smoothing_;
+  std::vector<std::size_t> removed_;
+};
+
+/// The same residuals with some observations left out (their sigma made infinite).
+NoiseData without(const NoiseData& data, const std::vector<bool>& left_out);
+
+}  // namespace volcal

@@ -1,0 +1,108 @@
+#include "volcal/identify/criticism/scans/amplitude_constancy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+namespace volcal {
+namespace {
+
+constexpr int kWaves = 8;
+constexpr double kTests = 4.0;  // groups of variables, smooth and rough
+
+bool is_since_turning(const ScanVariable& variable) {
+  return variable.variable.kind == Variable::Kind::TravelSinceTurning;
+}
+
+std::set<Variable> own_variables(const Family& family) {
+  std::set<Variable> own;
+  for (const Variable& variable : scan_variables_of(family.name())) {
+    own.insert(variable);
+    if (variable.kind == Variable::Kind::Direction)
+      own.insert({Variable::Kind::TravelSinceTurning, variable.axis});
+  }
+  for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
+    if (amplitude.target.kind == TargetKind::Motion)
+      own.insert({Variable::Kind::Position, amplitude.target.symbol.axis});
+  }
+  return own;
+}
+
+/// The machine does not know from which station it is read.
+bool may_vary_with(const Family& family, const ScanVariable& variable) {
+  if (variable.variable.kind != Variable::Kind::Station) return true;
+  return std::ranges::any_of(family.effect->amplitudes(), [](const EffectAmplitude& amplitude) {
+    return amplitude.target.kind == TargetKind::Station || amplitude.target.kind == TargetKind::Reading;
+  });
+}
+
+/// Of one axis along the readings of a setup, m; 0 until it first turns. Where it went back and comes from
+/// the same side again it has turned as well.
+std::vector<double> since_turning(const Setup& setup, std::size_t axis) {
+  const Readings& readings = setup.readings;
+  std::vector<std::size_t> order(readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!readings.time.empty())
+    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return readings.time[row]; });
+  std::vector<double> travelled(readings.size(), 0.0);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const std::size_t now = order[i], before = order[i - 1];
+    const double step =
+        readings.direction[axis][now] * (readings.position[axis][now] - readings.position[axis][before]);
+    const bool turned = step < 0.0 || readings.direction[axis][now] != readings.direction[axis][before];
+    travelled[now] = turned ? std::max(step, 0.0) : travelled[before] + step;
+  }
+  return travelled;
+}
+
+/// log10 p of a smooth or of a rough variation, whichever is less probable.
+double log10_p_of(const ScanVariable& variable, const Eigen::VectorXd& moved, const Projector& projector) {
+  const Eigen::MatrixXd powers = moved.asDiagonal() * scan_powers(variable);
+  const double smooth = score_test(projector.project(powers), 0, powers.cols()).log10_p;
+  if (variable.two_valued) return smooth;
+  const Eigen::MatrixXd waves = moved.asDiagonal() * scan_waves(variable, kWaves);
+  return std::min(smooth, kernel_test(projector.project(waves), 0, waves.cols()).log10_p);
+}
+
+}  // namespace
+
+std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
+  const Campaign& campaign = model.campaign();
+  std::vector<ScanVariable> variables;
+  for (const Axis& axis : campaign.machine.axes) {
+    const std::size_t k = index_of(axis.name);
+    std::vector<std::vector<double>> travelled;
+    for (const Setup& setup : campaign.setups) {
+      const bool known = !setup.readings.direction[k].empty();
+      travelled.push_back(known ? since_turning(setup, k) : std::vector<double>(setup.readings.size(), 0.0));
+    }
+    Eigen::VectorXd value(static_cast<Eigen::Index>(model.size()));
+    for (std::size_t i = 0; i < model.size(); ++i) {
+      const auto& place = model.observations()[i];
+      value[static_cast<Eigen::Index>(i)] = travelled[place.setup][place.row];
+    }
+    add_scan_variable(variables, {Variable::Kind::TravelSinceTurning, axis.name}, std::move(value));
+  }
+  return variables;
+}
+
+ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
+                             const std::vector<ScanVariable>& variables, const Projector& projector) {
+  const std::set<Variable> own = own_variables(family);
+  const auto count = static_cast<double>(std::ranges::count_if(variables, [&](const ScanVariable& variable) {
+    return !is_since_turning(variable) && may_vary_with(family, variable);
+  }));
+  const double own_count = std::max(1.0, static_cast<double>(own.size()));
+  ConstancyTest least;
+  for (const ScanVariable& variable : variables) {
+    const bool is_own = own.contains(variable.variable);
+    if (!may_vary_with(family, variable) || (is_since_turning(variable) && !is_own)) continue;
+    const double tried = kTests * (is_own ? own_count : count);
+    const double log10_p = std::min(0.0, log10_p_of(variable, moved, projector) + std::log10(tried));
+    if (log10_p < least.log10_p) least = {variable.name(), log10_p};
+  }
+  return least;
+}
+
+}  // namespace volcal

@@ -1,0 +1,81 @@
+#pragma once
+/// What the noise model may have absorbed, tested jointly with it. Correlated drift can follow whatever
+/// changes along the path of the readings; noise that was estimated without an effect may hold it, and leave
+/// nothing to be tested.
+///
+/// In: a tested model state at which nothing exceeds the noise. Out: the effect, or the scans, that do when
+/// the noise is estimated jointly with them. SI; log10 p.
+///
+/// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
+/// columns of the model are the same in both and G a is data, so that they can be compared
+/// (restricted_likelihood.h); l(y) is the largest found, from the noise of the joint estimate as from its
+/// own, since it has several maxima. It is judged by F with the amplitudes and the degrees of freedom that
+/// the noise without the effect leaves (noise_freedom.h; Kenward and Roger 1997, Biometrics 53, 983): a drift
+/// of seconds is known from a ball-bar's hundred correlation times, one of ten minutes from the few that a
+/// run spans.
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "volcal/identify/criticism/search/model_state.h"
+
+namespace volcal {
+
+/// Noise at which effects may exceed: at a given noise l(y - G a) is at most l(y) + LM / 2, so that LM -
+/// loss is a lower bound of the likelihood ratio.
+struct NoiseAlternative {
+  std::vector<NoiseParameters> noise;
+  double loss = 0.0;  ///< 2 (l - l here)
+};
+
+/// One per instrument that drifts, the others as they are: with so little of its drift left that it holds
+/// hardly any effect.
+std::vector<NoiseAlternative> noise_with_reduced_drift(const NoiseProblem& problem,
+                                                       const NoiseEstimate& estimate, int threads);
+
+struct LikelihoodRatio {
+  double value = 0.0;
+  double freedom = std::numeric_limits<double>::infinity();  ///< of the noise that it stands on
+};
+
+/// `moved`: what a hypothesis moves the readings by, from whatever noise it was found with: another lower
+/// bound. `estimate`: for `problem`. A ratio below `least_ratio` is an upper bound, without its freedom.
+LikelihoodRatio joint_likelihood_ratio(const LinearModel& model, const Eigen::VectorXd& moved,
+                                       NoiseProblem problem, const NoiseEstimate& estimate,
+                                       const NoiseOptions& options, double least_ratio);
+
+/// Sets LM to the likelihood ratio and log10 p by it; the multiplicity of scanned shapes counts. The
+/// amplitude stays that of `test`.
+void test_jointly(const LinearModel& model, const Family& family, NoiseProblem problem,
+                  const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
+                  FamilyTest& test);
+
+class JointNoiseTest {
+ public:
+  /// `state` is tested, and outlives the object.
+  explicit JointNoiseTest(const ModelState& state) : state_(state), problem_(state.problem()) {}
+
+  /// The least probable effect, of those that may be added, where it exceeds the noise.
+  std::optional<FamilyTest> effect(const std::function<bool(const FamilyTest&)>& may_be_added) const;
+  /// Tests of the state in which scans that exceed jointly with the noise do so.
+  ModelTests scans() const;
+
+ private:
+  /// What a scan has seen at another noise.
+  struct AbsorbedScan {
+    std::size_t scan;  ///< of the state's
+    GenericTest test;
+    Eigen::VectorXd moved;
+  };
+  std::vector<FamilyTest> absorbed_effects(const std::function<bool(const FamilyTest&)>& may_be_added) const;
+  std::vector<FamilyTest> doubtful_effects(const std::function<bool(const FamilyTest&)>& may_be_added) const;
+  std::vector<AbsorbedScan> absorbed_scans() const;
+  std::vector<NoiseAlternative> alternatives() const;
+
+  const ModelState& state_;
+  NoiseProblem problem_;
+};
+
+}  // namespace volcal

@@ -1,0 +1,161 @@
+#include "volcal/identify/criticism/search/ladder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/search/heldout_errors.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/result.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::int32_t kStretch = 10;
+constexpr double kSmallestEigenvalue = 1e-9;  // of a precision with unit diagonal
+
+/// Of the prior: as many further observations.
+double prior_rank(const Eigen::MatrixXd& precision) {
+  if (precision.size() == 0) return 0.0;
+  const Eigen::VectorXd scale =
+      precision.diagonal().unaryExpr([](double value) { return value > 0.0 ? 1.0 / std::sqrt(value) : 0.0; });
+  const Eigen::VectorXd values = eigenvalues(scale.asDiagonal() * precision * scale.asDiagonal());
+  return static_cast<double>((values.array() > kSmallestEigenvalue).count());
+}
+
+/// Derivatives of observations to all parameters, columns of effects last.
+Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const NoiseProblem& problem,
+                        const Eigen::MatrixXd& effects) {
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(observations.size()),
+                       problem.jacobian.cols() + effects.cols());
+  rows.leftCols(problem.jacobian.cols()) = problem.jacobian(observations, Eigen::all);
+  rows.rightCols(effects.cols()) = effects(observations, Eigen::all);
+  return rows;
+}
+
+HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
+                                  std::span<const NoiseParameters> noise, const Projector& projector,
+                                  const Eigen::MatrixXd& effects, const Eigen::VectorXd& solution) {
+  const RowsOf rows = [&](const std::vector<Eigen::Index>& observations) {
+    return rows_of(observations, problem, effects);
+  };
+  const Eigen::Index own = problem.jacobian.cols();
+  const ColumnOf column = [&](Eigen::Index parameter) -> Eigen::VectorXd {
+    if (parameter < own) return problem.jacobian.col(parameter);
+    return effects.col(parameter - own);
+  };
+  const std::vector<HeldoutBlock> blocks =
+      heldout_errors(problem.data, heldout, noise, projector, rows, column, projector.threads());
+  Eigen::VectorXd residual = problem.residual;
+  for (const HeldoutBlock& block : blocks) residual(block.observation) -= rows(block.observation) * solution;
+  return heldout_figures(blocks, residual);
+}
+
+/// Figures of the model that `projector` holds, with columns of effects; `loglik` is the held-out
+/// log-likelihood of the step before, and becomes this one's.
+LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
+                       std::span<const NoiseParameters> noise, const Projector& projector,
+                       const Eigen::MatrixXd& effects, std::optional<double>& loglik) {
+  const NoiseProblem& problem = model.problem();
+  const std::vector<double> variance = noise_variance(problem.data, noise);
+  const Eigen::VectorXd solution = projector.solution();
+  std::vector<Eigen::Index> fitted, held;
+  for (std::size_t i = 0; i < model.size(); ++i) {
+    if (std::isfinite(variance[i])) (heldout[i] ? held : fitted).push_back(static_cast<Eigen::Index>(i));
+  }
+  LadderStep step;
+  const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, effects);
+  const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
+  step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
+  const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
+                     static_cast<double>(projector.parameters());
+  step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
+  if (held.empty()) {
+    step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
+    return step;
+  }
+  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, effects, solution);
+  const double excess = (figures.squares - figures.expected) / figures.count;
+  const double spread = kCoverageFactor * figures.spread / figures.count;
+  step.rms_heldout = std::sqrt(figures.squares / figures.count);
+  step.noise_floor = std::sqrt(figures.expected / figures.count);
+  step.systematic = std::sqrt(std::max(0.0, excess));
+  step.systematic_low = std::sqrt(std::max(0.0, excess - spread));
+  step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
+  step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
+  loglik = figures.log_likelihood;
+  return step;
+}
+
+}  // namespace
+
+std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise) {
+  std::vector<double> variance(data.sigma.size(), 0.0);
+  for (const NoiseSequence& sequence : data.sequences) {
+    const NoiseParameters& part = noise[sequence.group];
+    for (const std::size_t i : sequence.observation) {
+      const double white = part.white * data.sigma[i];
+      const double long_part = data.length.empty() ? 0.0 : part.per_metre * data.length[i];
+      variance[i] = white * white + part.wander * part.wander + part.line * part.line + long_part * long_part;
+    }
+  }
+  return variance;
+}
+
+std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share) {
+  std::vector<std::vector<bool>> heldout;
+  const int every = share > 0.0 ? std::max(2, static_cast<int>(std::lround(1.0 / share))) : 0;
+  for (const Setup& setup : campaign.setups) {
+    const Readings& readings = setup.readings;
+    std::map<std::int32_t, int> order;
+    for (const std::int32_t line : readings.line) order.try_emplace(line, static_cast<int>(order.size()));
+    const bool by_line = static_cast<int>(order.size()) >= every;
+    const int place = static_cast<int>(heldout.size());
+    std::vector<bool>& rows = heldout.emplace_back(readings.size(), false);
+    for (std::size_t row = 0; every > 0 && row < rows.size(); ++row) {
+      const int group = by_line ? order.at(readings.line[row]) : static_cast<int>(row) / kStretch;
+      rows[row] = (group + place) % every == every - 1;
+    }
+  }
+  return heldout;
+}
+
+std::vector<bool> heldout_lines(const LinearModel& model, double share) {
+  const auto rows = heldout_rows(model.campaign(), share);
+  std::vector<bool> heldout;
+  for (const auto& observation : model.observations())
+    heldout.push_back(rows[observation.setup][observation.row]);
+  return heldout;
+}
+
+bool heldout_error_not_reduced(std::span<const LadderStep> ladder) {
+  const LadderStep& first = ladder.front();
+  const LadderStep& last = ladder.back();
+  return last.systematic_low > 0.0 && last.systematic > kThresholds.heldout_error_left * first.systematic;
+}
+
+std::vector<LadderStep> ladder_of(const ModelState& state) {
+  const SearchSetting& setting = state.setting();
+  std::vector<LadderStep> ladder;
+  std::optional<double> loglik;
+  Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
+  for (std::size_t i = 0; i <= state.added().size(); ++i) {
+    const LinearModel model = state.model().with_smoothing(state.smoothing_of_steps()[i]);
+    Projector projector(model.problem(), without(model.problem().data, setting.heldout), state.noise(),
+                        setting.threads, model.parts());
+    for (std::size_t k = 0; k < i; ++k) projector.accept(state.added()[k].columns);
+    if (i > 0) append_columns(state.added()[i - 1].columns, effects);
+    LadderStep step = ladder_step(model, setting.heldout, state.noise(), projector, effects, loglik);
+    step.model = std::to_string(i);
+    if (i > 0) step.added = state.family_of(state.added()[i - 1]).label();
+    ladder.push_back(std::move(step));
+  }
+  return ladder;
+}
+
+}  // namespace volcal

@@ -1,0 +1,29 @@
+#pragma once
+/// Judging a step on readings that did not choose it.
+
+#include <span>
+#include <vector>
+
+#include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/search/model_state.h"
+
+namespace volcal {
+
+/// Every tenth line (or the given share) of every setup; where a setup has fewer lines than that, stretches
+/// of ten readings instead. Spread evenly, the same for every run.
+std::vector<bool> heldout_lines(const LinearModel& model, double share);
+/// The same choice by setup and row.
+std::vector<std::vector<bool>> heldout_rows(const Campaign& campaign, double share);
+
+/// Variance of every observation on its own, all parts of the noise; SI squared.
+std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise);
+
+/// The names explain the readings that they were chosen on, and not those that were held out: these are still
+/// off by more than noise, and by at least four fifths of what they were before.
+bool heldout_error_not_reduced(std::span<const LadderStep> ladder);
+
+/// The given model, then with every added effect, all against the noise of the model reached: noise estimated
+/// without an effect holds part of it, and would hide its fall.
+std::vector<LadderStep> ladder_of(const ModelState& state);
+
+}  // namespace volcal

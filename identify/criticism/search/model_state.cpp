@@ -1,0 +1,189 @@
+#include "volcal/identify/criticism/search/model_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/solve/correlated_adjustment.h"
+
+namespace volcal {
+
+void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all) {
+  const Eigen::Index before = all.cols();
+  all.conservativeResize(more.rows(), before + more.cols());
+  all.rightCols(more.cols()) = more;
+}
+
+Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const FamilyTest& effect,
+                       Projector& projector) {
+  Eigen::MatrixXd columns = family_columns(model, family, effect.shape);
+  projector.accept(columns);
+  const auto derivative = shape_derivative(model, family, effect.shape, effect.score.amplitude);
+  if (!derivative) return columns;
+  const ProjectedColumns projected = projector.project(*derivative);
+  if (projected.gram(0, 1)(0, 0) > std::pow(kThresholds.visible_derivative * projected.norm[0], 2)) {
+    projector.accept(*derivative);
+    append_columns(*derivative, columns);
+  }
+  return columns;
+}
+
+ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting)
+    : setting_(std::move(setting)), model_(std::move(model)) {
+  find_noise();
+  smoothing_of_steps_.push_back(model_.smoothing());
+}
+
+ModelState ModelState::with(const FamilyTest& effect) const {
+  ModelState next = *this;
+  next.tests_.reset();
+  Projector projector = *projector_;
+  next.added_.push_back({effect, accept(model_, setting_->families[effect.family], effect, projector), {}});
+  next.find_noise();
+  if (next.refine_shape_of_last()) next.find_noise();
+  while (next.reinstate_outliers()) next.find_noise();
+  next.smoothing_of_steps_.push_back(next.model_.smoothing());
+  return next;
+}
+
+ModelState ModelState::tested() const { return is_tested() ? *this : with_tests(tests_of(*this)); }
+
+ModelState ModelState::with_tests(ModelTests tests) const {
+  ModelState other = *this;
+  other.tests_ = std::make_shared<ModelTests>(std::move(tests));
+  return other;
+}
+
+ModelState ModelState::with_comparisons(std::vector<AddedEffect> added) const {
+  ModelState other = *this;
+  other.added_ = std::move(added);
+  return other;
+}
+
+const ModelTests& ModelState::tests() const {
+  if (!tests_) throw std::logic_error("this state of the model was not tested");
+  return *tests_;
+}
+
+/// Noise of all readings, then smoothing under it by those that are not held out, as the projector that
+/// chooses; again where the smoothing changes, since either takes the other's part. Starts from what is
+/// known.
+void ModelState::find_noise() {
+  NoiseOptions options = noise_options();
+  options.uncertainty = false;
+  const int rounds = model_.smoothing().empty() ? 1 : kThresholds.noise_rounds;
+  for (int round = 0; round < rounds; ++round) {
+    noise_estimate_ = estimate_noise(problem(), options, noise_.empty() ? nullptr : &noise_estimate_);
+    noise_ = noise_estimate_.parameters();
+    projector_ = projector_without({});
+    if (model_.smoothing().empty()) return;
+    const std::vector<SmoothingTerm> before = model_.smoothing();
+    model_ = model_.smoothed(projector_->gram(), projector_->observations());
+    if (alike(before, model_.smoothing())) break;
+  }
+  projector_ = projector_without({});
+}
+
+NoiseOptions ModelState::noise_options() const {
+  NoiseOptions options;
+  options.threads = setting_->threads;
+  options.wander_threshold = kThresholds.drift_evidence;
+  return options;
+}
+
+NoiseEstimate ModelState::noise_with_uncertainty() const {
+  return estimate_noise(problem(), noise_options(), &noise_estimate_);
+}
+
+std::unique_ptr<Projector> ModelState::projector_of_all_readings() const {
+  return make_projector(model_.problem().data, noise_);
+}
+
+std::unique_ptr<Projector> ModelState::projector_without(const std::set<std::size_t>& left_out) const {
+  return make_projector(without(model_.problem().data, setting_->heldout), noise_, left_out);
+}
+
+std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParameters>& noise) const {
+  return make_projector(without(model_.problem().data, setting_->heldout), noise);
+}
+
+std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,
+                                                      const std::vector<NoiseParameters>& noise,
+                                                      const std::set<std::size_t>& left_out) const {
+  auto projector =
+      std::make_unique<Projector>(model_.problem(), data, noise, setting_->threads, model_.parts());
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    if (!left_out.contains(i)) append_columns(added_[i].columns, columns);
+  }
+  if (columns.cols() > 0) projector->accept(columns);
+  return projector;
+}
+
+NoiseProblem ModelState::problem() const {
+  NoiseProblem problem = model_.problem();
+  for (const AddedEffect& effect : added_) append_columns(effect.columns, problem.jacobian);
+  const Eigen::Index before = problem.prior_mean.size(), count = problem.jacobian.cols();
+  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
+  precision.topLeftCorner(before, before) = problem.prior_precision;
+  problem.prior_precision = std::move(precision);
+  problem.prior_mean.conservativeResize(count);
+  problem.prior_mean.tail(count - before).setZero();
+  return problem;
+}
+
+bool ModelState::has(std::size_t family) const {
+  return std::ranges::any_of(added_, [&](const AddedEffect& each) { return each.test.family == family; });
+}
+
+Eigen::Index ModelState::first_column(std::size_t added) const {
+  Eigen::Index first = projector_->parameters() - projector_->accepted();
+  for (std::size_t i = 0; i < added; ++i) first += added_[i].columns.cols();
+  return first;
+}
+
+/// At the noise that the effect leaves; its shape was found at the noise that held it. True: it has changed.
+bool ModelState::refine_shape_of_last() {
+  AddedEffect& last = added_.back();
+  const Family& family = family_of(last);
+  if (family.scan.size() < 2 || last.columns.cols() == family.amplitudes()) return false;
+  const auto projector = projector_without({added_.size() - 1});
+  FamilyTest again = last.test;
+  const ScoreTest score =
+      score_test(projector->project(family_columns(model_, family, again.shape)), 0, family.amplitudes());
+  update_test(again, family, again.shape, score, *projector);
+  refine_shape(model_, family, *projector, again);
+  if (again.shape == last.test.shape) return false;
+  last.columns = accept(model_, family, again, *projector);
+  last.test = std::move(again);
+  return true;
+}
+
+/// Readings that are left out and no outliers of this model. False: none.
+bool ModelState::reinstate_outliers() {
+  const NoiseProblem& problem = model_.problem();
+  const Eigen::VectorXd solution = projector_->solution();
+  const std::vector<double> sigma = total_sigma(problem.data, model_.stated_sigma(), noise_);
+  Eigen::MatrixXd row(1, solution.size());
+  std::vector<std::size_t> explained;
+  for (const std::size_t observation : model_.removed()) {
+    const auto at = static_cast<Eigen::Index>(observation);
+    Eigen::Index column = problem.jacobian.cols();
+    row.leftCols(column) = problem.jacobian.row(at);
+    for (const AddedEffect& effect : added_) {
+      row.middleCols(column, effect.columns.cols()) = effect.columns.row(at);
+      column += effect.columns.cols();
+    }
+    const double miss = problem.residual[at] - row.row(0).dot(solution);
+    const double u = std::hypot(sigma[observation], std::sqrt(projector_->prediction_variance(row)[0]));
+    if (std::abs(miss) < model_.outlier_critical_value() * u) explained.push_back(observation);
+  }
+  if (explained.empty()) return false;
+  model_ = model_.with_reinstated(explained);
+  return true;
+}
+
+}  // namespace volcal

@@ -1,0 +1,92 @@
+#pragma once
+/// A fitted model with the effects that were added to it, at the noise and smoothing that its residuals then
+/// have: what every test of a search is made against.
+///
+/// In: a linear model about a fit, effects with the shapes and amplitudes of their tests. Out: noise model,
+/// projector off the model, tests. SI. Noise by restricted likelihood from all readings
+/// (restricted_likelihood.h), smoothing of the error functions by evidence (smoothing.h) and tests from those
+/// that are not held out. Valid near the fit: effects enter linearly, with the derivative of their shape
+/// where the readings see it. Immutable and cheap to copy: a further effect gives another state.
+
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "volcal/identify/criticism/search/model_tests.h"
+#include "volcal/identify/noise/noise_estimate.h"
+
+namespace volcal {
+
+/// An effect that is in the model.
+struct AddedEffect {
+  FamilyTest test;                 ///< against a model with the other effects
+  Eigen::MatrixXd columns;         ///< of its amplitudes, then of its shape where that is smooth
+  std::vector<FamilyTest> rivals;  ///< that the readings do not tell from it, best first
+};
+
+class ModelState {
+ public:
+  /// Without any effect.
+  ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting);
+
+  /// With a further effect, noise and smoothing found anew, and the readings back in use that agree with it:
+  /// a fit without the effect takes what it moves most for outliers.
+  ModelState with(const FamilyTest& effect) const;
+  /// With tests().
+  ModelState tested() const;
+  ModelState with_tests(ModelTests tests) const;
+  /// The same model; only tests and rivals of its effects differ.
+  ModelState with_comparisons(std::vector<AddedEffect> added) const;
+
+  const LinearModel& model() const { return model_; }
+  const SearchSetting& setting() const { return *setting_; }
+  const std::vector<AddedEffect>& added() const { return added_; }
+  bool has(std::size_t family) const;
+  const Family& family_of(const AddedEffect& added) const { return setting_->families[added.test.family]; }
+  const NoiseEstimate& noise_estimate() const { return noise_estimate_; }
+  const std::vector<NoiseParameters>& noise() const { return noise_; }
+  /// With intervals.
+  NoiseEstimate noise_with_uncertainty() const;
+  NoiseOptions noise_options() const;
+  const Projector& projector() const { return *projector_; }
+  bool is_tested() const { return tests_ != nullptr; }
+  /// Throws std::logic_error of a state that is not tested().
+  const ModelTests& tests() const;
+  /// Smoothing of the given model, then with every effect as it was added.
+  const std::vector<std::vector<SmoothingTerm>>& smoothing_of_steps() const { return smoothing_of_steps_; }
+
+  /// The linear model with the added effects as further columns.
+  NoiseProblem problem() const;
+  /// Without some of the added effects, by their places.
+  std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
+  std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
+  /// From all readings, those that are held out as well.
+  std::unique_ptr<Projector> projector_of_all_readings() const;
+  /// Of an added effect's amplitudes among the projector's parameters.
+  Eigen::Index first_column(std::size_t added) const;
+
+ private:
+  std::unique_ptr<Projector> make_projector(const NoiseData& data, const std::vector<NoiseParameters>& noise,
+                                            const std::set<std::size_t>& left_out = {}) const;
+  void find_noise();
+  bool refine_shape_of_last();
+  bool reinstate_outliers();
+
+  std::shared_ptr<const SearchSetting> setting_;
+  LinearModel model_;
+  std::vector<AddedEffect> added_;
+  NoiseEstimate noise_estimate_;
+  std::vector<NoiseParameters> noise_;
+  std::shared_ptr<const Projector> projector_;
+  std::shared_ptr<const ModelTests> tests_;
+  std::vector<std::vector<SmoothingTerm>> smoothing_of_steps_;
+};
+
+void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all);
+
+/// Takes an effect into the model of `projector`: columns of its amplitudes, and of its shape where the
+/// readings see it move.
+Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const FamilyTest& effect,
+                       Projector& projector);
+
+}  // namespace volcal

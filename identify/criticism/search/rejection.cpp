@@ -1,0 +1,136 @@
+#include "volcal/identify/criticism/search/rejection.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+
+namespace volcal {
+namespace {
+
+/// "time constant"
+std::string shape_word(const EffectShape& shape) {
+  const std::size_t colon = shape.label.rfind(": ");
+  return colon == std::string::npos ? shape.label : shape.label.substr(colon + 2);
+}
+
+/// `first`: of its columns among the projector's parameters.
+ConstancyTest constancy_of(const ModelState& state, const Family& family, const Eigen::MatrixXd& columns,
+                           Eigen::Index first, const Projector& projector) {
+  const Eigen::Index count = family.amplitudes();
+  const Eigen::VectorXd moved = columns.leftCols(count) * projector.solution().segment(first, count);
+  return least_constant(family, moved, state.setting().constancy_variables, projector);
+}
+
+}  // namespace
+
+/// Its own driver moves what an effect leaves: it has another shape, or is another effect. A wave is one
+/// beside it.
+bool Rejection::still_moves(const std::vector<Variable>& drivers) const {
+  return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
+    if (scan->period > 0.0) return false;
+    return std::ranges::any_of(scan->variables, [&](const Variable& variable) {
+      return std::ranges::find(drivers, variable) != drivers.end();
+    });
+  });
+}
+
+Reasons Rejection::rejection_reasons() const {
+  Reasons reasons;
+  std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::size_t>> by_driver;
+  for (std::size_t i = 0; i < state_.added().size(); ++i) {
+    const std::size_t family = state_.added()[i].test.family;
+    const EffectName name = state_.setting().families[family].name();
+    by_driver[{name.kind, name.target, name.driver}].push_back(family);
+    const std::string own = rejection_reason(i);
+    if (!own.empty()) reasons[family] = own;
+  }
+  for (const auto& [key, members] : by_driver) {
+    if (members.size() < 2) continue;
+    for (const std::size_t family : members) reasons[family] = "several powers of its driver are needed";
+  }
+  return reasons;
+}
+
+bool Rejection::leaves_more(const AddedEffect& effect) const {
+  const double own = state_.setting().family_wise_log10_p(effect.test);
+  return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
+    return state_.tests().family_wise_log10_p(*scan) < own;
+  });
+}
+
+std::string Rejection::rejection_reason(std::size_t added) const {
+  const AddedEffect& effect = state_.added()[added];
+  const Family& family = state_.family_of(effect);
+  if (leaves_more(effect)) return "what it leaves stands out more than it does";
+  const auto drivers = scan_variables_of(family.name());
+  if (still_moves(drivers))
+    return fmt::format("{} still moves what it leaves", fmt::join(names_of(drivers), " or "));
+  if (!family.effect) return {};
+  const ConstancyTest varies = constancy(added);
+  if (varies.log10_p <= std::log10(kThresholds.constancy_risk))
+    return fmt::format("its amplitude varies with {} (log10 p {:.1f})", varies.variable, varies.log10_p);
+  if (!lies_beyond_its_scan(added)) return {};
+  return "its " + shape_word(family.effect->shapes().front()) + " lies beyond what was looked for";
+}
+
+/// The best shape stands at an end of the scan, and the readings ask for one beyond.
+bool Rejection::lies_beyond_its_scan(std::size_t added) const {
+  const AddedEffect& effect = state_.added()[added];
+  const Family& family = state_.family_of(effect);
+  if (effect.columns.cols() == family.amplitudes())
+    return false;  // no shape, or none that moves the readings
+  const std::optional<ScanEnd> end = end_of_scan(family, effect.test.shape[0]);
+  if (!end) return false;
+  const Projector& projector = state_.projector();
+  const Eigen::Index column = state_.first_column(added) + family.amplitudes();
+  Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, projector.parameters());
+  row(0, column) = 1.0;
+  const double change = projector.solution()[column];
+  const double outwards = *end == ScanEnd::Lowest ? -change : change;
+  return outwards > kThresholds.beyond_scan * std::sqrt(projector.prediction_variance(row)[0]);
+}
+
+ConstancyTest Rejection::constancy(std::size_t added) const {
+  const AddedEffect& effect = state_.added()[added];
+  return constancy_of(state_, state_.family_of(effect), effect.columns, state_.first_column(added),
+                      state_.projector());
+}
+
+/// In the place of an added effect.
+double Rejection::log10_constancy_of_rival(std::size_t added, const FamilyTest& rival) const {
+  const Family& family = state_.setting().families[rival.family];
+  if (!family.effect) return 0.0;
+  const auto projector = state_.projector_without({added});
+  const Eigen::Index first = projector->parameters();
+  const Eigen::MatrixXd columns = accept(state_.model(), family, rival, *projector);
+  return constancy_of(state_, family, columns, first, *projector).log10_p;
+}
+
+std::vector<AddedEffect> Rejection::drop_inconsistent_rivals() const {
+  std::vector<AddedEffect> all = state_.added();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].rivals.empty() || !state_.family_of(all[i]).effect) continue;
+    if (constancy(i).log10_p < std::log10(kThresholds.plainly_constant)) continue;
+    std::erase_if(all[i].rivals, [&](const FamilyTest& rival) {
+      return log10_constancy_of_rival(i, rival) < std::log10(kThresholds.rival_constancy_risk);
+    });
+  }
+  return all;
+}
+
+const FamilyTest* Rejection::standing_rival(std::size_t added, const Reasons& rejected) const {
+  for (const FamilyTest& rival : state_.added()[added].rivals) {
+    if (!rejected.contains(rival.family) &&
+        log10_constancy_of_rival(added, rival) > std::log10(kThresholds.plainly_constant))
+      return &rival;
+  }
+  return nullptr;
+}
+
+}  // namespace volcal

@@ -1,0 +1,320 @@
+#include "volcal/identify/criticism/search/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <utility>
+
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/search/joint_noise.h"
+#include "volcal/identify/stats/chi_squared.h"
+
+namespace volcal {
+namespace {
+
+/// More resolution follows nearly anything; for the price of its columns it is no rival.
+bool near(const FamilyTest& own, const FamilyTest& other, bool of_resolution) {
+  return own.gain - other.gain < kThresholds.indistinguishable_gain ||
+         (!of_resolution && own.score.lm - other.score.lm < kThresholds.indistinguishable_lm);
+}
+
+std::vector<FamilyTest> added_tests(const std::vector<AddedEffect>& added) {
+  std::vector<FamilyTest> tests;
+  std::ranges::transform(added, std::back_inserter(tests), &AddedEffect::test);
+  return tests;
+}
+
+/// What names explain.
+struct Evidence {
+  double gain = 0.0;
+  double log10_p = 0.0;  ///< family-wise
+};
+
+/// An unlisted effect of few terms has a larger gain among the polynomials; bumps and waves make a kernel
+/// less probable than any name.
+bool scan_does_better(const GenericTest& scan, double log10_p, const Evidence& names, double gain_margin,
+                      double probability_margin) {
+  return (!scan.kernel && scan.gain > names.gain + gain_margin) ||
+         log10_p < (1.0 + probability_margin) * names.log10_p - 1.0;
+}
+
+bool any_scan_does_better(const ModelState& state, const FamilyTest& name) {
+  const SearchSetting& setting = state.setting();
+  const double margin = setting.families[name.family].independent_components()
+                            ? kThresholds.scan_probability_margin_of_components
+                            : kThresholds.scan_probability_margin;
+  return std::ranges::any_of(state.tests().scans, [&](const GenericTest& scan) {
+    return scan_does_better(scan, state.tests().family_wise_log10_p(scan),
+                            {name.gain, setting.family_wise_log10_p(name)}, kThresholds.scan_gain_margin,
+                            margin);
+  });
+}
+
+}  // namespace
+
+Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions options)
+    : options_(std::move(options)),
+      model_(std::move(model)),
+      setting_(std::make_shared<SearchSetting>(model_, std::move(heldout), options_.leave_out,
+                                               options_.threads)) {}
+
+void Search::run() {
+  start();
+  climb();
+  settle([this] { climb(); });
+  reject();
+  if (!options_.climb) keep_one_step();
+  if (something_exceeds()) return;
+  report("what noise may hold", 0.92);
+  state_ = state_->with_tests(JointNoiseTest(*state_).scans());
+}
+
+void Search::report(const std::string& stage, double done) const {
+  if (options_.progress) options_.progress(stage, done);
+}
+
+void Search::start() {
+  report("noise model", 0.05);
+  given_.emplace(model_, setting_);
+  state_ = given_;
+}
+
+void Search::restart_with(const std::vector<FamilyTest>& effects) {
+  state_ = given_;
+  for (const FamilyTest& effect : effects) add(effect);
+}
+
+void Search::climb() {
+  for (;;) {
+    const std::size_t added = state_->added().size();
+    report(fmt::format("tests, step {}", added + 1),
+           0.2 + 0.7 * static_cast<double>(added) / (options_.most + 1.0));
+    test();
+    if (!given_->is_tested()) given_ = state_;
+    if (static_cast<int>(added) >= options_.most) return;
+    if (!add_leading() && !add_several() && (something_exceeds() || !add_absorbed())) return;
+  }
+}
+
+bool Search::may_be_added(const FamilyTest& test) const {
+  return test.score.dof > 0 && !state_->has(test.family) && !rejected_.contains(test.family) &&
+         !dropped_.contains(test.family);
+}
+
+/// The best of those that are not in the model; null: none.
+const FamilyTest* Search::leading_exceeding() const {
+  const ModelTests& tests = state_->tests();
+  const auto found =
+      std::ranges::find_if(tests.exceeding, [&](std::size_t i) { return may_be_added(tests.families[i]); });
+  return found == tests.exceeding.end() ? nullptr : &tests.families[*found];
+}
+
+bool Search::something_exceeds() const {
+  return leading_exceeding() != nullptr || state_->tests().any_scan_exceeds();
+}
+
+/// False when nothing exceeds, or something that is in no catalogue does better.
+bool Search::add_leading() {
+  const FamilyTest* best = leading_exceeding();
+  if (best == nullptr || any_scan_does_better(*state_, *best)) return false;
+  add(*best);
+  return true;
+}
+
+/// A scan sees two effects that share a variable at once, and then does better than the name of either; or
+/// they hide each other, and nothing but the scan exceeds. False, and nothing added, unless with a few names
+/// no scan exceeds and they explain, together, as much as the scan.
+bool Search::add_several() {
+  const std::vector<FamilyTest> kept = added_tests(state_->added());
+  std::set<std::size_t> start;
+  for (const FamilyTest& test : kept) start.insert(test.family);
+  if (!tried_together_.insert(start).second) return false;
+  for (int names = 1; names <= kThresholds.most_together; ++names) {
+    if (static_cast<int>(state_->added().size()) >= options_.most) break;
+    const FamilyTest* best = leading_exceeding();
+    if (best == nullptr && names == 1) best = best_by_variables_of_scan();
+    if (best == nullptr) break;
+    add(*best);
+    test();
+    if (!state_->tests().any_scan_exceeds() && explain_together(kept.size())) return true;
+  }
+  if (state_->added().size() > kept.size()) {
+    restart_with(kept);
+    test();
+  }
+  return false;
+}
+
+/// Of the names that go with nothing but what the most improbable scan goes with; null: no scan exceeds.
+const FamilyTest* Search::best_by_variables_of_scan() const {
+  const std::vector<const GenericTest*> scans = state_->tests().exceeding_scans();
+  if (scans.empty()) return nullptr;
+  const GenericTest& least = **std::ranges::min_element(scans, {}, &GenericTest::log10_p);
+  const FamilyTest* best = nullptr;
+  for (const FamilyTest& test : state_->tests().families) {
+    if (!may_be_added(test) || (best != nullptr && test.gain <= best->gain)) continue;
+    const std::vector<Variable> own = scan_variables_of(setting_->families[test.family].name());
+    const bool among = std::ranges::all_of(own, [&](const Variable& variable) {
+      return std::ranges::find(least.variables, variable) != least.variables.end();
+    });
+    if (among && !own.empty()) best = &test;
+  }
+  return best;
+}
+
+/// No scan does better than the names from `first` on, at the noise that they leave: what was estimated
+/// without them holds part of what they explain. Each name beyond the first pays for its choice.
+bool Search::explain_together(std::size_t first) const {
+  const double log10_families = setting_->log10_families;
+  std::set<std::size_t> names;
+  double price = 0.0, log10_choices = 0.0;
+  Eigen::Index dof = 0;
+  for (std::size_t i = first; i < state_->added().size(); ++i) {
+    const FamilyTest& test = state_->added()[i].test;
+    names.insert(i);
+    price += test.score.lm - test.gain + (i > first ? 2.0 * std::numbers::ln10 * log10_families : 0.0);
+    log10_choices += log10_families + std::log10(test.multiplicity);
+    dof += state_->added()[i].columns.cols();
+  }
+  const auto before = state_->projector_without(names);
+  const double lm = before->residual_squares() - state_->projector().residual_squares();
+  const double log10_p =
+      std::min(0.0, log10_chi_squared_exceedance(lm, static_cast<double>(dof)) + log10_choices);
+  const std::vector<GenericTest> scans =
+      generic_scan(state_->model(), setting_->variables, *before, options_.threads);
+  return std::ranges::none_of(scans, [&](const GenericTest& scan) {
+    return scan_does_better(scan, state_->tests().family_wise_log10_p(scan), {lm - price, log10_p},
+                            kThresholds.scan_gain_margin_of_sufficient_names,
+                            kThresholds.scan_probability_margin);
+  });
+}
+
+/// Where nothing exceeds: what does jointly with the noise.
+bool Search::add_absorbed() {
+  report("effects that noise may hold", 0.9);
+  const std::optional<FamilyTest> best =
+      JointNoiseTest(*state_).effect([this](const FamilyTest& test) { return may_be_added(test); });
+  if (best) add(*best);
+  return best.has_value();
+}
+
+/// Until every added effect stands against its rivals.
+void Search::settle(const std::function<void()>& after_a_change) {
+  for (int change = 0; change < kThresholds.most_changes; ++change) {
+    if (!compare_with_rivals(true)) return;
+    after_a_change();
+  }
+  compare_with_rivals(false);
+}
+
+/// Each added effect against all others, now that the rest is in the model: true when one was exchanged or
+/// left, and the climb goes on from there.
+bool Search::compare_with_rivals(bool may_change) {
+  std::vector<AddedEffect> added = state_->added();
+  std::vector<FamilyTest> kept = added_tests(added);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    report("rivals of " + setting_->families[kept[i].family].label(), 0.9);
+    const std::vector<FamilyTest> tests =
+        refined_tests(*setting_, state_->model(), *state_->projector_without({i}));
+    const FamilyTest& own = tests[kept[i].family];
+    if (may_change && setting_->family_wise_log10_p(own) > log10_family_risk()) {
+      dropped_.insert(own.family);
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
+      restart_with(kept);
+      return true;
+    }
+    const FamilyTest* best = leading(tests, own.family);
+    if (may_change && best != nullptr && best->gain > own.gain + kThresholds.indistinguishable_gain) {
+      kept[i] = *best;
+      restart_with(kept);
+      return true;
+    }
+    added[i].test = own;
+    added[i].rivals.clear();
+    for (const FamilyTest& test : tests) {
+      const bool known = state_->has(test.family) || rejected_.contains(test.family);
+      const bool of_resolution = setting_->families[test.family].resolution.has_value();
+      if (test.score.dof > 0 && !known && near(own, test, of_resolution)) added[i].rivals.push_back(test);
+    }
+    std::ranges::sort(added[i].rivals, std::greater{}, &FamilyTest::gain);
+  }
+  state_ = state_->with_comparisons(std::move(added));
+  return false;
+}
+
+/// Best of those that are not in the model, `but` one that is.
+const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, std::size_t but) const {
+  const FamilyTest* best = nullptr;
+  for (const FamilyTest& test : tests) {
+    if (!may_be_added(test) && (test.family != but || test.score.dof == 0)) continue;
+    if (best == nullptr || test.gain > best->gain) best = &test;
+  }
+  return best;
+}
+
+void Search::reject() {
+  const Rejection rejection(*state_);
+  rejected_ = rejection.rejection_reasons();
+  if (!rejected_.empty()) {
+    std::vector<FamilyTest> kept;
+    std::set<std::size_t> stood;
+    for (std::size_t i = 0; i < state_->added().size(); ++i) {
+      const FamilyTest& own = state_->added()[i].test;
+      if (!rejected_.contains(own.family)) {
+        stood.insert(own.family);
+        kept.push_back(own);
+      } else if (const FamilyTest* rival = rejection.standing_rival(i, rejected_)) {
+        kept.push_back(*rival);
+      }
+    }
+    keep(kept);
+    recheck(stood);
+  }
+  state_ = state_->with_comparisons(Rejection(*state_).drop_inconsistent_rivals());
+}
+
+/// What has come in place of others, if it is no name either, and what is weaker than what these have left.
+void Search::recheck(const std::set<std::size_t>& stood) {
+  const Rejection rejection(*state_);
+  std::vector<FamilyTest> kept;
+  for (std::size_t i = 0; i < state_->added().size(); ++i) {
+    const AddedEffect& effect = state_->added()[i];
+    std::string reason;
+    if (!stood.contains(effect.test.family)) {
+      reason = rejection.rejection_reason(i);
+    } else if (rejection.leaves_more(effect)) {
+      reason = "what has no name stands out more than it does";
+    }
+    if (!reason.empty()) rejected_[effect.test.family] = reason;
+    if (reason.empty()) kept.push_back(effect.test);
+  }
+  if (kept.size() < state_->added().size()) keep(kept);
+}
+
+void Search::keep(const std::vector<FamilyTest>& effects) {
+  restart_with(effects);
+  settle([] {});
+  test();
+}
+
+/// The first effect, and the changes of the model before it.
+void Search::keep_one_step() {
+  const auto is_effect = [this](const AddedEffect& each) {
+    return setting_->families[each.test.family].effect != nullptr;
+  };
+  const std::vector<AddedEffect>& added = state_->added();
+  const auto first = std::ranges::find_if(added, is_effect);
+  if (first == added.end() || first + 1 == added.end()) return;
+  more_is_known_ = std::any_of(first + 1, added.end(), is_effect);
+  const std::vector<AddedEffect> before(added.begin(), first + 1);
+  restart_with(added_tests(before));
+  std::vector<AddedEffect> kept = state_->added();
+  for (std::size_t i = 0; i < before.size(); ++i) kept[i].rivals = before[i].rivals;
+  state_ = state_->with_comparisons(std::move(kept));
+  test();
+}
+
+}  // namespace volcal

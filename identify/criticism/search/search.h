@@ -1,0 +1,89 @@
+#pragma once
+/// The search for missing effects: proposes what to add to a model, one effect after another.
+///
+/// In: a linear model about a fit, the observations that are held out. Out: the model reached with what was
+/// added and each effect's rivals, and what was rejected and why. SI; log10 p.
+///
+///   1. climb: the leading effect of the catalogue is added while it exceeds the noise and no scan does
+///   better;
+///      where a scan does, up to three names together; where nothing exceeds, what the noise may have
+///      absorbed (joint_noise.h),
+///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
+///   leave,
+///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place.
+///
+/// A search for one step climbs as well, so that what it names stands beside all the rest, and then keeps the
+/// first. Margins: thresholds.h. Valid as long as effects act linearly about the fit. Results do not depend
+/// on threads.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/identify/criticism/search/rejection.h"
+
+namespace volcal {
+
+struct SearchOptions {
+  int threads = 1;    ///< at least 1
+  int most = 8;       ///< effects added
+  bool climb = true;  ///< false: in the end one effect is kept
+  std::vector<std::string> leave_out;
+  std::function<void(const std::string& stage, double done)> progress;
+};
+
+class Search {
+ public:
+  /// `heldout`: observations that judge and never choose.
+  Search(LinearModel model, std::vector<bool> heldout, SearchOptions options);
+
+  void run();
+
+  /// The model without any effect, and the one reached; tested. After run().
+  const ModelState& given() const { return *given_; }
+  const ModelState& reached() const { return *state_; }
+  /// Effects found after the one that was kept.
+  bool more_is_known() const { return more_is_known_; }
+  /// Families that exceed the noise and are no names.
+  const Reasons& rejected() const { return rejected_; }
+
+ private:
+  void report(const std::string& stage, double done) const;
+  void start();
+  void add(const FamilyTest& effect) { state_ = state_->with(effect); }
+  void test() { state_ = state_->tested(); }
+  void restart_with(const std::vector<FamilyTest>& effects);
+  void climb();
+  bool may_be_added(const FamilyTest& test) const;
+  const FamilyTest* leading_exceeding() const;
+  const FamilyTest* best_by_variables_of_scan() const;
+  bool something_exceeds() const;
+  bool add_leading();
+  bool add_several();
+  bool add_absorbed();
+  bool explain_together(std::size_t first) const;
+  void settle(const std::function<void()>& after_a_change);
+  bool compare_with_rivals(bool may_change);
+  const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
+  void reject();
+  void recheck(const std::set<std::size_t>& stood);
+  void keep(const std::vector<FamilyTest>& effects);
+  void keep_one_step();
+
+  SearchOptions options_;
+  LinearModel model_;
+  std::shared_ptr<const SearchSetting> setting_;
+  std::optional<ModelState> given_;
+  std::optional<ModelState> state_;
+  Reasons rejected_;
+  std::set<std::size_t> dropped_;                   ///< not significant beside the others
+  std::set<std::set<std::size_t>> tried_together_;  ///< added when several more were tried in vain
+  bool more_is_known_ = false;
+};
+
+}  // namespace volcal

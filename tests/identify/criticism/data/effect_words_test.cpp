@@ -1,0 +1,114 @@
+// Words of effects' names: whatever is registered can be looked up in `volcal diagnose --list`.
+
+#include "volcal/identify/criticism/data/effect_words.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/effect_campaign.h"
+#include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/catalogue/left_out.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr NamePart kParts[] = {NamePart::Target, NamePart::Driver, NamePart::Shape};
+
+void expect_known(const EffectName& name, std::set<const EffectWord*>& used) {
+  for (const NamePart part : kParts) {
+    const EffectWord* word = find_word(part, name);
+    EXPECT_NE(word, nullptr) << full_name(name) << ": add the word to effect_words.cpp";
+    used.insert(word);
+  }
+}
+
+TEST(EffectWords, CoverEveryRegisteredEffectAndNothingElse) {
+  std::set<const EffectWord*> used;
+  for (const char* structure : {"w X' b Y Z t", "w C' X' b Y Z t"}) {
+    const Campaign campaign = testing_support::effect_campaign(structure);
+    for (const EffectKind* kind : effect_kinds()) {
+      for (const EffectSpec& spec : kind->examples(campaign))
+        expect_known(kind->make(spec, {})->name(), used);
+    }
+    ModelSpec nothing;
+    nothing.default_function.basis = "zero";
+    for (const LocationSymbol& each : campaign.machine.datum.squareness())
+      nothing.locations_off.push_back(each);
+    const MeasurementModel model(campaign, nothing);
+    for (const LeftOutError& error : left_out_errors(model)) expect_known(error.effect->name(), used);
+  }
+  expect_known(resolution_name({Component::A, AxisName::X}), used);
+  for (const NamePart part : kParts) {
+    for (const EffectWord& word : effect_words(part)) {
+      EXPECT_TRUE(used.contains(&word)) << word.pattern << " is the word of no effect";
+    }
+  }
+}
+
+TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
+  const auto target = [](const std::string& text) {
+    const EffectWord* word = find_word(NamePart::Target, {"reversal", text, "x", "step"});
+    return word == nullptr ? "none" : std::string(word->pattern);
+  };
+  EXPECT_EQ(target("EXX"), "SYMBOL");
+  EXPECT_EQ(target("EC0Y"), "SYMBOL");
+  EXPECT_EQ(target("EXQ"), "none");
+  EXPECT_EQ(target("tool"), "tool");
+  EXPECT_EQ(target("tool long probe"), "tool TOOL");
+  EXPECT_EQ(target("readings of S (1)"), "readings of SETUP");
+  EXPECT_EQ(target("EAX EBX"), "none") << "only for what a model leaves out";
+  const EffectWord* shape = find_word(NamePart::Shape, {"servo-mismatch", "XY", "dir", "sin(2 phi)"});
+  ASSERT_NE(shape, nullptr);
+  EXPECT_EQ(shape->pattern, "sin(2 phi)");
+  EXPECT_EQ(full_name({"reversal", "EXX", "dir_x", "step"}), "reversal:EXX:dir_x:step");
+}
+
+TEST(Variable, NamesAreReadAgain) {
+  using Kind = Variable::Kind;
+  const std::vector<std::pair<Variable, std::string>> all = {
+      {{Kind::Position, AxisName::Y}, "y"},
+      {{Kind::Direction, AxisName::A}, "dir_a"},
+      {{Kind::Speed, AxisName::X}, "speed_x"},
+      {{Kind::Time}, "time"},
+      {{.kind = Kind::Temperature, .subject = "column 2"}, "T_column 2"},
+      {{Kind::Length}, "length"},
+      {{Kind::Elevation}, "elevation"},
+      {{Kind::Run}, "run"},
+      {{Kind::Feed}, "feed"},
+      {{.kind = Kind::Instrument, .subject = "ball-bar"}, "instrument ball-bar"},
+      {{.kind = Kind::Tool, .subject = "side x"}, "tool side x"},
+      {{.kind = Kind::Station, .subject = "P1"}, "station P1"},
+      {{Kind::TravelSinceTurning, AxisName::Z}, "travel since dir_z"}};
+  for (const auto& [variable, name] : all) {
+    EXPECT_EQ(variable.name(), name);
+    EXPECT_EQ(Variable::parse(name), variable) << name;
+  }
+  EXPECT_EQ(scan_words().size() + 1, all.size()) << "travel is no variable of the scans";
+  for (const char* text : {"nonsense", "X", "dir_X", "dir_", "T_", "tool ", "times", ""})
+    EXPECT_EQ(Variable::parse(text), std::nullopt) << text;
+}
+
+/// What scans see nearly alike is told in this order.
+TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
+  const auto rank = [](const std::vector<std::string>& names, const std::string& direction) {
+    return complexity_rank(testing_support::variables_named(names), direction);
+  };
+  EXPECT_EQ(rank({"station P1"}, "X"), 0);
+  EXPECT_EQ(rank({"instrument ball-bar"}, "beam"), 0);
+  EXPECT_EQ(rank({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
+  EXPECT_EQ(rank({"x", "dir_x"}, "Y"), 1);
+  EXPECT_EQ(rank({"station P1", "time"}, "X"), 1) << "a station drifts in time";
+  EXPECT_EQ(rank({"station P1", "T_air"}, "X"), 2);
+  EXPECT_EQ(rank({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
+  EXPECT_EQ(rank({"length", "time"}, "beam"), 2);
+  EXPECT_EQ(rank({"x", "time"}, "X"), 1);
+  EXPECT_EQ(rank({"time", "T_air"}, "X"), 3);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,137 @@
+// Errors of prediction against their definition with dense matrices, and against noise that is drawn.
+
+#include "volcal/identify/criticism/search/heldout_errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/noise/shared_noise.h"
+
+namespace volcal {
+namespace {
+
+constexpr Eigen::Index kOfSetup = 60;
+constexpr Eigen::Index kSetups = 2;
+constexpr Eigen::Index kReadings = kOfSetup * kSetups;
+constexpr NoiseParameters kNoise{.white = 0.9, .wander = 1.3, .tau = 400.0, .line = 0.5, .per_metre = 0.0};
+
+/// A slope that both setups share and an offset of each; lines of eight readings, every fourth held out.
+struct Example {
+  NoiseProblem problem;
+  std::vector<bool> heldout;
+  Eigen::MatrixXd sigma = Eigen::MatrixXd::Zero(kReadings, kReadings);  // by its formula
+
+  Example() {
+    problem.jacobian.setZero(kReadings, 1 + kSetups);
+    problem.residual.setZero(kReadings);
+    problem.prior_precision = Eigen::Vector3d(2.0, 0.0, 0.0).asDiagonal();
+    problem.data.sigma.assign(kReadings, 1.0);
+    for (Eigen::Index setup = 0; setup < kSetups; ++setup) add_setup(setup);
+  }
+
+  void add_setup(Eigen::Index setup) {
+    NoiseSequence& sequence = problem.data.sequences.emplace_back();
+    for (Eigen::Index i = 0; i < kOfSetup; ++i) {
+      const Eigen::Index row = setup * kOfSetup + (i * 7) % kOfSetup;  // not in the order of time
+      sequence.observation.push_back(static_cast<std::size_t>(row));
+      sequence.time.push_back(4.0 * static_cast<double>(row));
+      sequence.line.push_back(static_cast<std::int32_t>(row / 8));
+    }
+    for (Eigen::Index i = 0; i < kOfSetup; ++i) {
+      const Eigen::Index row = setup * kOfSetup + i;
+      problem.jacobian(row, 0) = std::sin(0.3 * static_cast<double>(i));
+      problem.jacobian(row, 1 + setup) = 1.0;
+      heldout.push_back((row / 8) % 4 == 3);
+      for (Eigen::Index j = 0; j < kOfSetup; ++j) {
+        const Eigen::Index other = setup * kOfSetup + j;
+        const double apart = 4.0 * std::abs(static_cast<double>(i - j));
+        sigma(row, other) = std::pow(kNoise.wander, 2) * std::exp(-apart / kNoise.tau);
+        if (row / 8 == other / 8) sigma(row, other) += std::pow(kNoise.line, 2);
+        if (row == other) sigma(row, other) += std::pow(kNoise.white, 2);
+      }
+    }
+  }
+
+  std::vector<Eigen::Index> rows(bool held) const {
+    std::vector<Eigen::Index> chosen;
+    for (std::size_t i = 0; i < heldout.size(); ++i)
+      if (heldout[i] == held) chosen.push_back(static_cast<Eigen::Index>(i));
+    return chosen;
+  }
+  Projector projector(const NoiseProblem& of) const {
+    return {of, without(of.data, heldout), {&kNoise, 1}, 1};
+  }
+  std::vector<HeldoutBlock> blocks() const {
+    return heldout_errors(
+        problem.data, heldout, {&kNoise, 1}, projector(problem),
+        [&](const std::vector<Eigen::Index>& at) { return problem.jacobian(at, Eigen::all).eval(); },
+        [&](Eigen::Index parameter) { return problem.jacobian.col(parameter).eval(); }, 1);
+  }
+};
+
+TEST(SharedNoise, TimesWeightsIsTheProductWithItsCovariance) {
+  const Example example;
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(kReadings, -1.0, 2.0);
+  for (const NoiseSequence& sequence : example.problem.data.sequences) {
+    const SharedNoise shared(sequence, kNoise);
+    const Eigen::VectorXd product = shared.times(weights);
+    for (std::size_t i = 0; i < sequence.observation.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(sequence.observation[i]);
+      const double own = std::pow(kNoise.white, 2) * weights[row];
+      EXPECT_NEAR(product[static_cast<Eigen::Index>(i)], example.sigma.row(row).dot(weights) - own, 1e-12);
+    }
+  }
+}
+
+TEST(HeldoutErrors, CovarianceIsThatOfTheDefinition) {
+  const Example example;
+  const std::vector<Eigen::Index> used = example.rows(false);
+  const Eigen::MatrixXd weights =
+      example.sigma(used, used).ldlt().solve(example.problem.jacobian(used, Eigen::all));
+  const Eigen::MatrixXd information =
+      example.problem.jacobian(used, Eigen::all).transpose() * weights + example.problem.prior_precision;
+  const Eigen::MatrixXd inverse = information.inverse();
+  const std::vector<HeldoutBlock> blocks = example.blocks();
+  ASSERT_EQ(blocks.size(), 2U);
+  for (const HeldoutBlock& block : blocks) {
+    const Eigen::MatrixXd rows = example.problem.jacobian(block.observation, Eigen::all);
+    const Eigen::MatrixXd shared = example.sigma(block.observation, used) * weights;
+    const Eigen::MatrixXd expected = example.sigma(block.observation, block.observation) +
+                                     rows * inverse * rows.transpose() - rows * inverse * shared.transpose() -
+                                     shared * inverse * rows.transpose();
+    EXPECT_LT((block.covariance - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+/// Slow wander: what is expected of the squares is what they are, as often as the spread says.
+TEST(HeldoutErrors, SquaresOfDrawnNoiseAreAsExpected) {
+  constexpr int kDraws = 400;
+  Example example;
+  const Eigen::MatrixXd root = example.sigma.llt().matrixL();
+  const std::vector<HeldoutBlock> blocks = example.blocks();
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  double mean = 0.0, squares = 0.0;
+  HeldoutFigures figures;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    NoiseProblem problem = example.problem;
+    problem.residual = root * Eigen::VectorXd::NullaryExpr(kReadings, [&] { return normal(random); });
+    problem.residual += problem.jacobian.col(0) * normal(random) / std::sqrt(2.0);  // drawn from its prior
+    const Eigen::VectorXd left = problem.residual - problem.jacobian * example.projector(problem).solution();
+    figures = heldout_figures(blocks, left);
+    mean += figures.squares / kDraws;
+    squares += figures.squares * figures.squares / kDraws;
+  }
+  const double deviation = std::sqrt(squares - mean * mean);
+  EXPECT_NEAR(mean, figures.expected, 4.0 * deviation / std::sqrt(double{kDraws}));
+  EXPECT_NEAR(deviation, figures.spread, 0.2 * figures.spread);
+  // As if the held-out readings had a wander of their own: half as much again.
+  const double apart = figures.count * (std::pow(kNoise.white, 2) + std::pow(kNoise.wander, 2));
+  EXPECT_LT(figures.expected, 0.8 * apart);
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,113 @@
+// Each reason by itself: scans are made by hand, varying amplitudes come from sim/.
+
+#include "volcal/identify/criticism/search/rejection.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/search_states.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing_support::FittedStudy;
+using testing_support::hiding;
+using testing_support::reversal;
+using testing_support::setting_of;
+using testing_support::test_of;
+using testing_support::with_scans;
+
+const Eigen::Vector3i kGrid{5, 4, 3};
+
+GenericTest scan(const std::vector<std::string>& variables, double log10_p, double period = 0.0) {
+  GenericTest test;
+  test.variables = testing_support::variables_named(variables);
+  test.direction = "Y";
+  test.log10_p = log10_p;
+  test.period = period;
+  return test;
+}
+
+/// A backlash of EYY that is what it seems; tested with it in the model.
+const ModelState& reached() {
+  static const FittedStudy study(hiding({reversal("EYY", 1.5e-6)}, kGrid));
+  static const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
+  static const ModelState state = given.with(test_of(given, {"reversal", "EYY", "dir_y", "step"})).tested();
+  return state;
+}
+
+TEST(Rejection, ANameStandsWhereNothingIsLeft) {
+  const ModelState state = with_scans(reached(), {});
+  const Rejection rejection(state);
+  EXPECT_THAT(rejection.rejection_reason(0), IsEmpty());
+  EXPECT_THAT(rejection.rejection_reasons(), IsEmpty());
+}
+
+/// Of one scan, family-wise p is its own.
+TEST(Rejection, WhatItLeavesMayNotBeLessProbable) {
+  const double own = reached().setting().family_wise_log10_p(reached().added()[0].test);
+  ASSERT_LT(own, -5.0);
+  const ModelState weaker = with_scans(reached(), {scan({"z"}, own + 1.0)});
+  EXPECT_FALSE(Rejection(weaker).leaves_more(weaker.added()[0]));
+  EXPECT_THAT(Rejection(weaker).rejection_reason(0), IsEmpty());
+  const ModelState stronger = with_scans(reached(), {scan({"z"}, own - 1.0)});
+  EXPECT_TRUE(Rejection(stronger).leaves_more(stronger.added()[0]));
+  EXPECT_EQ(Rejection(stronger).rejection_reason(0), "what it leaves stands out more than it does");
+}
+
+TEST(Rejection, ItsDriverMayNotMoveWhatItLeaves) {
+  const ModelState beside_z = with_scans(reached(), {scan({"dir_y", "z"}, -4.0)});
+  EXPECT_EQ(Rejection(beside_z).rejection_reason(0), "dir_y still moves what it leaves");
+  const ModelState wave = with_scans(reached(), {scan({"dir_y"}, -4.0, 0.01)});
+  EXPECT_THAT(Rejection(wave).rejection_reason(0), IsEmpty()) << "a wave is another effect beside it";
+}
+
+/// Droop that is straight and bent: a function of z that neither power is.
+TEST(Rejection, SeveralPowersOfOneDriverAreNoName) {
+  const FittedStudy study(hiding({}, kGrid));
+  const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
+  const ModelState first = given.with(test_of(given, {"axis-coupling", "EAY", "z", "linear"}));
+  const ModelState both =
+      with_scans(first.with(test_of(given, {"axis-coupling", "EAY", "z", "quadratic"})).tested(), {});
+  const Reasons reasons = Rejection(both).rejection_reasons();
+  ASSERT_EQ(reasons.size(), 2U);
+  for (const auto& each : reasons) EXPECT_EQ(each.second, "several powers of its driver are needed");
+  const ModelState one = with_scans(first.tested(), {});
+  for (const auto& each : Rejection(one).rejection_reasons())
+    EXPECT_THAT(each.second, ::testing::Not(HasSubstr("powers")));
+}
+
+/// A backlash that grows along Y, named as a constant one; the growing one in its place is constant.
+TEST(Rejection, AnAmplitudeThatVariesIsNoName) {
+  sim::HiddenEffect growing{.kind = "reversal-position", .options = {}, .rms = {}};
+  growing.options.set("symbol", std::string("EYY"));
+  growing.amplitude = 12e-6;
+  const FittedStudy study(hiding({growing}, kGrid));
+  const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
+  const FamilyTest& constant = test_of(given, {"reversal", "EYY", "dir_y", "step"});
+  const FamilyTest& rival = test_of(given, {"position-reversal", "EYY", "", ""});
+  ModelState state = with_scans(given.with(constant).tested(), {});
+  std::vector<AddedEffect> compared = state.added();
+  compared[0].test.log10_p = -300.0;  // leaves nothing less probable
+  compared[0].rivals = {rival};
+  state = state.with_comparisons(std::move(compared));
+  const Rejection rejection(state);
+  EXPECT_THAT(rejection.rejection_reason(0), HasSubstr("its amplitude varies with"));
+  const FamilyTest* standing = rejection.standing_rival(0, {});
+  ASSERT_NE(standing, nullptr);
+  EXPECT_EQ(standing->family, rival.family);
+  EXPECT_EQ(rejection.standing_rival(0, {{rival.family, "rejected itself"}}), nullptr);
+  EXPECT_EQ(rejection.drop_inconsistent_rivals()[0].rivals.size(), 1U) << "its own varies";
+
+  ModelState right = with_scans(given.with(rival).tested(), {});
+  compared = right.added();
+  compared[0].rivals = {constant};
+  right = right.with_comparisons(std::move(compared));
+  EXPECT_THAT(Rejection(right).rejection_reason(0), IsEmpty());
+  EXPECT_THAT(Rejection(right).drop_inconsistent_rivals()[0].rivals, IsEmpty());
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,0 +1,266 @@
+// What the search tells and what it keeps to itself. Campaigns come from sim/.
+
+#include "volcal/identify/criticism/search/search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/diagnosis.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::FittedStudy;
+using testing_support::hiding;
+using testing_support::reversal;
+
+const Eigen::Vector3i kGrid{5, 4, 4};
+
+sim::HiddenEffect hidden(const std::string& kind, const std::string& symbol, double rms) {
+  sim::HiddenEffect effect{.kind = kind, .options = {}, .rms = rms};
+  effect.options.set("symbol", symbol);
+  return effect;
+}
+
+Diagnosis diagnosed(const FittedStudy& study, bool climb, std::vector<std::string> leave_out = {}) {
+  DiagnoseOptions options;
+  options.climb = climb;
+  options.leave_out = std::move(leave_out);
+  options.figures = false;
+  options.compare = false;
+  return diagnose(study.simulated.campaign, study.result, options);
+}
+
+std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
+  std::vector<std::string> all;
+  all.reserve(findings.size());
+  for (const EffectFinding& finding : findings) all.push_back(finding.name.kind + " " + finding.name.target);
+  return all;
+}
+
+TEST(Search, AStepTellsTheFirstEffectAndThatMoreHasAName) {
+  const FittedStudy study(hiding({reversal("EXX", 0.7e-6), reversal("EYY", 0.5e-6)}, kGrid));
+  const Diagnosis step = diagnosed(study, false);
+  EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
+  EXPECT_THAT(targets(step.effects), ::testing::ElementsAre("reversal EXX"));
+  EXPECT_EQ(step.ladder.size(), 2U);
+  EXPECT_THAT(step.words, ::testing::Contains(::testing::HasSubstr("the catalogue has a name for it")));
+  EXPECT_THAT(targets(step.ranking), ::testing::Contains("reversal EYY"));
+}
+
+/// Two channels that read the same: every thermal effect has a twin, and no set is lost.
+TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
+  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 1.2e-6),
+                    second = hidden("thermal-tilt", "ECX", 1.2e-6);
+  for (sim::HiddenEffect* effect : {&first, &second}) effect->options.set("channel", "column");
+  sim::Study study = hiding({first, second}, kGrid);
+  study.environment.channels[0].amplitude = 1.0;
+  study.environment.channels.push_back(study.environment.channels[0]);
+  study.environment.channels[1].name = "ram";
+  const Diagnosis diagnosis = diagnosed(FittedStudy(study), true);
+  EXPECT_EQ(to_string(diagnosis.verdict), "ONE_OF");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  const auto sets = sets_of_alternatives(diagnosis);
+  ASSERT_EQ(sets.size(), 2U);
+  std::set<std::string> found;
+  for (const auto* set : sets) {
+    ASSERT_GE(set->size(), 2U);
+    EXPECT_EQ(set->at(0).name.target, set->at(1).name.target);
+    EXPECT_NE(set->at(0).name.driver, set->at(1).name.driver);
+    found.insert(set->at(0).name.target);
+  }
+  EXPECT_EQ(found, (std::set<std::string>{"EAZ", "ECX"}));
+  EXPECT_EQ(std::ranges::count_if(diagnosis.words,
+                                  [](const auto& words) { return words.starts_with("One of these"); }),
+            2);
+}
+
+/// A scan of both temperatures sees both effects at once, and does better than either name.
+TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
+  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 2.5e-6), second = first;
+  first.options.set("channel", "column");
+  second.options.set("channel", "ram");
+  sim::Study campaign = hiding({first, second}, kGrid);
+  campaign.environment.channels[0].amplitude = 1.0;
+  campaign.environment.channels.push_back(
+      {.name = "ram", .start = 20.0, .drift = 0.0, .amplitude = 1.0, .period = 2500.0});
+  FittedStudy study(campaign);
+  Search search(study.model, std::vector<bool>(study.model.size(), false), {});
+  search.run();
+  double best_name = 0.0, best_scan = 0.0;
+  for (const FamilyTest& test : search.given().tests().families) best_name = std::max(best_name, test.gain);
+  for (const GenericTest& test : search.given().tests().scans) best_scan = std::max(best_scan, test.gain);
+  EXPECT_GT(best_scan, best_name + 2.0);
+  std::set<std::string> drivers;
+  for (const AddedEffect& added : search.reached().added()) {
+    const EffectName name = search.reached().setting().families[added.test.family].name();
+    EXPECT_EQ(name.kind, "thermal-drift");
+    drivers.insert(name.driver);
+  }
+  EXPECT_EQ(drivers, (std::set<std::string>{"T_column", "T_ram"}));
+  EXPECT_EQ(search.reached().added().size(), 2U);
+}
+
+/// Backlash that grows along the travel and passes through zero on it: of either part there is little alone.
+TEST(Search, NamesTwoEffectsThatHideEachOther) {
+  sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden("reversal-position", "EYY", 0.0);
+  constant.rms.reset();
+  growing.rms.reset();
+  constant.amplitude = 1.6e-6;
+  growing.amplitude = -4e-6;
+  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({constant, growing}, kGrid)), true);
+  EXPECT_THAT(targets(diagnosis.effects),
+              ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
+}
+
+TEST(Search, WhatIsInNoCatalogueGetsNoName) {
+  sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
+  bump.options.set("centre", 0.1);
+  bump.options.set("width", 0.12);
+  bump.options.set("by", "Y");
+  bump.options.set("by_centre", 0.1);
+  bump.options.set("by_width", 0.12);
+  const FittedStudy study(hiding({bump}, kGrid));
+  const Diagnosis diagnosis = diagnosed(study, false);
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains(::testing::AnyOf("x", "y")));
+}
+
+/// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
+TEST(Search, AReversalThatIsTakenUpOnTheWayGetsNoName) {
+  sim::HiddenEffect memory = hidden("direction-memory", "EYY", 1.5e-6);
+  memory.options.set("length", 0.05);
+  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({memory}, kGrid)), true);
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  EXPECT_TRUE(diagnosis.effects.empty());
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
+}
+
+/// A screw that no name of the catalogue stands for is told by its period.
+TEST(Search, AWaveWithoutANameIsToldByItsPeriod) {
+  sim::HiddenEffect lead = hidden("screw-lead", "EXX", 0.6e-6);
+  lead.options.set("period", 10.3e-3);
+  const FittedStudy study(hiding({lead}, kGrid));
+  const Diagnosis diagnosis = diagnosed(study, true, {"lead-error", "encoder-subdivision"});
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::ElementsAre("x"));
+  EXPECT_EQ(diagnosis.unknown[0].direction, "X");
+  EXPECT_NEAR(diagnosis.unknown[0].period, 10.3e-3, 0.1e-3);
+  EXPECT_NEAR(diagnosis.unknown[0].rms, 0.6e-6, 0.3e-6) << "in units of the stated noise";
+}
+
+sim::BallBarCircles circles_in_xy() {
+  sim::BallBarCircles circles;
+  circles.planes = {"XY"};
+  circles.records_feed = true;
+  return circles;
+}
+
+const ScanVariable& variable(const std::vector<ScanVariable>& variables, const std::string& name) {
+  const auto found = std::ranges::find(variables, name, &ScanVariable::name);
+  if (found == variables.end()) throw std::out_of_range(name);
+  return *found;
+}
+
+/// On a circle the share along X is that of the radius along Y; a tracker's readings are taken at rest.
+void expect_shares_of_motion(const LinearModel& model) {
+  const std::vector<ScanVariable> variables = scan_variables(model);
+  const ScanVariable& along_x = variable(variables, "speed_x");
+  const ScanVariable& instrument = variable(variables, "instrument ball-bar");
+  EXPECT_TRUE(instrument.two_valued);
+  for (Eigen::Index i = 0; i < along_x.value.size(); ++i) {
+    const auto& [of, row, channel] = model.observations()[static_cast<std::size_t>(i)];
+    const Setup& setup = model.campaign().setups[of];
+    const double share = along_x.centre + along_x.scale * along_x.value[i];
+    const double of_ball_bar = instrument.centre + instrument.scale * instrument.value[i];
+    EXPECT_NEAR(of_ball_bar, setup.instrument == "ball-bar" ? 1.0 : 0.0, 1e-9);
+    if (setup.instrument != "ball-bar") {
+      EXPECT_NEAR(share, 0.0, 1e-9);
+      continue;
+    }
+    const Eigen::Vector3d radius = model.views()[of].nominal_point_w[row] - *setup.options.vector("centre");
+    EXPECT_NEAR(std::abs(share), std::abs(radius.y()) / radius.norm(), 0.1);
+    EXPECT_GE(share * setup.readings.direction[index_of(AxisName::X)][row], -0.1);
+  }
+}
+
+/// What moves along circles is seen where the catalogue has no name for it.
+TEST(Search, WhatCirclesShowIsSeenWithoutAName) {
+  sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 1e-6};
+  servo.options.set("axis", "X");
+  sim::Study study = hiding({servo}, kGrid);
+  study.measurements.emplace_back().settings = circles_in_xy();
+  const FittedStudy fitted(study);
+  expect_shares_of_motion(fitted.model);
+  const Diagnosis diagnosis = diagnosed(fitted, true, {"servo-mismatch", "following-error"});
+  EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
+  ASSERT_FALSE(diagnosis.unknown.empty());
+  EXPECT_THAT(diagnosis.unknown[0].variables,
+              ::testing::Contains(::testing::AnyOf("speed_x", "speed_y", "dir_x", "dir_y")));
+}
+
+/// The shortest lag that is looked for explains nearly all of what follows a temperature at once.
+TEST(Search, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
+  sim::HiddenEffect tilt = hidden("thermal-tilt", "EAZ", 5e-6);
+  tilt.options.set("channel", "column");
+  sim::Study campaign = hiding({tilt}, kGrid);
+  campaign.environment.channels[0].amplitude = 1.0;
+  FittedStudy study(campaign);
+  SearchOptions options;
+  options.leave_out = {"thermal-drift"};
+  Search search(study.model, std::vector<bool>(study.model.size(), false), options);
+  search.run();
+  std::set<std::string> reasons;
+  for (const auto& [family, reason] : search.rejected()) {
+    if (search.reached().setting().families[family].name().kind == "lagged-temperature")
+      reasons.insert(reason);
+  }
+  EXPECT_THAT(reasons, ::testing::Contains("its time constant lies beyond what was looked for"));
+  for (const AddedEffect& added : search.reached().added())
+    EXPECT_NE(search.reached().setting().families[added.test.family].name().kind, "lagged-temperature");
+}
+
+/// On one circle a wander of a few seconds follows a servo mismatch as well as its own shape does.
+TEST(Search, FindsWhatTheNoiseHasTakenUp) {
+  sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
+  servo.options.set("axis", "X");
+  sim::Study study = hiding({servo}, kGrid);
+  study.measurements.emplace_back().settings = circles_in_xy();
+  const FittedStudy fitted(study);
+  const NoiseEstimate noise = estimate_noise(fitted.model.problem());
+  const auto ball_bar = std::ranges::find(fitted.model.noise_groups(), "ball-bar");
+  ASSERT_NE(ball_bar, fitted.model.noise_groups().end());
+  const auto group = static_cast<std::size_t>(ball_bar - fitted.model.noise_groups().begin());
+  EXPECT_GT(noise.instruments[group].parameters.wander, 0.2e-6);
+  EXPECT_THAT(targets(diagnosed(fitted, true).effects), ::testing::ElementsAre("servo-mismatch XY"));
+}
+
+TEST(ScanVariables, OfAnEffect) {
+  using Names = std::vector<std::string>;
+  const auto names = [](const EffectName& name) { return names_of(scan_variables_of(name)); };
+  EXPECT_EQ(names({"position-reversal", "EXX", "dir_x x", "linear"}), (Names{"dir_x", "x"}));
+  EXPECT_EQ(names({"tool-offset", "tool side_x", "tool", "step"}), (Names{"tool side_x"}));
+  EXPECT_EQ(names({"station-drift", "station P1", "time", "linear"}), (Names{"station P1", "time"}));
+  EXPECT_EQ(names({"tool-load", "EAZ", "tool long", "step"}), (Names{"tool long"}));
+  EXPECT_EQ(names({"spindle-growth", "tool", "time", "1-exp(-t/tau)"}), (Names{"time"}));
+  EXPECT_EQ(names({"servo-mismatch", "XY", "dir", "sin(2 phi)"}), (Names{"dir_x", "dir_y"}));
+  EXPECT_EQ(names({"servo-mismatch", "XY", "dir feed", "sin(2 phi)"}), (Names{"dir_x", "dir_y", "feed"}));
+  EXPECT_EQ(names({"following-error", "EXX", "dir_x feed", "cos(phi)"}), (Names{"dir_x", "feed"}));
+  EXPECT_EQ(names({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
+  EXPECT_EQ(names({"ball-bar-length", "readings", "ball-bar", "step"}), Names{"instrument ball-bar"});
+  EXPECT_EQ(names({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
+}
+
+}  // namespace
+}  // namespace volcal

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kUsualHeating = 1800.0;  // s, where a model states no time constant
 constexpr double kUsualLag = 3600.0;      // s
+constexpr double kPush = 1.0;             // s, in which a station that is pushed moves
 constexpr double kUsualLead = 10e-3;      // m
 constexpr double kUsualSignal = 1e-3;     // m
 
@@ -157,6 +158,49 @@ void known_product_coupling(const HiddenSettings& settings, HiddenScene& scene) 
                              const MachineState& state) { return a * first(state) * second(state); });
 }
 
+void known_length_scale(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.interference.instrument.emplace_back([a = amplitude_of(settings), here = settings.where()](
+                                                 const Occasion& occasion, InstrumentTruth& truth) {
+    if (here(occasion)) truth.length_scale += a;
+  });
+}
+
+/// The stations that the key leaves move along the effect's vector.
+void displace_station(const HiddenSettings& settings, const StateNumber& driver, HiddenScene& scene) {
+  scene.interference.instrument.emplace_back([full = vector_of(settings), here = settings.where(), driver](
+                                                 const Occasion& occasion, InstrumentTruth& truth) {
+    if (here(occasion)) truth.station += full * driver(occasion.state);
+  });
+}
+
+void known_station_drift(const HiddenSettings& settings, HiddenScene& scene) {
+  displace_station(
+      settings, [](const MachineState& state) { return state.time; }, scene);
+}
+
+void known_station_event(const HiddenSettings& settings, HiddenScene& scene) {
+  displace_station(
+      settings,
+      [start = settings.number("time")](const MachineState& state) {
+        return 0.5 * (1.0 + std::tanh((state.time - start) / kPush));
+      },
+      scene);
+}
+
+void known_tool_clamping(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.interference.tool.emplace_back(
+      [full = vector_of(settings), here = settings.where()](const Occasion& occasion) -> Eigen::Vector3d {
+        return here(occasion) ? full : Eigen::Vector3d::Zero();
+      });
+}
+
+void known_bar_length(const HiddenSettings& settings, HiddenScene& scene) {
+  scene.interference.instrument.emplace_back(
+      [a = amplitude_of(settings)](const Occasion& /*occasion*/, InstrumentTruth& truth) {
+        truth.length_error += a;
+      });
+}
+
 struct KnownKind {
   const char* kind;
   void (*act)(const HiddenSettings& settings, HiddenScene& scene);
@@ -164,10 +208,12 @@ struct KnownKind {
 
 constexpr KnownKind kKnownKinds[] = {
     {"axis-coupling", known_axis_coupling},
+    {"ball-bar-length", known_bar_length},
     {"encoder-subdivision", known_subdivision},
     {"lagged-expansion", known_lagged_expansion},
     {"lagged-temperature", known_lagged_temperature},
     {"lead-error", known_lead_error},
+    {"length-scale", known_length_scale},
     {"position-reversal", known_position_reversal},
     {"product-coupling", known_product_coupling},
     {"reversal", known_reversal},
@@ -175,7 +221,10 @@ constexpr KnownKind kKnownKinds[] = {
     {"screw-heating", known_screw_heating},
     {"spindle-growth", known_spindle_growth},
     {"squareness-drift", known_squareness_drift},
+    {"station-drift", known_station_drift},
+    {"station-event", known_station_event},
     {"thermal-drift", known_thermal_drift},
+    {"tool-clamping", known_tool_clamping},
     {"tool-expansion", known_tool_expansion},
     {"tool-load", known_tool_load},
     {"tool-offset", known_tool_offset},

@@ -152,12 +152,11 @@ TruthMachine machine_with_errors(const Study& study) {
 }
 
 /// `known`: gets what known effects do besides moving axes.
-TruthMachine true_machine_of(const Study& study, Interference& known) {
+TruthMachine true_machine_of(const Study& study, const std::vector<SetupPlan>& plans, Interference& known) {
   TruthMachine truth = machine_with_errors(study);
   HiddenScene scene{truth, known};
-  const std::vector<SetupPlan> none;
   if (study.truth.errors)
-    add_known_effects(*study.truth.errors, {study.machine, study.environment, none}, scene);
+    add_known_effects(*study.truth.errors, {study.machine, study.environment, plans}, scene);
   for (const auto& [symbol, value] : study.truth.locations) truth.set_location(symbol, value);
   for (const auto& [symbol, value] : study.truth.reversals) truth.set_reversal(symbol, value);
   set_expansions(study, truth);
@@ -170,7 +169,7 @@ TruthMachine true_machine_of(const Study& study, Interference& known) {
 
 TruthMachine true_machine(const Study& study) {
   Interference known;
-  return true_machine_of(study, known);
+  return true_machine_of(study, study.truth.errors ? all_plans(study) : std::vector<SetupPlan>{}, known);
 }
 
 SimulatedCampaign simulate(const Study& study) {
@@ -179,8 +178,9 @@ SimulatedCampaign simulate(const Study& study) {
   }
   check_channels(study);
   Interference known;
-  SimulatedCampaign simulated{
-      {}, {}, true_machine_of(study, known), true_tool_offsets(study), all_plans(study)};
+  std::vector<SetupPlan> plans = all_plans(study);
+  TruthMachine truth = true_machine_of(study, plans, known);
+  SimulatedCampaign simulated{{}, {}, std::move(truth), true_tool_offsets(study), std::move(plans)};
   const TruthMachine without_hidden = simulated.truth;
   const StudyReadout readout{study, simulated.tool_offsets, simulated.plans};
   const HiddenContext context{study.machine, study.environment, simulated.plans};

@@ -166,10 +166,11 @@ TEST_F(KnownErrors, AModelIsValidatedOnReadings) {
 TEST_F(KnownErrors, WhatMakesNoSenseIsRefusedWithARemedy) {
   write("empty.toml", "format = \"volcal-model-1\"\nmachine = \"" + testing::kDemoMachine + "\"\n");
   refused("budget " + path("empty.toml"), "states no error", "--tolerances");
-  write("other.toml", testing::content(path("known.toml")) +
-                          "[[effects]]\nkind = \"station-drift\"\nstation = \"P1\"\nx_um_per_h = 1.0\n");
+  write("other.toml",
+        testing::content(path("known.toml")) +
+            "[[effects]]\nkind = \"dead-path\"\nsetup = \"P1_short\"\namplitude_um_per_h = 1.0\n");
   refused("simulate " + path("study.toml") + " --errors " + path("other.toml") + " -o " + path("c"),
-          "station-drift", "[[hidden]]");
+          "dead-path", "[[hidden]]");
   write("cold.toml", "format = \"volcal-study-1\"\nmachine = \"" + testing::kDemoMachine +
                          "\"\n[[measurements]]\nkind = \"point-grid\"\n");
   refused("simulate " + path("cold.toml") + " --errors " + path("known.toml") + " -o " + path("c"), "air",

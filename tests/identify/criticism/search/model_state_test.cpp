@@ -20,13 +20,13 @@ using testing_support::reversal;
 using testing_support::setting_of;
 using testing_support::test_of;
 
-const Eigen::Vector3i kGrid{5, 4, 3};
+const Eigen::Vector3i kStateGrid{5, 4, 3};
 
 /// A backlash of EYY at its amplitude; made once.
 class ModelStateOfReversal : public ::testing::Test {
  protected:
   static const FittedStudy& study() {
-    static const FittedStudy fitted(hiding({reversal("EYY", 1.5e-6)}, kGrid));
+    static const FittedStudy fitted(hiding({reversal("EYY", 1.5e-6)}, kStateGrid));
     return fitted;
   }
   static const ModelState& given() {
@@ -111,7 +111,7 @@ TEST_F(ModelStateOfReversal, WhatAnEffectTakesAwayIsItsLm) {
 
 /// Readings that a fit without the backlash took for outliers are none beside it, and stay out without it.
 TEST(ModelState, ReinstatesWhatTheEffectExplains) {
-  FittedStudy study(hiding({reversal("EYY", 1.5e-6)}, kGrid));
+  FittedStudy study(hiding({reversal("EYY", 1.5e-6)}, kStateGrid));
   for (const std::size_t observation : {7U, 30U, 61U}) study.result.residuals[observation].removed = true;
   const LinearModel model(study.simulated.campaign, study.result);
   const ModelState given = ModelState(model, setting_of(model)).tested();

@@ -19,9 +19,9 @@ using testing_support::setting_of;
 using testing_support::test_of;
 using testing_support::with_scans;
 
-const Eigen::Vector3i kGrid{5, 4, 3};
+const Eigen::Vector3i kRejectionGrid{5, 4, 3};
 
-GenericTest scan(const std::vector<std::string>& variables, double log10_p, double period = 0.0) {
+GenericTest hand_made_scan(const std::vector<std::string>& variables, double log10_p, double period = 0.0) {
   GenericTest test;
   test.variables = testing_support::variables_named(variables);
   test.direction = "Y";
@@ -31,15 +31,15 @@ GenericTest scan(const std::vector<std::string>& variables, double log10_p, doub
 }
 
 /// A backlash of EYY that is what it seems; tested with it in the model.
-const ModelState& reached() {
-  static const FittedStudy study(hiding({reversal("EYY", 1.5e-6)}, kGrid));
+const ModelState& beside_backlash() {
+  static const FittedStudy study(hiding({reversal("EYY", 1.5e-6)}, kRejectionGrid));
   static const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
   static const ModelState state = given.with(test_of(given, {"reversal", "EYY", "dir_y", "step"})).tested();
   return state;
 }
 
 TEST(Rejection, ANameStandsWhereNothingIsLeft) {
-  const ModelState state = with_scans(reached(), {});
+  const ModelState state = with_scans(beside_backlash(), {});
   const Rejection rejection(state);
   EXPECT_THAT(rejection.rejection_reason(0), IsEmpty());
   EXPECT_THAT(rejection.rejection_reasons(), IsEmpty());
@@ -47,26 +47,26 @@ TEST(Rejection, ANameStandsWhereNothingIsLeft) {
 
 /// Of one scan, family-wise p is its own.
 TEST(Rejection, WhatItLeavesMayNotBeLessProbable) {
-  const double own = reached().setting().family_wise_log10_p(reached().added()[0].test);
+  const double own = beside_backlash().setting().family_wise_log10_p(beside_backlash().added()[0].test);
   ASSERT_LT(own, -5.0);
-  const ModelState weaker = with_scans(reached(), {scan({"z"}, own + 1.0)});
+  const ModelState weaker = with_scans(beside_backlash(), {hand_made_scan({"z"}, own + 1.0)});
   EXPECT_FALSE(Rejection(weaker).leaves_more(weaker.added()[0]));
   EXPECT_THAT(Rejection(weaker).rejection_reason(0), IsEmpty());
-  const ModelState stronger = with_scans(reached(), {scan({"z"}, own - 1.0)});
+  const ModelState stronger = with_scans(beside_backlash(), {hand_made_scan({"z"}, own - 1.0)});
   EXPECT_TRUE(Rejection(stronger).leaves_more(stronger.added()[0]));
   EXPECT_EQ(Rejection(stronger).rejection_reason(0), "what it leaves stands out more than it does");
 }
 
 TEST(Rejection, ItsDriverMayNotMoveWhatItLeaves) {
-  const ModelState beside_z = with_scans(reached(), {scan({"dir_y", "z"}, -4.0)});
+  const ModelState beside_z = with_scans(beside_backlash(), {hand_made_scan({"dir_y", "z"}, -4.0)});
   EXPECT_EQ(Rejection(beside_z).rejection_reason(0), "dir_y still moves what it leaves");
-  const ModelState wave = with_scans(reached(), {scan({"dir_y"}, -4.0, 0.01)});
+  const ModelState wave = with_scans(beside_backlash(), {hand_made_scan({"dir_y"}, -4.0, 0.01)});
   EXPECT_THAT(Rejection(wave).rejection_reason(0), IsEmpty()) << "a wave is another effect beside it";
 }
 
 /// Droop that is straight and bent: a function of z that neither power is.
 TEST(Rejection, SeveralPowersOfOneDriverAreNoName) {
-  const FittedStudy study(hiding({}, kGrid));
+  const FittedStudy study(hiding({}, kRejectionGrid));
   const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
   const ModelState first = given.with(test_of(given, {"axis-coupling", "EAY", "z", "linear"}));
   const ModelState both =
@@ -84,7 +84,7 @@ TEST(Rejection, AnAmplitudeThatVariesIsNoName) {
   sim::HiddenEffect growing{.kind = "reversal-position", .options = {}, .rms = {}};
   growing.options.set("symbol", std::string("EYY"));
   growing.amplitude = 12e-6;
-  const FittedStudy study(hiding({growing}, kGrid));
+  const FittedStudy study(hiding({growing}, kRejectionGrid));
   const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
   const FamilyTest& constant = test_of(given, {"reversal", "EYY", "dir_y", "step"});
   const FamilyTest& rival = test_of(given, {"position-reversal", "EYY", "", ""});

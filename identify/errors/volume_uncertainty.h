@@ -8,10 +8,10 @@
 namespace volcal {
 
 /// sqrt(mean |u|^2) over poses of the standard uncertainty of the displacement as identified, after the best
-/// rigid motion (volume_moments.h), m. Where tables take away what was identified, errors of this size remain.
-/// Beyond the readings the functions themselves count, not their held value. 0 for errors that are stated
-/// without uncertainty. `positions` and `directions` belong together; rotary axes at 0; axes that the machine
-/// lacks are left out.
+/// rigid motion (volume_moments.h), m. Where tables take away what was identified, errors of this size
+/// remain. Beyond the readings the functions themselves count, not their held value. 0 for errors that are
+/// stated without uncertainty. `positions` and `directions` belong together; rotary axes at 0; axes that the
+/// machine lacks are left out.
 double volume_uncertainty(const FitResult& result, const Tool& tool, const Conditions& conditions,
                           std::span<const AxisPosition> positions,
                           std::span<const ApproachDirection> directions);

@@ -38,8 +38,7 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
   volume.add_row(figures("ideal " + type.name(), check.ideal));
   volume.add_row(figures("tables read back", check.exported));
   if (check.identification_u > 0.0)
-    volume.add_row({"expected on the machine",
-                    fixed_number(check.expected_rms() / kMicro, 2), ""});
+    volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
   if (check.over_conditions)
     volume.add_row(figures("tables, ends of the campaign's conditions", *check.over_conditions));
   TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});

@@ -98,8 +98,8 @@ TEST(PartOfTravel, UncertaintyCoversTheTruth) {
   for (unsigned seed = 1; seed <= kDraws; ++seed) {
     const FitResult result = positioning_of(line_on(1.0, 0.0, seed));
     for (int i = 1; i <= 8; ++i) {
-      const ErrorTableRow row = value_at(result, i * kStep);
-      const double off = row.value - truth(i * kStep);
+      const ErrorTableRow row = value_at(result, i * kStepOfTravel);
+      const double off = row.value - truth(i * kStepOfTravel);
       ++values;
       if (std::abs(off) < row.U95) ++inside;
       sum += off / 8.0;

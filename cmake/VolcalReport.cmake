@@ -1,17 +1,60 @@
-# The report's page template: bundled from npm packages when the program is built and kept inside the library.
-# Without npm, or when the packages cannot be fetched, the program is built without the report and says so.
+# The report's page template: bundled from npm packages when the program is built and kept inside the library. npm
+# fetches them where it is installed; else they are fetched one by one, as the lock file names them. Without Node, or
+# when the packages cannot be fetched, the program is built without the report and says so.
 
-set(VOLCAL_REPORT AUTO CACHE STRING "Build the HTML report: AUTO (when npm can fetch its packages), ON, OFF")
+set(VOLCAL_REPORT AUTO CACHE STRING "Build the HTML report: AUTO (when its packages can be fetched), ON, OFF")
 set_property(CACHE VOLCAL_REPORT PROPERTY STRINGS AUTO ON OFF)
 
 # Reports that the page cannot be built: an error when it was asked for.
 function(volcal_report_unavailable reason)
   if(VOLCAL_REPORT STREQUAL "AUTO")
     message(WARNING "No report.html: ${reason}. Results are complete without it. To get the report, install "
-                    "nodejs and npm, make sure that the npm registry can be reached, and configure again.")
+                    "nodejs, make sure that the npm registry can be reached, and configure again.")
   else()
     message(FATAL_ERROR "No report.html: ${reason}")
   endif()
+endfunction()
+
+# volcal_fetch_with_npm(OUT DIR), volcal_fetch_without_npm(OUT DIR): the packages of DIR/package-lock.json into
+# DIR/node_modules; OUT says what went wrong, or nothing.
+function(volcal_fetch_with_npm out dir)
+  execute_process(COMMAND ${VOLCAL_NPM} ci --prefer-offline WORKING_DIRECTORY ${dir}
+                  RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(failed)
+    message(STATUS "${output}")
+    set(${out} "npm cannot fetch the packages of identify/report/web" PARENT_SCOPE)
+  endif()
+endfunction()
+
+function(volcal_fetch_without_npm out dir)
+  execute_process(COMMAND ${VOLCAL_NODE} ${PROJECT_SOURCE_DIR}/cmake/report_packages.mjs ${dir}/package-lock.json
+                  OUTPUT_VARIABLE packages COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCHALL "[^\n]+" packages "${packages}")
+  file(REMOVE_RECURSE ${dir}/node_modules ${dir}/fetched)
+  foreach(package IN LISTS packages)
+    string(REPLACE " " ";" package ${package})
+    list(GET package 0 folder)
+    list(GET package 1 address)
+    list(GET package 2 hash)
+    set(archive ${dir}/fetched/package.tgz)
+    file(DOWNLOAD ${address} ${archive} STATUS status INACTIVITY_TIMEOUT 60)
+    list(GET status 0 failed)
+    if(failed)
+      list(GET status 1 reason)
+      set(${out} "${address} cannot be fetched (${reason})" PARENT_SCOPE)
+      return()
+    endif()
+    file(SHA512 ${archive} found)
+    if(NOT found STREQUAL hash)
+      set(${out} "${address} is not what package-lock.json says (SHA-512 ${found})" PARENT_SCOPE)
+      return()
+    endif()
+    file(ARCHIVE_EXTRACT INPUT ${archive} DESTINATION ${dir}/fetched)
+    cmake_path(GET folder PARENT_PATH parent)
+    file(MAKE_DIRECTORY ${dir}/${parent})
+    file(RENAME ${dir}/fetched/package ${dir}/${folder})
+  endforeach()
+  file(REMOVE_RECURSE ${dir}/fetched)
 endfunction()
 
 # volcal_add_report(TARGET): embeds the template into the library TARGET.
@@ -22,8 +65,8 @@ function(volcal_add_report target)
   find_program(VOLCAL_NPM npm)
   find_program(VOLCAL_NODE NAMES node nodejs)
   mark_as_advanced(VOLCAL_NPM VOLCAL_NODE)
-  if(NOT VOLCAL_NPM OR NOT VOLCAL_NODE)
-    volcal_report_unavailable("nodejs and npm are not installed")
+  if(NOT VOLCAL_NODE)
+    volcal_report_unavailable("nodejs is not installed")
     return()
   endif()
 
@@ -39,11 +82,14 @@ function(volcal_add_report target)
   if(NOT fetched STREQUAL lock_hash)
     file(COPY ${source}/package.json ${source}/package-lock.json ${source}/.npmrc DESTINATION ${work})
     message(STATUS "Fetching the packages of the report")
-    execute_process(COMMAND ${VOLCAL_NPM} ci --prefer-offline WORKING_DIRECTORY ${work}
-                    RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
-    if(failed)
-      message(STATUS "${output}")
-      volcal_report_unavailable("npm cannot fetch the packages of identify/report/web")
+    set(problem "")
+    if(VOLCAL_NPM)
+      volcal_fetch_with_npm(problem ${work})
+    else()
+      volcal_fetch_without_npm(problem ${work})
+    endif()
+    if(problem)
+      volcal_report_unavailable("${problem}")
       return()
     endif()
     file(WRITE ${work}/packages.sha256 ${lock_hash})
@@ -59,7 +105,7 @@ function(volcal_add_report target)
     VERBATIM)
   set_source_files_properties(${PROJECT_SOURCE_DIR}/identify/report/template_data.cpp PROPERTIES
     COMPILE_DEFINITIONS "VOLCAL_REPORT_TEMPLATE=\"${template}\""
-    OBJECT_DEPENDS ${template})
+    OBJECT_DEPENDS ${template} SKIP_PRECOMPILE_HEADERS ON)
   # A generated file belongs to the target that uses it.
   target_sources(${target} PRIVATE ${template})
 endfunction()

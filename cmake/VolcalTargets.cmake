@@ -1,10 +1,12 @@
 # One library per layer. Which layer may include which: docs/layers.md, enforced by scripts/check-layers.
 
-# Compiles through ccache where it is installed and no other launcher was asked for.
+# Compiles through ccache where it is installed and no other launcher was asked for. What uses a precompiled header
+# is cached only where ccache need not look for macros of it.
 function(volcal_use_ccache)
   find_program(VOLCAL_CCACHE ccache DOC "Compiler cache, optional")
   if(PROJECT_IS_TOP_LEVEL AND VOLCAL_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${VOLCAL_CCACHE} PARENT_SCOPE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${VOLCAL_CCACHE}
+        PARENT_SCOPE)
   endif()
 endfunction()
 
@@ -28,7 +30,8 @@ function(volcal_compile_options target)
 endfunction()
 
 # With VOLCAL_UNITY_BUILD the files of a folder are compiled together, a dozen at a time, so that the headers
-# they share are read once. Names in unnamed namespaces are therefore unique within a folder.
+# they share are read once. Names in unnamed namespaces are therefore unique within a folder. A file that renames
+# what it includes (VOLCAL_VECTOR_LOOPS) is compiled alone.
 function(volcal_unity_build target)
   if(NOT VOLCAL_UNITY_BUILD)
     return()
@@ -43,7 +46,32 @@ function(volcal_unity_build target)
     math(EXPR dozen "${count} / 12")
     math(EXPR count_${folder} "${count} + 1")
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${dozen})
+    file(STRINGS ${source} renames REGEX "^#define VOLCAL_VECTOR_LOOPS" LIMIT_COUNT 1)
+    if(renames)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
   endforeach()
+endfunction()
+
+# With VOLCAL_UNITY_BUILD, volcal_precompile(TARGET HEADER...) reads the headers once for TARGET, and
+# volcal_use_precompiled(TARGET OF) lets TARGET read those of OF, whose options are the same. A file includes what it
+# uses all the same. `-D CMAKE_DISABLE_PRECOMPILE_HEADERS=ON` does without, as the preset tidy, since clang-tidy cannot
+# read what GCC precompiles.
+function(volcal_precompile target)
+  if(NOT VOLCAL_UNITY_BUILD)
+    return()
+  endif()
+  target_precompile_headers(${target} PRIVATE ${ARGN})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess)  # ccache asks for it
+  endif()
+endfunction()
+
+function(volcal_use_precompiled target of)
+  target_precompile_headers(${target} REUSE_FROM ${of})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -fpch-preprocess)
+  endif()
 endfunction()
 
 # Sources named *_avx2.cpp and *_avx512.cpp are compiled for these instruction sets (x86-64 only); the
@@ -53,9 +81,10 @@ endfunction()
 function(volcal_instruction_sets)
   foreach(source IN LISTS ARGN)
     if(source MATCHES "_avx2\\.cpp$")
-      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx2;-mfma" SKIP_PRECOMPILE_HEADERS ON)
     elseif(source MATCHES "_avx512\\.cpp$")
-      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mfma")
+      set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS "-mavx512f;-mavx512dq;-mfma"
+                                                       SKIP_PRECOMPILE_HEADERS ON)
     endif()
   endforeach()
 endfunction()

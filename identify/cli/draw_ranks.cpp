@@ -100,8 +100,9 @@ std::unique_ptr<DrawTeam> draw_ranks() {
 }
 #else
 std::unique_ptr<DrawTeam> draw_ranks() {
-  require_known_to_each_other(1,
-                              "build volcal with -DVOLCAL_MPI=ON, or start it once, without mpirun or srun");
+  require_known_to_each_other(
+      1,
+      "build volcal where Open MPI is installed (-DVOLCAL_MPI=ON), or start it once, without mpirun or srun");
   return nullptr;
 }
 #endif

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 
 namespace volcal {
@@ -14,11 +15,14 @@ namespace {
 
 using testing::run_program;
 
+/// One campaign of every structure in every run, two for the night.
 TEST(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHold) {
-  const auto run = run_program("study closed-loop -n 8 --seed 301 --small --fixed --json");
+  const int count = testing::short_or_long(4, 8);
+  const auto run =
+      run_program("study closed-loop -n " + std::to_string(count) + " --seed 301 --small --fixed --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   const auto json = nlohmann::json::parse(run.output);
-  ASSERT_EQ(json.at("campaigns").size(), 8U);
+  ASSERT_EQ(json.at("campaigns").size(), static_cast<std::size_t>(count));
   SCOPED_TRACE(json.at("summary").back().dump(1));
   for (const auto& campaign : json.at("campaigns")) {
     const auto& fixed = campaign.at("rms_fixed_um");

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "tests/support/dataset_files.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 
@@ -25,10 +25,10 @@ using nlohmann::json;
 using testing::content;
 using testing::run_program;
 
-const fs::path kHidden = fs::path(VOLCAL_SOURCE_DIR) / "datasets" / "hidden";
+const fs::path kHiddenCampaigns = fs::path(VOLCAL_SOURCE_DIR) / "datasets" / "hidden";
 
 const json& answers() {
-  static const json all = json::parse(content(kHidden / "sealed" / "answers.json"));
+  static const json all = json::parse(content(kHiddenCampaigns / "sealed" / "answers.json"));
   return all;
 }
 
@@ -50,7 +50,7 @@ std::set<std::string> names_of(const json& findings) {
 class HiddenCampaign : public ::testing::TestWithParam<std::string> {
  protected:
   const json& answer() const { return answers().at(GetParam()); }
-  std::string campaign() const { return (kHidden / GetParam() / "campaign.toml").string(); }
+  std::string campaign() const { return (kHiddenCampaigns / GetParam() / "campaign.toml").string(); }
   std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
 
   /// Exit code 1 = a result with a warning: rank deficient, lack of fit.
@@ -71,16 +71,17 @@ class HiddenCampaign : public ::testing::TestWithParam<std::string> {
 };
 
 TEST_P(HiddenCampaign, IsWhatItsSealedStudyMakes) {
-  done("simulate " + (kHidden / "sealed" / (GetParam() + ".toml")).string() + " -o " + in_scratch("made"));
-  for (const std::string& name : testing::files_below(kHidden / GetParam())) {
-    testing::expect_same_numbers(name, content(kHidden / GetParam() / name),
+  done("simulate " + (kHiddenCampaigns / "sealed" / (GetParam() + ".toml")).string() + " -o " +
+       in_scratch("made"));
+  for (const std::string& name : testing::files_below(kHiddenCampaigns / GetParam())) {
+    testing::expect_same_numbers(name, content(kHiddenCampaigns / GetParam() / name),
                                  content(scratch_.path() / "made" / name));
   }
 }
 
 /// A few of them always; all with VOLCAL_LONG_TESTS=1.
 TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
-  if (!answer().at("quick").get<bool>() && std::getenv("VOLCAL_LONG_TESTS") == nullptr) {
+  if (!answer().at("quick").get<bool>() && !testing::long_tests()) {
     GTEST_SKIP() << "VOLCAL_LONG_TESTS=1 runs all";
   }
   done("fit " + campaign() + " -o " + in_scratch("given"));
@@ -112,7 +113,8 @@ TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
 
   done("fit " + campaign() + " --model " + in_scratch("diagnosis/extended.toml") + " -o " +
        in_scratch("extended"));
-  done("simulate " + (kHidden / "sealed" / (GetParam() + ".toml")).string() + " -o " + in_scratch("truth"));
+  done("simulate " + (kHiddenCampaigns / "sealed" / (GetParam() + ".toml")).string() + " -o " +
+       in_scratch("truth"));
   const double before = unseen_error(in_scratch("given")), after = unseen_error(in_scratch("extended"));
   EXPECT_LT(after, answer().value("share", 0.8) * before);
   const json& ladder = diagnosis.at("ladder");

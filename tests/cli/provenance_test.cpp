@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::MatchesRegex;
 using testing::run_program;
 
-const std::string kSmall = VOLCAL_SOURCE_DIR "/tests/data/small/campaign.toml";
+const std::string kSmallCampaign = VOLCAL_SOURCE_DIR "/tests/data/small/campaign.toml";
 
 /// SOURCE_DATE_EPOCH for as long as it lives.
 class FixedTime {
@@ -45,12 +45,12 @@ TEST(Provenance, NamesVersionTimeAndCommand) {
   const testing::ScratchFolder scratch;
   const std::string result = (scratch.path() / "my result").string();
   const FixedTime time("1700000000");
-  const auto run = run_program("fit " + kSmall + " --noise white -o '" + result + "'");
+  const auto run = run_program("fit " + kSmallCampaign + " --noise white -o '" + result + "'");
   ASSERT_TRUE(run.exit_code == 0 || run.exit_code == 1) << run.errors;
   const auto provenance = provenance_of(result);
   EXPECT_THAT(provenance.at("version").get<std::string>(), MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
   EXPECT_EQ(provenance.at("date"), "2023-11-14T22:13:20Z");
-  EXPECT_EQ(provenance.at("command"), "volcal fit " + kSmall + " --noise white -o '" + result + "'");
+  EXPECT_EQ(provenance.at("command"), "volcal fit " + kSmallCampaign + " --noise white -o '" + result + "'");
   if (std::filesystem::exists(result + "/report.html")) {
     const std::string page = content(result + "/report.html");
     EXPECT_THAT(page, HasSubstr("\"date\":\"2023-11-14\""));
@@ -62,7 +62,7 @@ TEST(Provenance, RefusesATimeThatIsNone) {
   const testing::ScratchFolder scratch;
   for (const char* wrong : {"", "yesterday", "-5", "1e9", "99999999999999"}) {
     const FixedTime time(wrong);
-    const auto run = run_program("fit " + kSmall + " -o " + (scratch.path() / "result").string());
+    const auto run = run_program("fit " + kSmallCampaign + " -o " + (scratch.path() / "result").string());
     EXPECT_EQ(run.exit_code, 2) << wrong;
     EXPECT_THAT(run.errors, HasSubstr("SOURCE_DATE_EPOCH")) << wrong;
   }

@@ -20,7 +20,7 @@ using testing::run_program;
 using ::testing::StartsWith;
 
 const std::string kHidden = VOLCAL_SOURCE_DIR "/datasets/hidden/21/campaign.toml";
-const std::string kSmall = VOLCAL_SOURCE_DIR "/tests/data/small";
+const std::string kTriedCampaign = VOLCAL_SOURCE_DIR "/tests/data/small";
 
 TEST(TryProgram, FindsAReversalAndSaysWhatRemains) {
   const auto run = run_program("try " + kHidden + " 'EXX: dir_x / 2'");
@@ -104,7 +104,7 @@ TEST(TryProgram, RefusesWithTheColumn) {
       {"'EXA: x'", "the machine has no axis A", "name an axis of structure"},
   };
   for (const Refusal& refusal : refusals) {
-    const auto run = run_program("try " + kSmall + "/campaign.toml " + refusal.arguments);
+    const auto run = run_program("try " + kTriedCampaign + "/campaign.toml " + refusal.arguments);
     EXPECT_EQ(run.exit_code, 2) << refusal.arguments << run.output;
     EXPECT_THAT(run.errors, HasSubstr(refusal.place)) << refusal.arguments;
     EXPECT_THAT(run.errors, HasSubstr(refusal.remedy)) << refusal.arguments;

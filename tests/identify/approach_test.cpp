@@ -6,7 +6,7 @@
 namespace volcal {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 TEST(ApproachFromOrder, ThereAndBack) {
   EXPECT_THAT(approach_from_order(std::vector<double>{0.0, 0.1, 0.2, 0.1, 0.0}),

@@ -8,7 +8,7 @@
 namespace volcal {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 /// One axis X of 0 to 1 m and Y of 0 to 0.5 m; a tracer setup S1 (tool a) and a level setup S2 (tool b).
 Campaign small_campaign() {

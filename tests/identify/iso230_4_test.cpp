@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kRadius = 0.1;
-constexpr double kMicrometre = 1e-6;
+constexpr double kUm = 1e-6;
 
 void add_path(std::vector<CircleReading>& readings, int sense, double first_deg, double last_deg,
               double step_deg, const std::function<double(double)>& deviation_um) {
   const int count = static_cast<int>(std::lround(std::abs(last_deg - first_deg) / step_deg));
   for (int i = 0; i <= count; ++i) {
     const double degrees = first_deg + sense * i * step_deg;
-    readings.push_back({degrees * kDegree, deviation_um(degrees * kDegree) * kMicrometre, sense});
+    readings.push_back({degrees * kDegree, deviation_um(degrees * kDegree) * kUm, sense});
   }
 }
 
@@ -29,20 +29,20 @@ void add_path(std::vector<CircleReading>& readings, int sense, double first_deg,
 /// radius deviations 10 and -3.
 /// G(CCW) = 14 - 6 = 8;  G(CW) = -1 - (-5) = 4;  F(CCW) = 14, 6;  F(CW) = -1, -5.
 /// Both: D = (10 - 3) / 2 = 3.5; G(b) = 14 - (-5) = 19.
-std::vector<CircleReading> hand_example() {
+std::vector<CircleReading> hand_circle() {
   std::vector<CircleReading> readings;
   readings.reserve(16);
   const double ccw[] = {14, 10, 6, 10, 14, 10, 6, 10};
   const double cw[] = {-1, -3, -5, -3, -1, -3, -5, -3};
-  for (int i = 0; i < 8; ++i) readings.push_back({45.0 * i * kDegree, ccw[i] * kMicrometre, +1});
-  for (int i = 7; i >= 0; --i) readings.push_back({45.0 * i * kDegree, cw[i] * kMicrometre, -1});
+  for (int i = 0; i < 8; ++i) readings.push_back({45.0 * i * kDegree, ccw[i] * kUm, +1});
+  for (int i = 7; i >= 0; --i) readings.push_back({45.0 * i * kDegree, cw[i] * kUm, -1});
   return readings;
 }
 
 /// The eight readings are 45 degrees apart, so F is about the instrument's centre; it is the same centre
 /// here.
 TEST(Iso230Part4, HandWorkedExample) {
-  const CircularFigures figures = circular_figures(hand_example(), kRadius);
+  const CircularFigures figures = circular_figures(hand_circle(), kRadius);
   ASSERT_TRUE(figures.counter_clockwise && figures.clockwise);
   EXPECT_NEAR(figures.counter_clockwise->circular_deviation, 8e-6, 1e-12);
   EXPECT_NEAR(figures.clockwise->circular_deviation, 4e-6, 1e-12);

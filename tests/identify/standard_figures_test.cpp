@@ -12,9 +12,9 @@ namespace volcal {
 namespace {
 
 using Eigen::Vector3d;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kPi = 3.14159265358979323846;
 

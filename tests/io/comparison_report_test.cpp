@@ -8,9 +8,9 @@
 namespace volcal {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// A tracer setup S1 of 400 readings along X and a displacement line L of 0, 0.5 and 1 m, there and back
 /// once.

@@ -3,8 +3,8 @@
 // elements.
 //
 // Misprint: Table 1 gives T14 the link length b4. Eq. 3 and 11 need -b4: after T13 (180 degrees) and the 90
-// degrees of T14 itself its x axis points along -y. Table 3 gives Z a mean error of 63 um above its maximum of
-// 38 um; no test uses that row.
+// degrees of T14 itself its x axis points along -y. Table 3 gives Z a mean error of 63 um above its maximum
+// of 38 um; no test uses that row.
 
 #include <gtest/gtest.h>
 
@@ -64,28 +64,28 @@ Dimensions dimensions() {
 }
 
 /// delta_x1, delta_x2, delta_y, delta_z of axis x and likewise y and z: the scale error in its two parts.
-struct AxisErrors {
+struct DenavitErrors {
   double scale_slide = 0.0;
   double scale_screw = 0.0;
   double first = 0.0;   ///< x: delta_y; y: delta_x; z: delta_x
   double second = 0.0;  ///< x: delta_z; y: delta_z; z: delta_y
 };
 struct Errors12 {
-  AxisErrors x, y, z;
+  DenavitErrors x, y, z;
 };
 
-Matrix4d x_slide(const Dimensions& m, const AxisErrors& e) {
+Matrix4d x_slide(const Dimensions& m, const DenavitErrors& e) {
   return denavit_hartenberg(0, 0, m.a[0] + e.scale_slide, 0) *
          denavit_hartenberg(0, m.c[0] + e.second, 0, 180) * denavit_hartenberg(90, 0, -m.b[0] - e.first, 0) *
          denavit_hartenberg(-90, 0, m.x[0] + e.scale_screw, 180);
 }
-Matrix4d y_slide(const Dimensions& m, const AxisErrors& e) {
+Matrix4d y_slide(const Dimensions& m, const DenavitErrors& e) {
   return denavit_hartenberg(0, m.c[1] + e.second, 0, 0) *
          denavit_hartenberg(-90, 0, -m.b[1] - e.scale_slide, 0) *
          denavit_hartenberg(-90, 0, -m.a[1] - e.first, 0) *
          denavit_hartenberg(-90, 0, m.x[1] + e.scale_screw, 0) * denavit_hartenberg(-90, 0, 0, 0);
 }
-Matrix4d z_slide(const Dimensions& m, const AxisErrors& e) {
+Matrix4d z_slide(const Dimensions& m, const DenavitErrors& e) {
   return denavit_hartenberg(0, m.c[2] + e.scale_slide, 0, 0) *
          denavit_hartenberg(90, 0, m.b[2] + e.second, 0) * denavit_hartenberg(-90, 0, m.a[2] + e.first, 0) *
          denavit_hartenberg(0, m.x[2] + e.scale_screw, 0, 0);

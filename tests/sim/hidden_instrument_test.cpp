@@ -16,16 +16,16 @@
 namespace volcal::sim {
 namespace {
 
-Options options(const std::vector<std::pair<std::string, OptionValue>>& entries) {
+Options instrument_options(const std::vector<std::pair<std::string, OptionValue>>& entries) {
   Options made;
   for (const auto& [stem, value] : entries) made.set(stem, value);
   return made;
 }
 
-std::string text(const char* value) { return value; }
+std::string instrument_text(const char* value) { return value; }
 
 /// A perfect machine of a 1 m cube, tool (0, 0, -0.1); the clock stands at 7200 s.
-class HiddenInstrument : public testing::Test {
+class HiddenInstrument : public ::testing::Test {
  protected:
   HiddenInstrument() {
     machine_.tools = {{"tool", {0.0, 0.0, -0.1}, 0.0}, {"other", {0.0, 0.0, -0.1}, 0.0}};
@@ -71,51 +71,66 @@ class HiddenInstrument : public testing::Test {
 };
 
 constexpr double kExact = 1e-15;
-constexpr double kSecondOrder = 1e-10;
+constexpr double kInstrumentSecondOrder = 1e-10;
 
 TEST_F(HiddenInstrument, LengthScales) {
-  plan("laser-tracer", 0.3, 0.4, 0.1).options.set("station", text("P1"));  // 0.5 m from the origin
+  plan("laser-tracer", 0.3, 0.4, 0.1).options.set("station", instrument_text("P1"));  // 0.5 m from the origin
   EXPECT_NEAR(change({"length-scale", {}}, 2e-6)[0], 1e-6, kExact);
-  EXPECT_NEAR(change({"length-scale", options({{"station", text("P1")}})}, 2e-6)[0], 1e-6, kExact);
-  EXPECT_NEAR(change({"air-index", options({{"channel", text("air")}})}, -1e-6)[0], -1.5e-6, kExact);
-  EXPECT_THROW(change({"length-scale", options({{"station", text("P2")}})}, 2e-6), InputError);
-  EXPECT_THROW(change({"length-scale", options({{"setup", text("T")}})}, 2e-6), InputError);
+  EXPECT_NEAR(change({"length-scale", instrument_options({{"station", instrument_text("P1")}})}, 2e-6)[0],
+              1e-6, kExact);
+  EXPECT_NEAR(change({"air-index", instrument_options({{"channel", instrument_text("air")}})}, -1e-6)[0],
+              -1.5e-6, kExact);
+  EXPECT_THROW(change({"length-scale", instrument_options({{"station", instrument_text("P2")}})}, 2e-6),
+               InputError);
+  EXPECT_THROW(change({"length-scale", instrument_options({{"setup", instrument_text("T")}})}, 2e-6),
+               InputError);
 }
 
 TEST_F(HiddenInstrument, DeadPathInAir) {
   plan("laser-tracer", 0.3, 0.4, 0.1).truth.dead_path = 0.8;
-  EXPECT_NEAR(change({"dead-path-air", options({{"channel", text("air")}})}, 1e-6)[0], 0.8 * 3e-6, kExact);
+  EXPECT_NEAR(change({"dead-path-air", instrument_options({{"channel", instrument_text("air")}})}, 1e-6)[0],
+              0.8 * 3e-6, kExact);
   EXPECT_NEAR(change({"dead-path-air", {}}, 1e-6)[0], 0.8 * 2e-6, kExact);  // 2 h
-  EXPECT_NEAR(change({"dead-path-air", options({{"dead_path", 0.2}})}, 1e-6)[0], 0.2 * 2e-6, kExact);
+  EXPECT_NEAR(change({"dead-path-air", instrument_options({{"dead_path", 0.2}})}, 1e-6)[0], 0.2 * 2e-6,
+              kExact);
 }
 
 TEST_F(HiddenInstrument, StationsMove) {
   plan("laser-tracer", 0.3, 0.4, 0.1);  // beam (0.6, 0.8, 0)
   const Eigen::Vector3d along_y(0.0, 2.0, 0.0);
-  EXPECT_NEAR(change({"station-drift", options({{"direction", along_y}})}, 5e-6)[0], -0.8 * 10e-6,
-              kSecondOrder);
-  EXPECT_NEAR(change({"station-event", options({{"direction", along_y}, {"time", 7200.0}})}, 5e-6)[0], -4e-6,
-              kSecondOrder);
-  EXPECT_EQ(change({"station-event", options({{"direction", along_y}, {"time", 7201.0}})}, 5e-6)[0], 0.0);
-  EXPECT_NEAR(change({"station-swing", options({{"direction", along_y}, {"period", 86400.0}})}, 5e-6)[0],
-              -2e-6,
-              kSecondOrder);  // a twelfth of the period: half
-  const Options warmed = options({{"direction", along_y}, {"channel", text("air")}});  // by 3 K
-  EXPECT_NEAR(change({"station-expansion", warmed}, 1e-6)[0], -0.8 * 3e-6, kSecondOrder);
-  EXPECT_THROW(change({"station-drift", options({{"direction", Eigen::Vector3d(0, 0, 0)}})}, 5e-6),
+  EXPECT_NEAR(change({"station-drift", instrument_options({{"direction", along_y}})}, 5e-6)[0], -0.8 * 10e-6,
+              kInstrumentSecondOrder);
+  EXPECT_NEAR(
+      change({"station-event", instrument_options({{"direction", along_y}, {"time", 7200.0}})}, 5e-6)[0],
+      -4e-6, kInstrumentSecondOrder);
+  EXPECT_EQ(
+      change({"station-event", instrument_options({{"direction", along_y}, {"time", 7201.0}})}, 5e-6)[0],
+      0.0);
+  EXPECT_NEAR(
+      change({"station-swing", instrument_options({{"direction", along_y}, {"period", 86400.0}})}, 5e-6)[0],
+      -2e-6,
+      kInstrumentSecondOrder);  // a twelfth of the period: half
+  const Options warmed =
+      instrument_options({{"direction", along_y}, {"channel", instrument_text("air")}});  // by 3 K
+  EXPECT_NEAR(change({"station-expansion", warmed}, 1e-6)[0], -0.8 * 3e-6, kInstrumentSecondOrder);
+  EXPECT_THROW(change({"station-drift", instrument_options({{"direction", Eigen::Vector3d(0, 0, 0)}})}, 5e-6),
                InputError);
 }
 
 TEST_F(HiddenInstrument, ToolsGrow) {
   plan("volumetric-points", 0.3, 0.4, 0.1);
   const double grown = 1.0 - std::exp(-2.0);
-  EXPECT_NEAR(change({"tool-growth", options({{"time_constant", 3600.0}})}, 8e-6)[2], -8e-6 * grown, kExact);
-  EXPECT_NEAR(change({"tool-growth-on-off", options({{"time_constant", 3600.0}, {"off", 3600.0}})}, 8e-6)[2],
+  EXPECT_NEAR(change({"tool-growth", instrument_options({{"time_constant", 3600.0}})}, 8e-6)[2],
+              -8e-6 * grown, kExact);
+  EXPECT_NEAR(change({"tool-growth-on-off", instrument_options({{"time_constant", 3600.0}, {"off", 3600.0}})},
+                     8e-6)[2],
               -8e-6 * (1.0 - std::exp(-1.0)) * std::exp(-1.0), kExact);
-  const Options sideways =
-      options({{"channel", text("air")}, {"direction", Eigen::Vector3d(3, 0, 0)}, {"tool", text("tool")}});
+  const Options sideways = instrument_options({{"channel", instrument_text("air")},
+                                               {"direction", Eigen::Vector3d(3, 0, 0)},
+                                               {"tool", instrument_text("tool")}});
   EXPECT_NEAR(change({"tool-growth-channel", sideways}, 2e-6)[0], 6e-6, kExact);
-  const Options error = options({{"tool", text("tool")}, {"direction", Eigen::Vector3d(0, 1, 0)}});
+  const Options error =
+      instrument_options({{"tool", instrument_text("tool")}, {"direction", Eigen::Vector3d(0, 1, 0)}});
   EXPECT_NEAR(change({"tool-offset", error}, 2e-6)[1], 2e-6, kExact);
   plans_[0].tool = 1;
   EXPECT_EQ(change({"tool-growth-channel", sideways}, 2e-6)[0], 0.0);
@@ -124,7 +139,7 @@ TEST_F(HiddenInstrument, ToolsGrow) {
 
 TEST_F(HiddenInstrument, AToolIsClampedAnewForASetup) {
   const std::string setup = plan("volumetric-points", 0.3, 0.4, 0.1).name;
-  const Options clamping = options({{"setup", setup}, {"direction", Eigen::Vector3d(0, 3, 0)}});
+  const Options clamping = instrument_options({{"setup", setup}, {"direction", Eigen::Vector3d(0, 3, 0)}});
   EXPECT_NEAR(change({"tool-clamping", clamping}, 1e-6)[1], 1e-6, kExact);
   plans_.push_back(plans_[0]);
   plans_[0].name = "S2";
@@ -136,7 +151,8 @@ TEST_F(HiddenInstrument, BallBars) {
   bar.truth.centre = {0.5, 0.5, 0.0};
   EXPECT_NEAR(change({"bar-length", {}}, 3e-6)[0], 3e-6, kExact);
   bar.points[0].velocity[0] = 1.0 / 30.0;  // 2 m/min along the bar
-  EXPECT_NEAR(change({"servo-mismatch", options({{"axis", text("X")}})}, 3e-6)[0], -6e-6, kExact);
+  EXPECT_NEAR(change({"servo-mismatch", instrument_options({{"axis", instrument_text("X")}})}, 3e-6)[0],
+              -6e-6, kExact);
 }
 
 TEST_F(HiddenInstrument, ABeamBesideItsPathReadsLessByTheCosine) {
@@ -155,23 +171,24 @@ TEST_F(HiddenInstrument, TrackerEncoders) {
   EXPECT_NEAR(azimuth[1], 4e-6 * std::sin(quarter), kExact);
   EXPECT_EQ(azimuth[0], 0.0);
   EXPECT_EQ(azimuth[2], 0.0);
-  const Options elevation = options({{"encoder", text("elevation")}, {"phase", quarter}});
+  const Options elevation =
+      instrument_options({{"encoder", instrument_text("elevation")}, {"phase", quarter}});
   EXPECT_NEAR(change({"encoder-eccentricity", elevation}, 4e-6)[2], 4e-6 * std::sin(quarter), kExact);
 }
 
 TEST_F(HiddenInstrument, AMachineThatTiltsIsSeenFromTheFloor) {
   plan("laser-tracer", 0.5, 0.5, 1.0).truth.station = {0.5 - 1.0, 0.5,
                                                        0.9};  // beam along x, 0.4 above the pivot
-  const Options by_x = options({{"by", text("X")}, {"about", text("y")}});
+  const Options by_x = instrument_options({{"by", instrument_text("X")}, {"about", instrument_text("y")}});
   // u = 0.5: 10 urad about y through (0.5, 0.5, 0.5) moves the point 0.4 m above it by +4 um in x.
-  EXPECT_NEAR(change({"foundation-tilt", by_x}, 20e-6)[0], 4e-6, kSecondOrder);
+  EXPECT_NEAR(change({"foundation-tilt", by_x}, 20e-6)[0], 4e-6, kInstrumentSecondOrder);
   Options at_point = by_x;
   at_point.set("pivot", Eigen::Vector3d(0.5, 0.5, 0.9));
-  EXPECT_NEAR(change({"foundation-tilt", at_point}, 20e-6)[0], 0.0, kSecondOrder);
+  EXPECT_NEAR(change({"foundation-tilt", at_point}, 20e-6)[0], 0.0, kInstrumentSecondOrder);
   SetupPlan& level = plan("angle", 0.5, 0.5, 1.0);
   level.options.set("axis", Eigen::Vector3d(0, 1, 0));
   EXPECT_EQ(change({"foundation-tilt", by_x}, 20e-6)[0], 0.0);
-  level.options.set("body", text("table"));
+  level.options.set("body", instrument_text("table"));
   EXPECT_NEAR(change({"foundation-tilt", by_x}, 20e-6)[0], 10e-6, kExact);
 }
 
@@ -209,7 +226,7 @@ HiddenEffect any_effect(const HiddenKind& kind) {
       effect.options.set(std::string(key.key.substr(0, key.key.rfind('_'))), time ? 900.0 : 0.15);
     }
     if (key.type == KeyType::Vector3) effect.options.set("direction", Eigen::Vector3d(1, 1, 0));
-    if (key.type == KeyType::Text) effect.options.set(key.key, text(any_name(kind, key.key)));
+    if (key.type == KeyType::Text) effect.options.set(key.key, instrument_text(any_name(kind, key.key)));
   }
   return effect;
 }

@@ -20,7 +20,7 @@ Options options(const std::vector<std::pair<std::string, OptionValue>>& entries)
 std::string text(const char* value) { return value; }
 
 /// Travels of 1 m from -0.2 m (home there), 0.5 m and 0.4 m from 0; channels that stand still, and "ramp".
-class HiddenMachine : public testing::Test {
+class HiddenMachine : public ::testing::Test {
  protected:
   HiddenMachine() {
     environment_.channels = {{.name = "air", .start = 22.0},

@@ -11,7 +11,7 @@ namespace volcal::sim {
 namespace {
 
 /// A machine of 1 m cube with EXX = 10 um and ECX = 20 urad everywhere (w b X Y Z t), tool (0, 0, -100) mm.
-class InstrumentTest : public testing::Test {
+class InstrumentTest : public ::testing::Test {
  protected:
   InstrumentTest() : truth_(machine()) {
     truth_.set_error(*ErrorSymbol::parse("EXX"), [](double) { return 10e-6; });

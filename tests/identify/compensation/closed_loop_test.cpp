@@ -7,9 +7,12 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "tests/support/identified_machines.h"
+#include "tests/support/long_tests.h"
 #include "tests/support/table_samples.h"
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/solve/fit.h"
@@ -252,10 +255,19 @@ TEST(TablesOfAFit, CompensateTheMachineThatWasMeasured) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TablesInTheLoop,
-                         ::testing::Combine(::testing::ValuesIn(table_formats()),
-                                            ::testing::Values(std::size_t{0}, std::size_t{1},
-                                                              std::size_t{2})),
+/// Every format on one of the three structures, in turn; on all of them for the night.
+std::vector<std::tuple<const TableFormat*, std::size_t>> formats_and_structures() {
+  std::vector<std::tuple<const TableFormat*, std::size_t>> all;
+  std::size_t turn = 0;
+  for (const TableFormat* format : table_formats()) {
+    for (std::size_t structure = 0; structure < 3; ++structure)
+      if (testing::long_tests() || structure == turn % 3) all.emplace_back(format, structure);
+    ++turn;
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TablesInTheLoop, ::testing::ValuesIn(formats_and_structures()),
                          [](const auto& tested) {
                            std::string name(std::get<0>(tested.param)->name);
                            std::ranges::replace(name, '-', '_');

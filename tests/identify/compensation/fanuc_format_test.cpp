@@ -24,7 +24,7 @@ using Settings = std::map<std::string, std::string>;
 const TableFormat& fanuc() { return *find_table_format("fanuc"); }
 
 /// Added to the command of X, um, as the format's own reader and the simulated control say.
-double added_by_both(const std::vector<TableFile>& files, double x, int direction = 1) {
+double fanuc_added_by_both(const std::vector<TableFile>& files, double x, int direction = 1) {
   sim::MachineState state;
   state.position = {x, 0.5, 0.5};
   state.direction.fill(static_cast<std::int8_t>(direction));
@@ -34,7 +34,7 @@ double added_by_both(const std::vector<TableFile>& files, double x, int directio
   return own.x() / 1e-6;
 }
 
-std::vector<TableFile> write(const FitResult& result, double step, const Settings& settings) {
+std::vector<TableFile> write_fanuc(const FitResult& result, double step, const Settings& settings) {
   TableFormatOptions options;
   options.type = CompensationPart::Positioning;
   options.step = step;
@@ -80,12 +80,12 @@ TEST(FanucTables, AmountsAreThoseOfTheExample) {
        "REFERENCE X 0\n3605#0 X 0\n3620 X 40\n3621 X 33\n3622 X 49\n3623 X 1\n3624 X 50\nNUMBER VALUE\n" +
            example_values()}};
   for (std::size_t i = 0; i < kExampleAmounts.size(); ++i)
-    EXPECT_NEAR(added_by_both(files, -0.4 + 0.05 * static_cast<double>(i)), kExampleAmounts[i], 1e-9);
-  EXPECT_NEAR(added_by_both(files, 0.025), 1.0, 1e-9) << "spread over the interval";
+    EXPECT_NEAR(fanuc_added_by_both(files, -0.4 + 0.05 * static_cast<double>(i)), kExampleAmounts[i], 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.025), 1.0, 1e-9) << "spread over the interval";
 }
 
 TEST(FanucTables, ValuesAreThoseOfTheExample) {
-  const auto files = write(machine_that_needs(kExampleAmounts, 0.45), 0.05, {{"first_number", "32"}});
+  const auto files = write_fanuc(machine_that_needs(kExampleAmounts, 0.45), 0.05, {{"first_number", "32"}});
   EXPECT_THAT(text_of(files),
               HasSubstr("3605#0 X 0\n3620 X 40\n3621 X 32\n3622 X 49\n3623 X 1\n3624 X 50.0000\n"));
   EXPECT_THAT(text_of(files), HasSubstr("NUMBER VALUE\n32 0\n" + example_values()));
@@ -93,23 +93,23 @@ TEST(FanucTables, ValuesAreThoseOfTheExample) {
 
 /// 0.4 um an interval: 0 0.4 0.8 1.2 1.6 2.0 um are rounded to 0 0 1 1 2 2, and those have differences.
 TEST(FanucTables, SumsAreRoundedNotDifferences) {
-  const auto files = write(machine_that_needs({0.0, 0.4, 0.8, 1.2, 1.6, 2.0}, 0.6), 0.2, {});
+  const auto files = write_fanuc(machine_that_needs({0.0, 0.4, 0.8, 1.2, 1.6, 2.0}, 0.6), 0.2, {});
   // reference at the third point: 0.8 um is taken off everywhere, -0.8 -0.4 0 0.4 0.8 1.2
   EXPECT_THAT(text_of(files), HasSubstr("NUMBER VALUE\n0 0\n1 1\n2 0\n3 0\n4 1\n5 0\n"));
-  EXPECT_NEAR(added_by_both(files, 0.6), 1.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.6), 1.0, 1e-9);
 }
 
 /// 20 um an interval are 6.67 steps of 3 um, 10 of 2 um.
 TEST(FanucTables, MagnificationIsTheSmallestThatTheValuesFit) {
   const FitResult result = machine_that_needs({0.0, 20.0, 40.0}, 0.4);
-  const auto files = write(result, 0.4, {});
+  const auto files = write_fanuc(result, 0.4, {});
   EXPECT_THAT(text_of(files), HasSubstr("3623 X 3\n"));
   EXPECT_THAT(text_of(files), HasSubstr("NUMBER VALUE\n0 0\n1 7\n2 7\n"));
-  EXPECT_NEAR(added_by_both(files, 0.4), 21.0, 1e-9);
-  EXPECT_THAT(text_of(write(result, 0.4, {{"largest_value", "127"}})), HasSubstr("3623 X 1\n"));
-  EXPECT_THAT(text_of(write(result, 0.4, {{"detection_unit_um", "10"}})),
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.4), 21.0, 1e-9);
+  EXPECT_THAT(text_of(write_fanuc(result, 0.4, {{"largest_value", "127"}})), HasSubstr("3623 X 1\n"));
+  EXPECT_THAT(text_of(write_fanuc(result, 0.4, {{"detection_unit_um", "10"}})),
               HasSubstr("3623 X 1\n3624 X 400.0000\n"));
-  EXPECT_THROW(write(result, 0.4, {{"detection_unit_um", "0.01"}, {"largest_value", "7"}}), InputError);
+  EXPECT_THROW(write_fanuc(result, 0.4, {{"detection_unit_um", "0.01"}, {"largest_value", "7"}}), InputError);
 }
 
 /// X goes 10 um too far at 1 m; towards - it is 4 um less.
@@ -120,43 +120,43 @@ FitResult with_reversal() {
 }
 
 TEST(FanucTables, BothDirectionsHaveParametersAndValuesOfTheirOwn) {
-  const auto files = write(with_reversal(), 0.5, {{"reference_amount", "negative"}});
+  const auto files = write_fanuc(with_reversal(), 0.5, {{"reference_amount", "negative"}});
   EXPECT_THAT(text_of(files), HasSubstr("REFERENCE X 0.0000\n3605#0 X 1\n3620 X 0\n3621 X 0\n3622 X 2\n"
                                         "3623 X 1\n3624 X 500.0000\n3626 X 3\n3627 X 4\n"));
   EXPECT_THAT(text_of(files), HasSubstr("NUMBER VALUE\n0 0\n1 -5\n2 -5\n3 0\n4 -5\n5 -5\n6 0\n"));
-  EXPECT_NEAR(added_by_both(files, 1.0, 1), -10.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 1.0, -1), -6.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 0.0, -1), 4.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, 1), -10.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, -1), -6.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.0, -1), 4.0, 1e-9);
 }
 
 /// With 3627 for travel towards + the amount towards - is 0 at the reference position.
 TEST(FanucTables, ReferenceAmountOfTheOtherDirection) {
-  const auto files = write(with_reversal(), 0.5, {{"reference_amount", "positive"}});
+  const auto files = write_fanuc(with_reversal(), 0.5, {{"reference_amount", "positive"}});
   EXPECT_THAT(text_of(files), HasSubstr("3627 X -4\n"));
-  EXPECT_NEAR(added_by_both(files, 1.0, 1), -14.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 1.0, -1), -10.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, 1), -14.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, -1), -10.0, 1e-9);
 }
 
 TEST(FanucTables, OneDirectionHoldsTheMean) {
-  const auto files = write(with_reversal(), 0.5, {{"directions", "mean"}});
+  const auto files = write_fanuc(with_reversal(), 0.5, {{"directions", "mean"}});
   EXPECT_THAT(text_of(files), HasSubstr("3605#0 X 0\n"));
   EXPECT_THAT(text_of(files), ::testing::Not(HasSubstr("3627")));
-  EXPECT_NEAR(added_by_both(files, 1.0, -1), -10.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, -1), -10.0, 1e-9);
 }
 
 TEST(FanucTables, InTheMiddleOfAnIntervalTheWholeValueIsPutOut) {
-  const auto files = write(with_reversal(), 0.5, {{"output", "middle"}, {"directions", "mean"}});
-  EXPECT_NEAR(added_by_both(files, 0.24), 0.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 0.26), -5.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 0.74), -5.0, 1e-9);
-  EXPECT_NEAR(added_by_both(files, 0.76), -10.0, 1e-9);
+  const auto files = write_fanuc(with_reversal(), 0.5, {{"output", "middle"}, {"directions", "mean"}});
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.24), 0.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.26), -5.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.74), -5.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 0.76), -10.0, 1e-9);
 }
 
 TEST(FanucTables, ErrorsInPlaceOfCompensations) {
-  const auto files = write(with_reversal(), 0.5, {{"sign", "error"}, {"reference_amount", "negative"}});
+  const auto files = write_fanuc(with_reversal(), 0.5, {{"sign", "error"}, {"reference_amount", "negative"}});
   EXPECT_THAT(text_of(files), HasSubstr("VALUES ERRORS\n"));
   EXPECT_THAT(text_of(files), HasSubstr("NUMBER VALUE\n0 0\n1 5\n2 5\n"));
-  EXPECT_NEAR(added_by_both(files, 1.0, -1), -6.0, 1e-9);
+  EXPECT_NEAR(fanuc_added_by_both(files, 1.0, -1), -6.0, 1e-9);
 }
 
 TEST(FanucTables, WhatIsNotConfirmedIsAskedFor) {

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 const TableFormat& heidenhain() { return *find_table_format("heidenhain"); }
 
 /// Added to the commands, um, as the format's own reader and the simulated control say.
-Eigen::Vector3d added_by_both(const std::vector<TableFile>& files, const AxisPosition& at) {
+Eigen::Vector3d heidenhain_added_by_both(const std::vector<TableFile>& files, const AxisPosition& at) {
   const Eigen::Vector3d own = heidenhain().read(files).correction(at, kTowardsPlus);
   sim::MachineState state;
   state.position = at;
@@ -42,11 +42,12 @@ TEST(HeidenhainTables, InterpolateLikeTheExampleOfTnc306) {
                                          "; VOLCAL VALUES ARE COMPENSATIONS\nAXISPOS Y\n"
                                          "-990 0\n-973.616 -0.06\n-957.232 -0.09\n-908.08 -0.12\n"
                                          "-891.696 -0.12\n-875.312 -0.1\n-858.928 -0.09\n"}};
-  EXPECT_NEAR(added_by_both(files, z_mm(-973.616)).y(), -60.0, 1e-6);
-  EXPECT_NEAR(added_by_both(files, z_mm(-940.848)).y(), -100.0, 1e-6) << "line 3: a third of the way";
-  EXPECT_NEAR(added_by_both(files, z_mm(-924.464)).y(), -110.0, 1e-6) << "line 4: two thirds";
-  EXPECT_NEAR(added_by_both(files, z_mm(-858.928)).y(), -90.0, 1e-6);
-  EXPECT_EQ(added_by_both(files, z_mm(-940.848)).z(), 0.0) << "Y is moved, not Z";
+  EXPECT_NEAR(heidenhain_added_by_both(files, z_mm(-973.616)).y(), -60.0, 1e-6);
+  EXPECT_NEAR(heidenhain_added_by_both(files, z_mm(-940.848)).y(), -100.0, 1e-6)
+      << "line 3: a third of the way";
+  EXPECT_NEAR(heidenhain_added_by_both(files, z_mm(-924.464)).y(), -110.0, 1e-6) << "line 4: two thirds";
+  EXPECT_NEAR(heidenhain_added_by_both(files, z_mm(-858.928)).y(), -90.0, 1e-6);
+  EXPECT_EQ(heidenhain_added_by_both(files, z_mm(-940.848)).z(), 0.0) << "Y is moved, not Z";
 }
 
 /// The same page: the largest difference is 16.384 mm / 64 = 0.256 mm.
@@ -78,7 +79,7 @@ TEST(HeidenhainTables, PointsOfADatumStandWhereTheExampleOfTnc407HasThem) {
   const std::array<double, 8> marked = {-90.0,    -76.8928, -63.7856, -50.6784,
                                         -37.5712, -24.464,  -11.3568, 1.7504};
   for (std::size_t i = 0; i < marked.size(); ++i)
-    EXPECT_NEAR(added_by_both(files, y_mm(marked[i])).z(), -2.0 * static_cast<double>(i), 1e-6);
+    EXPECT_NEAR(heidenhain_added_by_both(files, y_mm(marked[i])).z(), -2.0 * static_cast<double>(i), 1e-6);
 }
 
 /// MANUALplus 620 Technical Manual, 01/2012, page 718: the axis of the column of the .COM is a function of
@@ -88,7 +89,7 @@ TEST(HeidenhainTables, AssignLikeTheExampleOfManualPlus) {
       {"CONFIG.CMA.txt", "ACTIVE Y Z\n- OLD.COM OLD.COM\n* Y.COM Z.COM\n"},
       {"Y.COM.txt", "; VOLCAL VALUES ARE COMPENSATIONS\nAXISPOS Y Z\n-90 0 0\n410 0.01 0.02\n"},
       {"Z.COM.txt", "; VOLCAL VALUES ARE COMPENSATIONS\nAXISPOS Z\n-200 0\n600 0.04\n"}};
-  const Eigen::Vector3d added = added_by_both(files, {0.0, 0.16, 0.0});
+  const Eigen::Vector3d added = heidenhain_added_by_both(files, {0.0, 0.16, 0.0});
   EXPECT_NEAR(added.y(), 5.0, 1e-6);
   EXPECT_NEAR(added.z(), 10.0 + 10.0, 1e-6) << "sag and pitch at once";
 }
@@ -101,8 +102,8 @@ FitResult sagging() {
       10);
 }
 
-std::vector<TableFile> write(const FitResult& result, std::map<std::string, std::string> settings,
-                             double step = 0.3, CompensationType type = heidenhain().supported) {
+std::vector<TableFile> write_heidenhain(const FitResult& result, std::map<std::string, std::string> settings,
+                                        double step = 0.3, CompensationType type = heidenhain().supported) {
   TableFormatOptions options;
   options.type = type;
   options.step = step;
@@ -112,40 +113,42 @@ std::vector<TableFile> write(const FitResult& result, std::map<std::string, std:
 
 /// 0.02 mm of step / 0.1 um = 200000, 2^17 = 131072: 13.1072 mm. The curve begins with 0 at the datum.
 TEST(HeidenhainTables, SpacingIsThePowerOfTwoBelowTheStep) {
-  const auto files =
-      write(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 20e-3, CompensationPart::Positioning);
+  const auto files = write_heidenhain(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 20e-3,
+                                      CompensationPart::Positioning);
   // -300 mm is 22.9 spacings from home: 23 of them are -301.4656 mm
   EXPECT_THAT(file_named(files, "Y.COM.txt").content,
               HasSubstr("DATUM -301.4656\nSPACING 17\nNR Y\n0 0.0000\n1 0.0002\n2 0.0003\n"));
-  EXPECT_NEAR(added_by_both(files, y_mm(1000.0)).y() - added_by_both(files, y_mm(0.0)).y(), -12.0, 0.1);
+  EXPECT_NEAR(
+      heidenhain_added_by_both(files, y_mm(1000.0)).y() - heidenhain_added_by_both(files, y_mm(0.0)).y(),
+      -12.0, 0.1);
 }
 
 TEST(HeidenhainTables, HoldTheSignThatIsAskedFor) {
-  EXPECT_THROW(write(sagging(), {}), InputError);
-  EXPECT_THROW(write(sagging(), {{"sign", "up"}}), InputError);
-  const auto errors = write(sagging(), {{"sign", "error"}});
-  const auto corrections = write(sagging(), {{"sign", "compensation"}});
+  EXPECT_THROW(write_heidenhain(sagging(), {}), InputError);
+  EXPECT_THROW(write_heidenhain(sagging(), {{"sign", "up"}}), InputError);
+  const auto errors = write_heidenhain(sagging(), {{"sign", "error"}});
+  const auto corrections = write_heidenhain(sagging(), {{"sign", "compensation"}});
   EXPECT_THAT(file_named(errors, "Y.COM.txt").content,
               HasSubstr("AXISPOS X Y Z\n-300.0000 0.0000 -0.0036 0.0000\n"));
   EXPECT_THAT(file_named(corrections, "Y.COM.txt").content,
               HasSubstr("AXISPOS X Y Z\n-300.0000 0.0000 0.0036 0.0000\n"));
   EXPECT_THAT(file_named(errors, "CONFIG.CMA.txt").content, HasSubstr("ACTIVE X Y Z\n* X.COM Y.COM Z.COM\n"));
-  EXPECT_NEAR(added_by_both(errors, y_mm(900.0)).y(), -10.8, 1e-6);
-  EXPECT_NEAR(added_by_both(corrections, y_mm(900.0)).y(), -10.8, 1e-6);
+  EXPECT_NEAR(heidenhain_added_by_both(errors, y_mm(900.0)).y(), -10.8, 1e-6);
+  EXPECT_NEAR(heidenhain_added_by_both(corrections, y_mm(900.0)).y(), -10.8, 1e-6);
 }
 
 /// 9 dependencies; 640 points / 9 = 71.
 TEST(HeidenhainTables, PointsOfAllDependenciesAreCounted) {
-  EXPECT_NO_THROW(write(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 30e-3));
+  EXPECT_NO_THROW(write_heidenhain(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 30e-3));
   try {
-    write(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 10e-3);
+    write_heidenhain(sagging(), {{"sign", "error"}, {"rows", "spacing"}}, 10e-3);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("the control has 10 with 640"));
     EXPECT_THAT(error.remedy(), HasSubstr("--step"));
   }
-  EXPECT_NO_THROW(write(sagging(), {{"sign", "error"}}, 10e-3)) << "256 points of each table";
-  EXPECT_THROW(write(sagging(), {{"sign", "error"}}, 3e-3), InputError);
+  EXPECT_NO_THROW(write_heidenhain(sagging(), {{"sign", "error"}}, 10e-3)) << "256 points of each table";
+  EXPECT_THROW(write_heidenhain(sagging(), {{"sign", "error"}}, 3e-3), InputError);
 }
 
 }  // namespace

@@ -23,13 +23,13 @@ using testing_support::reversal;
 
 const Eigen::Vector3i kGrid{5, 4, 4};
 
-sim::HiddenEffect hidden(const std::string& kind, const std::string& symbol, double rms) {
+sim::HiddenEffect hidden_beside(const std::string& kind, const std::string& symbol, double rms) {
   sim::HiddenEffect effect{.kind = kind, .options = {}, .rms = rms};
   effect.options.set("symbol", symbol);
   return effect;
 }
 
-Diagnosis diagnosed(const FittedStudy& study, bool climb, std::vector<std::string> leave_out = {}) {
+Diagnosis searched(const FittedStudy& study, bool climb, std::vector<std::string> leave_out = {}) {
   DiagnoseOptions options;
   options.climb = climb;
   options.leave_out = std::move(leave_out);
@@ -38,7 +38,7 @@ Diagnosis diagnosed(const FittedStudy& study, bool climb, std::vector<std::strin
   return diagnose(study.simulated.campaign, study.result, options);
 }
 
-std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
+std::vector<std::string> kinds_and_targets(const std::vector<EffectFinding>& findings) {
   std::vector<std::string> all;
   all.reserve(findings.size());
   for (const EffectFinding& finding : findings) all.push_back(finding.name.kind + " " + finding.name.target);
@@ -47,24 +47,24 @@ std::vector<std::string> targets(const std::vector<EffectFinding>& findings) {
 
 TEST(EffectSearch, AStepTellsTheFirstEffectAndThatMoreHasAName) {
   const FittedStudy study(hiding({reversal("EXX", 0.7e-6), reversal("EYY", 0.5e-6)}, kGrid));
-  const Diagnosis step = diagnosed(study, false);
+  const Diagnosis step = searched(study, false);
   EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
-  EXPECT_THAT(targets(step.effects), ::testing::ElementsAre("reversal EXX"));
+  EXPECT_THAT(kinds_and_targets(step.effects), ::testing::ElementsAre("reversal EXX"));
   EXPECT_EQ(step.ladder.size(), 2U);
   EXPECT_THAT(step.words, ::testing::Contains(::testing::HasSubstr("the catalogue has a name for it")));
-  EXPECT_THAT(targets(step.ranking), ::testing::Contains("reversal EYY"));
+  EXPECT_THAT(kinds_and_targets(step.ranking), ::testing::Contains("reversal EYY"));
 }
 
 /// Two channels that read the same: every thermal effect has a twin, and no set is lost.
 TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
-  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 1.2e-6),
-                    second = hidden("thermal-tilt", "ECX", 1.2e-6);
+  sim::HiddenEffect first = hidden_beside("thermal-tilt", "EAZ", 1.2e-6),
+                    second = hidden_beside("thermal-tilt", "ECX", 1.2e-6);
   for (sim::HiddenEffect* effect : {&first, &second}) effect->options.set("channel", "column");
   sim::Study study = hiding({first, second}, kGrid);
   study.environment.channels[0].amplitude = 1.0;
   study.environment.channels.push_back(study.environment.channels[0]);
   study.environment.channels[1].name = "ram";
-  const Diagnosis diagnosis = diagnosed(FittedStudy(study), true);
+  const Diagnosis diagnosis = searched(FittedStudy(study), true);
   EXPECT_EQ(to_string(diagnosis.verdict), "ONE_OF");
   EXPECT_TRUE(diagnosis.effects.empty());
   const auto sets = sets_of_alternatives(diagnosis);
@@ -84,7 +84,7 @@ TEST(EffectSearch, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
 
 /// A scan of both temperatures sees both effects at once, and does better than either name.
 TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
-  sim::HiddenEffect first = hidden("thermal-tilt", "EAZ", 2.5e-6), second = first;
+  sim::HiddenEffect first = hidden_beside("thermal-tilt", "EAZ", 2.5e-6), second = first;
   first.options.set("channel", "column");
   second.options.set("channel", "ram");
   sim::Study campaign = hiding({first, second}, kGrid);
@@ -110,25 +110,25 @@ TEST(EffectSearch, NamesTwoEffectsThatAScanTakesForOne) {
 
 /// Backlash that grows along the travel and passes through zero on it: of either part there is little alone.
 TEST(EffectSearch, NamesTwoEffectsThatHideEachOther) {
-  sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden("reversal-position", "EYY", 0.0);
+  sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden_beside("reversal-position", "EYY", 0.0);
   constant.rms.reset();
   growing.rms.reset();
   constant.amplitude = 1.6e-6;
   growing.amplitude = -4e-6;
-  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({constant, growing}, kGrid)), true);
-  EXPECT_THAT(targets(diagnosis.effects),
+  const Diagnosis diagnosis = searched(FittedStudy(hiding({constant, growing}, kGrid)), true);
+  EXPECT_THAT(kinds_and_targets(diagnosis.effects),
               ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
 }
 
 TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
-  sim::HiddenEffect bump = hidden("local-bump", "EZX", 1.5e-6);
+  sim::HiddenEffect bump = hidden_beside("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);
   bump.options.set("width", 0.12);
   bump.options.set("by", "Y");
   bump.options.set("by_centre", 0.1);
   bump.options.set("by_width", 0.12);
   const FittedStudy study(hiding({bump}, kGrid));
-  const Diagnosis diagnosis = diagnosed(study, false);
+  const Diagnosis diagnosis = searched(study, false);
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());
   ASSERT_FALSE(diagnosis.unknown.empty());
@@ -137,9 +137,9 @@ TEST(EffectSearch, WhatIsInNoCatalogueGetsNoName) {
 
 /// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
 TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
-  sim::HiddenEffect memory = hidden("direction-memory", "EYY", 1.5e-6);
+  sim::HiddenEffect memory = hidden_beside("direction-memory", "EYY", 1.5e-6);
   memory.options.set("length", 0.05);
-  const Diagnosis diagnosis = diagnosed(FittedStudy(hiding({memory}, kGrid)), true);
+  const Diagnosis diagnosis = searched(FittedStudy(hiding({memory}, kGrid)), true);
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());
   ASSERT_FALSE(diagnosis.unknown.empty());
@@ -148,10 +148,10 @@ TEST(EffectSearch, AReversalThatIsTakenUpOnTheWayGetsNoName) {
 
 /// A screw that no name of the catalogue stands for is told by its period.
 TEST(EffectSearch, AWaveWithoutANameIsToldByItsPeriod) {
-  sim::HiddenEffect lead = hidden("screw-lead", "EXX", 0.6e-6);
+  sim::HiddenEffect lead = hidden_beside("screw-lead", "EXX", 0.6e-6);
   lead.options.set("period", 10.3e-3);
   const FittedStudy study(hiding({lead}, kGrid));
-  const Diagnosis diagnosis = diagnosed(study, true, {"lead-error", "encoder-subdivision"});
+  const Diagnosis diagnosis = searched(study, true, {"lead-error", "encoder-subdivision"});
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   ASSERT_FALSE(diagnosis.unknown.empty());
   EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::ElementsAre("x"));
@@ -203,7 +203,7 @@ TEST(EffectSearch, WhatCirclesShowIsSeenWithoutAName) {
   study.measurements.emplace_back().settings = circles_in_xy();
   const FittedStudy fitted(study);
   expect_shares_of_motion(fitted.model);
-  const Diagnosis diagnosis = diagnosed(fitted, true, {"servo-mismatch", "following-error"});
+  const Diagnosis diagnosis = searched(fitted, true, {"servo-mismatch", "following-error"});
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   ASSERT_FALSE(diagnosis.unknown.empty());
   EXPECT_THAT(diagnosis.unknown[0].variables,
@@ -212,7 +212,7 @@ TEST(EffectSearch, WhatCirclesShowIsSeenWithoutAName) {
 
 /// The shortest lag that is looked for explains nearly all of what follows a temperature at once.
 TEST(EffectSearch, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
-  sim::HiddenEffect tilt = hidden("thermal-tilt", "EAZ", 5e-6);
+  sim::HiddenEffect tilt = hidden_beside("thermal-tilt", "EAZ", 5e-6);
   tilt.options.set("channel", "column");
   sim::Study campaign = hiding({tilt}, kGrid);
   campaign.environment.channels[0].amplitude = 1.0;
@@ -242,7 +242,7 @@ TEST(EffectSearch, FindsWhatTheNoiseHasTakenUp) {
   ASSERT_NE(ball_bar, fitted.model.noise_groups().end());
   const auto group = static_cast<std::size_t>(ball_bar - fitted.model.noise_groups().begin());
   EXPECT_GT(noise.instruments[group].parameters.wander, 0.2e-6);
-  EXPECT_THAT(targets(diagnosed(fitted, true).effects), ::testing::ElementsAre("servo-mismatch XY"));
+  EXPECT_THAT(kinds_and_targets(searched(fitted, true).effects), ::testing::ElementsAre("servo-mismatch XY"));
 }
 
 TEST(ScanVariables, OfAnEffect) {

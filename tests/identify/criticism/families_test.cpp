@@ -18,7 +18,7 @@ using testing_support::families_of;
 using testing_support::white_projector;
 using testing_support::white_residual;
 
-const LinearModel& model() {
+const LinearModel& model_of_families() {
   static const testing_support::FittedStudy fitted(testing_support::hiding({}, {4, 3, 3}));
   return fitted.model;
 }
@@ -28,10 +28,10 @@ const LinearModel& model() {
 class ExpectedFunctions {
  public:
   ExpectedFunctions() {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(model().problem().prior_precision);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(model_of_families().problem().prior_precision);
     const Eigen::ArrayXd held = (eigen.eigenvalues().array() > 1e6).cast<double>();
     const Eigen::ArrayXd spread = held * eigen.eigenvalues().array().max(1.0).rsqrt();
-    signals_ = model().problem().jacobian * eigen.eigenvectors() * spread.matrix().asDiagonal();
+    signals_ = model_of_families().problem().jacobian * eigen.eigenvectors() * spread.matrix().asDiagonal();
   }
   Eigen::VectorXd draw(std::mt19937_64& random) const {
     std::normal_distribution<double> normal;
@@ -48,7 +48,7 @@ class ExpectedFunctions {
 double most_by_chance(double n, double p) { return n * p + 3.1 * std::sqrt(n * p * (1.0 - p)) + 1.0; }
 
 TEST(Families, ScansKeepTheirProbability) {
-  const std::vector<Family> scanned = families_of(model(), "lead-error");
+  const std::vector<Family> scanned = families_of(model_of_families(), "lead-error");
   ASSERT_EQ(scanned.size(), 3U);
   for (const Family& family : scanned) ASSERT_GT(family.scan.size(), 20U);
   std::mt19937_64 random(7);
@@ -56,9 +56,9 @@ TEST(Families, ScansKeepTheirProbability) {
   int below_tenth = 0, below_hundredth = 0, unpriced = 0;
   const ExpectedFunctions functions;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Projector projector =
-        white_projector(model(), white_residual(model(), random) + functions.draw(random));
-    for (const FamilyTest& test : test_families(model(), scanned, projector, 2)) {
+    const Projector projector = white_projector(
+        model_of_families(), white_residual(model_of_families(), random) + functions.draw(random));
+    for (const FamilyTest& test : test_families(model_of_families(), scanned, projector, 2)) {
       below_tenth += test.log10_p < -1.0 ? 1 : 0;
       below_hundredth += test.log10_p < -2.0 ? 1 : 0;
       unpriced += test.score.log10_p < -1.0 ? 1 : 0;
@@ -77,21 +77,22 @@ TEST(Families, ScansKeepTheirProbability) {
 
 /// 2 log-likelihood of k further amplitudes must exceed k ln n: components that bring nothing cost nothing.
 TEST(Families, ADisplacementPaysForTheComponentsThatItNeeds) {
-  const std::vector<Family> offsets = families_of(model(), "tool-expansion");
+  const std::vector<Family> offsets = families_of(model_of_families(), "tool-expansion");
   ASSERT_EQ(offsets.size(), 1U);
   const Family& family = offsets[0];
   ASSERT_EQ(family.amplitudes(), 3);
   ASSERT_TRUE(family.independent_components());
 
   std::mt19937_64 random(11);
-  const Eigen::VectorXd noise = white_residual(model(), random);
-  const Eigen::MatrixXd columns = family_columns(model(), family, family.scan[0]);
+  const Eigen::VectorXd noise = white_residual(model_of_families(), random);
+  const Eigen::MatrixXd columns = family_columns(model_of_families(), family, family.scan[0]);
   const Eigen::MatrixXd second = columns.col(1);
-  const double u = 1.0 / std::sqrt(white_projector(model(), noise).project(second).gram(0, 1)(0, 0));
-  const Projector projector = white_projector(model(), noise + 12.0 * u * columns.col(1));
-  const FamilyTest test = test_families(model(), offsets, projector, 1)[0];
+  const double u =
+      1.0 / std::sqrt(white_projector(model_of_families(), noise).project(second).gram(0, 1)(0, 0));
+  const Projector projector = white_projector(model_of_families(), noise + 12.0 * u * columns.col(1));
+  const FamilyTest test = test_families(model_of_families(), offsets, projector, 1)[0];
 
-  const double price = std::log(static_cast<double>(model().size()));
+  const double price = std::log(static_cast<double>(model_of_families().size()));
   const ScoreTest alone = score_test(projector.project(second), 0, 1);
   EXPECT_NEAR(alone.lm, test.score.lm_of({1}), 1e-6 * alone.lm);
   EXPECT_NEAR(alone.lm, 144.0, 60.0);
@@ -100,9 +101,9 @@ TEST(Families, ADisplacementPaysForTheComponentsThatItNeeds) {
 }
 
 TEST(Families, OneAmplitudeAndOneSineAreNoComponents) {
-  EXPECT_FALSE(families_of(model(), "reversal").at(0).independent_components());
-  EXPECT_FALSE(families_of(model(), "lead-error").at(0).independent_components());
-  EXPECT_FALSE(families_of(model(), "resolution").at(0).independent_components());
+  EXPECT_FALSE(families_of(model_of_families(), "reversal").at(0).independent_components());
+  EXPECT_FALSE(families_of(model_of_families(), "lead-error").at(0).independent_components());
+  EXPECT_FALSE(families_of(model_of_families(), "resolution").at(0).independent_components());
 }
 
 }  // namespace

@@ -15,20 +15,21 @@ namespace {
 
 constexpr Eigen::Index kOfSetup = 60;
 constexpr Eigen::Index kSetups = 2;
-constexpr Eigen::Index kReadings = kOfSetup * kSetups;
-constexpr NoiseParameters kNoise{.white = 0.9, .wander = 1.3, .tau = 400.0, .line = 0.5, .per_metre = 0.0};
+constexpr Eigen::Index kHeldoutReadings = kOfSetup * kSetups;
+constexpr NoiseParameters kHeldoutNoise{
+    .white = 0.9, .wander = 1.3, .tau = 400.0, .line = 0.5, .per_metre = 0.0};
 
 /// A slope that both setups share and an offset of each; lines of eight readings, every fourth held out.
 struct Example {
   NoiseProblem problem;
   std::vector<bool> heldout;
-  Eigen::MatrixXd sigma = Eigen::MatrixXd::Zero(kReadings, kReadings);  // by its formula
+  Eigen::MatrixXd sigma = Eigen::MatrixXd::Zero(kHeldoutReadings, kHeldoutReadings);  // by its formula
 
   Example() {
-    problem.jacobian.setZero(kReadings, 1 + kSetups);
-    problem.residual.setZero(kReadings);
+    problem.jacobian.setZero(kHeldoutReadings, 1 + kSetups);
+    problem.residual.setZero(kHeldoutReadings);
     problem.prior_precision = Eigen::Vector3d(2.0, 0.0, 0.0).asDiagonal();
-    problem.data.sigma.assign(kReadings, 1.0);
+    problem.data.sigma.assign(kHeldoutReadings, 1.0);
     for (Eigen::Index setup = 0; setup < kSetups; ++setup) add_setup(setup);
   }
 
@@ -48,9 +49,9 @@ struct Example {
       for (Eigen::Index j = 0; j < kOfSetup; ++j) {
         const Eigen::Index other = setup * kOfSetup + j;
         const double apart = 4.0 * std::abs(static_cast<double>(i - j));
-        sigma(row, other) = std::pow(kNoise.wander, 2) * std::exp(-apart / kNoise.tau);
-        if (row / 8 == other / 8) sigma(row, other) += std::pow(kNoise.line, 2);
-        if (row == other) sigma(row, other) += std::pow(kNoise.white, 2);
+        sigma(row, other) = std::pow(kHeldoutNoise.wander, 2) * std::exp(-apart / kHeldoutNoise.tau);
+        if (row / 8 == other / 8) sigma(row, other) += std::pow(kHeldoutNoise.line, 2);
+        if (row == other) sigma(row, other) += std::pow(kHeldoutNoise.white, 2);
       }
     }
   }
@@ -62,11 +63,11 @@ struct Example {
     return chosen;
   }
   Projector projector(const NoiseProblem& of) const {
-    return {of, without(of.data, heldout), {&kNoise, 1}, 1};
+    return {of, without(of.data, heldout), {&kHeldoutNoise, 1}, 1};
   }
   std::vector<HeldoutBlock> blocks() const {
     return heldout_errors(
-        problem.data, heldout, {&kNoise, 1}, projector(problem),
+        problem.data, heldout, {&kHeldoutNoise, 1}, projector(problem),
         [&](const std::vector<Eigen::Index>& at) { return problem.jacobian(at, Eigen::all).eval(); },
         [&](Eigen::Index parameter) { return problem.jacobian.col(parameter).eval(); }, 1);
   }
@@ -74,13 +75,13 @@ struct Example {
 
 TEST(SharedNoise, TimesWeightsIsTheProductWithItsCovariance) {
   const Example example;
-  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(kReadings, -1.0, 2.0);
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(kHeldoutReadings, -1.0, 2.0);
   for (const NoiseSequence& sequence : example.problem.data.sequences) {
-    const SharedNoise shared(sequence, kNoise);
+    const SharedNoise shared(sequence, kHeldoutNoise);
     const Eigen::VectorXd product = shared.times(weights);
     for (std::size_t i = 0; i < sequence.observation.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(sequence.observation[i]);
-      const double own = std::pow(kNoise.white, 2) * weights[row];
+      const double own = std::pow(kHeldoutNoise.white, 2) * weights[row];
       EXPECT_NEAR(product[static_cast<Eigen::Index>(i)], example.sigma.row(row).dot(weights) - own, 1e-12);
     }
   }
@@ -118,7 +119,7 @@ TEST(HeldoutErrors, SquaresOfDrawnNoiseAreAsExpected) {
   HeldoutFigures figures;
   for (int draw = 0; draw < kDraws; ++draw) {
     NoiseProblem problem = example.problem;
-    problem.residual = root * Eigen::VectorXd::NullaryExpr(kReadings, [&] { return normal(random); });
+    problem.residual = root * Eigen::VectorXd::NullaryExpr(kHeldoutReadings, [&] { return normal(random); });
     problem.residual += problem.jacobian.col(0) * normal(random) / std::sqrt(2.0);  // drawn from its prior
     const Eigen::VectorXd left = problem.residual - problem.jacobian * example.projector(problem).solution();
     figures = heldout_figures(blocks, left);
@@ -129,7 +130,7 @@ TEST(HeldoutErrors, SquaresOfDrawnNoiseAreAsExpected) {
   EXPECT_NEAR(mean, figures.expected, 4.0 * deviation / std::sqrt(double{kDraws}));
   EXPECT_NEAR(deviation, figures.spread, 0.2 * figures.spread);
   // As if the held-out readings had a wander of their own: half as much again.
-  const double apart = figures.count * (std::pow(kNoise.white, 2) + std::pow(kNoise.wander, 2));
+  const double apart = figures.count * (std::pow(kHeldoutNoise.white, 2) + std::pow(kHeldoutNoise.wander, 2));
   EXPECT_LT(figures.expected, 0.8 * apart);
 }
 

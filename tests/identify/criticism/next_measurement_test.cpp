@@ -39,12 +39,12 @@ sim::Study one_tool_per_station(const std::vector<std::string>& again = {}) {
   return study;
 }
 
-sim::HiddenEffect hidden(const std::string& kind, double amplitude) {
+sim::HiddenEffect hidden_next(const std::string& kind, double amplitude) {
   sim::HiddenEffect effect{.kind = kind, .options = {}, .amplitude = amplitude};
   return effect;
 }
 
-Diagnosis diagnosed(const sim::Study& study, std::vector<EffectSpec> separate = {}) {
+Diagnosis diagnosed_next(const sim::Study& study, std::vector<EffectSpec> separate = {}) {
   const sim::SimulatedCampaign simulated = sim::simulate(study);
   const FitResult result = fit(simulated.campaign, ModelSpec{});
   DiagnoseOptions options;
@@ -58,7 +58,7 @@ bool among(const EffectName& name, const std::vector<EffectName>& names) {
 
 /// Wavelength against the uniform scale of the axes: only a length known without the laser tells.
 TEST(NextMeasurement, AnInvisibleLengthScaleAsksForACalibratedLength) {
-  const Diagnosis diagnosis = diagnosed(one_tool_per_station(), {effect_spec("length-scale", {})});
+  const Diagnosis diagnosis = diagnosed_next(one_tool_per_station(), {effect_spec("length-scale", {})});
   ASSERT_EQ(diagnosis.proposals.size(), 1U);
   const MeasurementProposal& proposal = diagnosis.proposals.front();
   EXPECT_EQ(proposal.action, "calibrated-length");
@@ -70,12 +70,12 @@ TEST(NextMeasurement, AnInvisibleLengthScaleAsksForACalibratedLength) {
 
 /// A drift of 17 um/h: ONE_OF before, NAMED once the station was visited again.
 TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
-  sim::HiddenEffect drift = hidden("station-drift", 17e-6);
+  sim::HiddenEffect drift = hidden_next("station-drift", 17e-6);
   drift.options.set("station", std::string("P1"));
   drift.options.set("direction", Eigen::Vector3d(1.0, 0.6, 0.0));
   sim::Study study = one_tool_per_station();
   study.hidden = {drift};
-  const Diagnosis before = diagnosed(study);
+  const Diagnosis before = diagnosed_next(study);
   ASSERT_EQ(before.verdict, Verdict::OneOf) << before.words.front();
   ASSERT_FALSE(before.proposals.empty());
   const MeasurementProposal& proposal = before.proposals.front();
@@ -87,20 +87,21 @@ TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
 
   study = one_tool_per_station({"P1"});
   study.hidden = {drift};
-  const Diagnosis after = diagnosed(study);
+  const Diagnosis after = diagnosed_next(study);
   ASSERT_EQ(after.verdict, Verdict::Named) << after.words.front();
   EXPECT_EQ(after.effects.front().name, kDrift);
 
   study = one_tool_per_station({"P3"});
   study.hidden = {drift};
-  EXPECT_EQ(diagnosed(study).verdict, Verdict::OneOf);  // as many readings elsewhere do not help
+  EXPECT_EQ(diagnosed_next(study).verdict, Verdict::OneOf);  // as many readings elsewhere do not help
 }
 
 /// 160 mm from position to position: 16 turns of a screw of 10 mm.
 TEST(NextMeasurement, APeriodThatDividesTheGridStepAsksForJitteredPositions) {
   sim::Study study = one_tool_per_station();
   std::get<sim::Tracking>(study.measurements.front().settings).jitter = 0.0;
-  const Diagnosis diagnosis = diagnosed(study, {effect_spec("lead-error", {{"symbol", std::string("EXX")}})});
+  const Diagnosis diagnosis =
+      diagnosed_next(study, {effect_spec("lead-error", {{"symbol", std::string("EXX")}})});
   ASSERT_FALSE(diagnosis.proposals.empty());
   const MeasurementProposal& proposal = diagnosis.proposals.front();
   EXPECT_EQ(proposal.action, "jittered-positions");
@@ -123,7 +124,7 @@ TEST(NextMeasurement, WhatTheModelHasIsRefused) {
 
 /// Every MIB is at least the MDB; of effects that are told apart least, the rival is among the nearest.
 TEST(Confounding, FiguresOfACampaign) {
-  const Diagnosis diagnosis = diagnosed(one_tool_per_station());
+  const Diagnosis diagnosis = diagnosed_next(one_tool_per_station());
   ASSERT_FALSE(diagnosis.ranking.empty());
   for (const EffectFinding& finding : diagnosis.ranking) {
     for (const AmplitudeFigure& figure : finding.amplitudes) {

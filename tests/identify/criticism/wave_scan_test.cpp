@@ -32,11 +32,11 @@ Eigen::VectorXd wave(AxisName axis, int direction, double period, double phase) 
   return moved;
 }
 
-std::vector<WaveTest> scanned(const Eigen::VectorXd& residual, int threads = 1) {
+std::vector<WaveTest> scanned_waves(const Eigen::VectorXd& residual, int threads = 1) {
   return wave_scan(model_of_nothing_hidden(), white_projector(model_of_nothing_hidden(), residual), threads);
 }
 
-const WaveTest& least_probable(const std::vector<WaveTest>& tests) {
+const WaveTest& least_probable_wave(const std::vector<WaveTest>& tests) {
   return *std::ranges::min_element(tests, {}, &WaveTest::log10_p);
 }
 
@@ -57,10 +57,10 @@ TEST(WaveScan, FindsScrewsAndScalesAtTheirPeriod) {
                                                       {AxisName::X, 2, 41e-6}};
   std::mt19937_64 random(21);
   for (const auto& [axis, direction, period] : hidden) {
-    const std::vector<WaveTest> tests = scanned(white_residual(model_of_nothing_hidden(), random) +
-                                                2e-6 * wave(axis, direction, period, 0.7));
+    const std::vector<WaveTest> tests = scanned_waves(white_residual(model_of_nothing_hidden(), random) +
+                                                      2e-6 * wave(axis, direction, period, 0.7));
     ASSERT_EQ(tests.size(), 9U) << "three axes, three directions";
-    const WaveTest& least = least_probable(tests);
+    const WaveTest& least = least_probable_wave(tests);
     EXPECT_EQ(least.axis, axis) << period;
     EXPECT_EQ(least.direction, direction) << period;
     EXPECT_NEAR(1.0 / least.period, 1.0 / period, 0.2 / range_of(axis)) << period;
@@ -85,7 +85,7 @@ TEST(WaveScan, TestsTheProjectedWave) {
 TEST(WaveScan, IsTheSameForAnyNumberOfThreads) {
   std::mt19937_64 random(23);
   const Eigen::VectorXd residual = white_residual(model_of_nothing_hidden(), random);
-  const std::vector<WaveTest> one = scanned(residual, 1), three = scanned(residual, 3);
+  const std::vector<WaveTest> one = scanned_waves(residual, 1), three = scanned_waves(residual, 3);
   ASSERT_EQ(one.size(), three.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].period, three[i].period);
@@ -98,7 +98,7 @@ TEST(WaveScan, HoldsItsLevelOnNoise) {
   std::mt19937_64 random(24);
   int below = 0, tests = 0;
   for (int campaign = 0; campaign < 20; ++campaign) {
-    for (const WaveTest& test : scanned(white_residual(model_of_nothing_hidden(), random))) {
+    for (const WaveTest& test : scanned_waves(white_residual(model_of_nothing_hidden(), random))) {
       ++tests;
       below += test.log10_p < std::log10(0.05) ? 1 : 0;
     }
@@ -122,7 +122,7 @@ TEST(WaveScan, TakesWhatRepeatsAtAPositionForNoWave) {
     moved[i] *= entry->second;
   }
   ASSERT_LE(2 * of_position.size(), model.size()) << "positions are met from both sides";
-  const WaveTest& least = least_probable(scanned(white_residual(model, random) + moved));
+  const WaveTest& least = least_probable_wave(scanned_waves(white_residual(model, random) + moved));
   EXPECT_GT(least.log10_p, -3.0);
   EXPECT_LT(2.0 * least.lm, least.projected_lm) << "the noise alone would make it one";
 }

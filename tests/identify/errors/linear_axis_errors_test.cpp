@@ -21,7 +21,7 @@ using testing_support::random_machine;
 using testing_support::random_vector;
 using testing_support::uniform;
 
-constexpr double kSameAsPlain = 1e-12;  // of the largest
+constexpr double kLinesAsPlain = 1e-12;  // of the largest
 
 int random_count(std::mt19937_64& random, int low, int high) {
   return std::uniform_int_distribution<int>(low, high)(random);
@@ -64,7 +64,7 @@ ParameterBlock block_of(ParameterKind kind, const std::string& name) {
 }
 
 /// Two groups of functions per axis with knots of their own, squareness, two reversals, all at random.
-FitResult random_result(const Machine& machine, std::mt19937_64& random, int highest_degree = 8) {
+FitResult random_linear_result(const Machine& machine, std::mt19937_64& random, int highest_degree = 8) {
   FitResult result;
   result.machine = machine;
   ParameterLayout& layout = result.layout;
@@ -127,8 +127,8 @@ MachineEffects effects_of(const FitResult& result, const Vector3d& tool) {
   return {result, tool_at(tool), {}};
 }
 
-void expect_same_as_plain(const Machine& machine, std::mt19937_64& random) {
-  const FitResult result = random_result(machine, random);
+void expect_lines_as_plain(const Machine& machine, std::mt19937_64& random) {
+  const FitResult result = random_linear_result(machine, random);
   const Vector3d tool = random_vector(random, 0.3);
   const auto errors = LinearAxisErrors::make(result, tool, effects_of(result, tool));
   ASSERT_TRUE(errors);
@@ -144,23 +144,23 @@ void expect_same_as_plain(const Machine& machine, std::mt19937_64& random) {
         std::max(difference, (errors->at(positions[i], directions[i]) - wanted).cwiseAbs().maxCoeff());
   }
   EXPECT_GT(largest, 1e-7);
-  EXPECT_LT(difference, kSameAsPlain * largest) << machine.structure.code;
+  EXPECT_LT(difference, kLinesAsPlain * largest) << machine.structure.code;
 }
 
 TEST(LinearAxisErrors, AreThePlainFieldOfAnyMachine) {
   std::mt19937_64 random(71);
-  for (int i = 0; i < 50; ++i) expect_same_as_plain(random_machine(random), random);
+  for (int i = 0; i < 50; ++i) expect_lines_as_plain(random_machine(random), random);
 }
 
 TEST(LinearAxisErrors, AreThePlainFieldWhereAxesAreLacking) {
   std::mt19937_64 random(72);
   for (const char* code : {"wX'bZt", "wC'X'bYt", "wbAYt", "wZ'bt"})
-    expect_same_as_plain(machine_of(code), random);
+    expect_lines_as_plain(machine_of(code), random);
 }
 
 TEST(LinearAxisErrors, AtManyPositionsAreThoseAtEachToTheBit) {
   std::mt19937_64 random(73);
-  const FitResult result = random_result(random_machine(random), random);
+  const FitResult result = random_linear_result(random_machine(random), random);
   const Vector3d tool = random_vector(random, 0.3), none = Vector3d::Zero();
   const auto errors = LinearAxisErrors::make(result, tool, effects_of(result, tool));
   const DisplacementField field = displacement_field(result, tool_at(none), {});
@@ -179,7 +179,7 @@ TEST(LinearAxisErrors, AtManyPositionsAreThoseAtEachToTheBit) {
 
 TEST(LinearAxisErrors, CountsThatDifferAreRefused) {
   std::mt19937_64 random(74);
-  const FitResult result = random_result(machine_of("wX'bYZt"), random);
+  const FitResult result = random_linear_result(machine_of("wX'bYZt"), random);
   const auto errors = LinearAxisErrors::make(result, Vector3d::Zero(), effects_of(result, Vector3d::Zero()));
   const std::vector<AxisPosition> positions(3);
   const std::vector<ApproachDirection> directions(2);
@@ -190,7 +190,7 @@ TEST(LinearAxisErrors, CountsThatDifferAreRefused) {
 
 TEST(LinearAxisErrors, FunctionsOfHighDegreeKeepThePlainField) {
   std::mt19937_64 random(75);
-  FitResult result = random_result(machine_of("wX'bYZt"), random, 30);
+  FitResult result = random_linear_result(machine_of("wX'bYZt"), random, 30);
   const auto is_high = [](const FunctionGroup& group) { return group.basis->degree() > 8; };
   ASSERT_TRUE(std::ranges::any_of(result.layout.groups, is_high));
   const Vector3d tool = Vector3d::Zero();
@@ -199,7 +199,7 @@ TEST(LinearAxisErrors, FunctionsOfHighDegreeKeepThePlainField) {
   const DisplacementField plain = plain_displacement_field(result, tool_at(tool), {});
   for (const AxisPosition& position : random_positions(result, random, 20)) {
     const Vector3d wanted = plain(position, kTowardsPlus);
-    EXPECT_LT((field(position, kTowardsPlus) - wanted).norm(), kSameAsPlain * wanted.norm());
+    EXPECT_LT((field(position, kTowardsPlus) - wanted).norm(), kLinesAsPlain * wanted.norm());
   }
 }
 

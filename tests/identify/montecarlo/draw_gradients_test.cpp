@@ -15,8 +15,8 @@
 namespace volcal {
 namespace {
 
-constexpr double kRounding = 1e-11;
-constexpr int kDraws = DrawGradients::kDraws;
+constexpr double kGradientRounding = 1e-11;
+constexpr int kDrawsOfABlock = DrawGradients::kDraws;
 
 std::vector<double> sigmas(std::size_t count) {
   std::vector<double> sigma(count);
@@ -114,7 +114,7 @@ void expect_sums_of_rows(const MeasurementModel& model, std::mt19937_64& random,
         sums_of_rows(model, gradients.sigma, draws.parameters.col(k), draws.readings.col(k));
     EXPECT_GT(expected.gradient.norm(), 0.0);
     for (Eigen::Index i = 0; i < found.rows(); ++i)
-      EXPECT_NEAR(found(i, k), expected.gradient[i], kRounding * expected.sizes[i]) << i;
+      EXPECT_NEAR(found(i, k), expected.gradient[i], kGradientRounding * expected.sizes[i]) << i;
   }
 }
 
@@ -126,14 +126,14 @@ class DrawGradientsOnRandomChains : public ::testing::TestWithParam<std::uint64_
 
 TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRows) {
   const MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
-  for (const int count : {1, 5, kDraws}) expect_sums_of_rows(model, random_, count);
+  for (const int count : {1, 5, kDrawsOfABlock}) expect_sums_of_rows(model, random_, count);
 }
 
 TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsWithoutEffects) {
   ModelSpec spec = testing_support::rich_model(campaign_.machine);
   spec.effects.clear();
   const MeasurementModel model(campaign_, spec);
-  expect_sums_of_rows(model, random_, kDraws);
+  expect_sums_of_rows(model, random_, kDrawsOfABlock);
 }
 
 /// No joint turns and there are no effects: displacements and rotations follow from the arms.
@@ -144,21 +144,21 @@ TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsOfThreeAxes) {
   ModelSpec spec = testing_support::rich_model(machine);
   spec.effects.clear();
   const MeasurementModel model(campaign_, spec);
-  expect_sums_of_rows(model, random_, kDraws);
+  expect_sums_of_rows(model, random_, kDrawsOfABlock);
 }
 
 TEST_P(DrawGradientsOnRandomChains, EqualSumsOfRowsWithTheSecondOrderRemainder) {
   MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
   model.set_second_order_remainder(testing_support::random_parameters(model, random_));
-  expect_sums_of_rows(model, random_, kDraws);
+  expect_sums_of_rows(model, random_, kDrawsOfABlock);
 }
 
 TEST_P(DrawGradientsOnRandomChains, DoNotDependOnTheirNeighbours) {
   const MeasurementModel model(campaign_, testing_support::rich_model(campaign_.machine));
   Gradients gradients(model);
-  const Draws draws = draws_of(model, random_, kDraws);
+  const Draws draws = draws_of(model, random_, kDrawsOfABlock);
   const Eigen::MatrixXd together = gradients.at(draws.parameters, draws.readings);
-  for (int k = 0; k < kDraws; ++k) {
+  for (int k = 0; k < kDrawsOfABlock; ++k) {
     const Eigen::MatrixXd alone = gradients.at(draws.parameters.col(k), draws.readings.col(k));
     EXPECT_TRUE(alone.col(0) == together.col(k)) << k;
   }

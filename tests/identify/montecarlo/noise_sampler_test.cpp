@@ -23,14 +23,14 @@ NoiseData two_sequences() {
   return data;
 }
 
-const std::vector<NoiseParameters> kNoise = {{0.8, 1.1, 250.0, 0.7, 0.9}, {1.2, 0.5, 100.0, 0.4, 0.0}};
+const std::vector<NoiseParameters> kSampledNoise = {{0.8, 1.1, 250.0, 0.7, 0.9}, {1.2, 0.5, 100.0, 0.4, 0.0}};
 
 // Entries of 40,000 draws' mean outer product against Sigma within 5 standard errors sqrt((s_ii s_jj +
 // s_ij^2) / n).
 TEST(NoiseSampler, ErrorsHaveTheCovarianceOfTheNoiseModel) {
   constexpr int kDraws = 40000;
   const NoiseData data = two_sequences();
-  const NoiseSampler sampler(data, kNoise);
+  const NoiseSampler sampler(data, kSampledNoise);
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(8, 8);
   Eigen::VectorXd errors(8);
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
@@ -39,7 +39,7 @@ TEST(NoiseSampler, ErrorsHaveTheCovarianceOfTheNoiseModel) {
   }
   NoiseData kept = data;
   kept.sigma[3] = 1.0;
-  const Eigen::MatrixXd sigma = test::dense_covariance(kept, kNoise);
+  const Eigen::MatrixXd sigma = test::dense_covariance(kept, kSampledNoise);
   for (Eigen::Index i = 0; i < 8; ++i) {
     for (Eigen::Index j = 0; j < 8; ++j) {
       const double expected = i == 3 || j == 3 ? 0.0 : sigma(i, j);
@@ -52,10 +52,10 @@ TEST(NoiseSampler, ErrorsHaveTheCovarianceOfTheNoiseModel) {
 // Without the reading that is left out.
 TEST(Whitener, WeighIsTheInverseOfTheCovariance) {
   const NoiseData data = two_sequences();
-  const Whitener whitener(data, kNoise);
+  const Whitener whitener(data, kSampledNoise);
   NoiseData kept = data;
   kept.sigma[3] = 1.0;
-  const Eigen::MatrixXd sigma = test::dense_covariance(kept, kNoise);
+  const Eigen::MatrixXd sigma = test::dense_covariance(kept, kSampledNoise);
   const std::vector<Eigen::Index> there = {0, 1, 2, 4, 5, 6, 7};
   const Eigen::VectorXd column = Eigen::VectorXd::LinSpaced(8, -1.0, 2.0);
   const Eigen::VectorXd expected =

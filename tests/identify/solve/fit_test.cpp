@@ -30,7 +30,7 @@ sim::Tracking small_tracking() {
   return tracking;
 }
 
-ModelSpec spline_model(int intervals) {
+ModelSpec fitted_splines(int intervals) {
   ModelSpec model;
   model.default_function.knots = KnotChoice::IntervalCount;
   model.default_function.intervals = intervals;
@@ -64,9 +64,9 @@ TEST(Fit, CompressedAndPerReadingProblemsAgree) {
   const auto simulated = sim::simulate(small_study(0, tracking));
   FitOptions options;
   options.variance_components = false;
-  const FitResult compressed = fit(simulated.campaign, spline_model(3), options);
+  const FitResult compressed = fit(simulated.campaign, fitted_splines(3), options);
   options.solver = SolverKind::PerReading;
-  const FitResult reference = fit(simulated.campaign, spline_model(3), options);
+  const FitResult reference = fit(simulated.campaign, fitted_splines(3), options);
   ASSERT_NE(reference.status, FitStatus::NotConverged);
   ASSERT_NE(compressed.status, FitStatus::NotConverged);
   // A length of 1.5 m is rounded to 2e-16 m, 3e-10 of its sigma; over 1,024 readings the cost knows no better
@@ -80,9 +80,9 @@ TEST(Fit, DoesNotDependOnTheNumberOfThreads) {
   const auto simulated = sim::simulate(small_study(1, small_tracking()));
   FitOptions options;
   options.threads = 1;
-  const FitResult one = fit(simulated.campaign, spline_model(4), options);
+  const FitResult one = fit(simulated.campaign, fitted_splines(4), options);
   options.threads = 3;
-  const FitResult three = fit(simulated.campaign, spline_model(4), options);
+  const FitResult three = fit(simulated.campaign, fitted_splines(4), options);
   EXPECT_TRUE(one.parameters == three.parameters);
   EXPECT_TRUE(one.covariance == three.covariance);
 }
@@ -95,7 +95,7 @@ TEST_P(FitOfTracking, ConvergesFromStationsGuessedFiveCentimetresOff) {
   const auto simulated = sim::simulate(small_study(0, tracking));
   FitOptions options;
   options.noise = NoisePolicy::White;
-  const FitResult good = fit(simulated.campaign, spline_model(4), options);
+  const FitResult good = fit(simulated.campaign, fitted_splines(4), options);
   Campaign moved = simulated.campaign;
   int sign = 1;
   for (volcal::Setup& setup : moved.setups) {
@@ -103,7 +103,7 @@ TEST_P(FitOfTracking, ConvergesFromStationsGuessedFiveCentimetresOff) {
     setup.options.set("station", Eigen::Vector3d(station + Eigen::Vector3d(0.05 * sign, -0.05, 0.05)));
     sign = -sign;
   }
-  const FitResult far = fit(moved, spline_model(4), options);
+  const FitResult far = fit(moved, fitted_splines(4), options);
   EXPECT_EQ(far.status, good.status);
   // Not equal to rounding: the length-proportional part of the noise is taken from the guess.
   const Eigen::ArrayXd u = good.covariance.diagonal().cwiseSqrt().array() + 1e-12;
@@ -117,7 +117,7 @@ TEST_P(FitOfTracking, IsJudgedAlikeFromStationsGuessedFiveCentimetresOff) {
   auto simulated = sim::simulate(small_study(0, tracking));
   FitOptions options;
   options.noise = NoisePolicy::White;
-  const FitResult result = fit(simulated.campaign, spline_model(4), options);
+  const FitResult result = fit(simulated.campaign, fitted_splines(4), options);
   const double good = validate(simulated.campaign, result).figures.reduced_chi2;
   for (volcal::Setup& setup : simulated.campaign.setups) {
     const Eigen::Vector3d station = *setup.options.vector("station");
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Instruments, FitOfTracking, ::testing::Values("laser-tr
 
 TEST(Validate, RestsOnNothingThatIsLeftOut) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));
-  const FitResult result = fit(simulated.campaign, spline_model(4));
+  const FitResult result = fit(simulated.campaign, fitted_splines(4));
   volcal::Setup& points = simulated.validation.setups.front();
   const double other_components = validate(simulated.validation, result).figures.rms_after;
   points.left_out = {{3, 1, "one component"}, {5, 0, "all"}, {5, 1, "all"}, {5, 2, "all"}};
@@ -172,7 +172,7 @@ TEST(Fit, EstimatesAWrongStatedSigma) {
     setup.repeatability *= 0.5;
     for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 0.5 * *setup.noise.number(key));
   }
-  const FitResult result = fit(simulated.campaign, spline_model(5));
+  const FitResult result = fit(simulated.campaign, fitted_splines(5));
   ASSERT_EQ(result.variance_components.size(), 1U);
   EXPECT_NEAR(result.variance_components[0].scale, 2.0, 0.15);
   EXPECT_EQ(result.status, FitStatus::LackOfFit);
@@ -189,7 +189,7 @@ TEST(Fit, EstimatesTheNoiseOfLengthsAndAnglesApart) {
   for (volcal::Setup& setup : simulated.campaign.setups) {
     setup.noise.set("angle", 0.5 * *setup.noise.number("angle"));
   }
-  const FitResult result = fit(simulated.campaign, spline_model(5));
+  const FitResult result = fit(simulated.campaign, fitted_splines(5));
   ASSERT_EQ(result.variance_components.size(), 2U);
   EXPECT_EQ(result.variance_components[0].instrument, "laser-tracker");
   EXPECT_NEAR(result.variance_components[0].scale, 1.0, 0.1);
@@ -204,7 +204,7 @@ TEST(Fit, SuspectsTheUnitOfANoiseAThousandTimesTooSmall) {
     setup.repeatability *= 1e-3;
     for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 1e-3 * *setup.noise.number(key));
   }
-  const FitResult result = fit(simulated.campaign, spline_model(5));
+  const FitResult result = fit(simulated.campaign, fitted_splines(5));
   EXPECT_NE(result.messages.front().find("nm for um"), std::string::npos) << result.messages.front();
 }
 
@@ -215,12 +215,12 @@ TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {
     return *std::ranges::find_if(result.residuals,
                                  [](const ResidualRecord& r) { return r.setup == 2 && r.row == 40; });
   };
-  const FitResult listed = fit(simulated.campaign, spline_model(5));
+  const FitResult listed = fit(simulated.campaign, fitted_splines(5));
   EXPECT_TRUE(record_of(listed).flagged);
   EXPECT_FALSE(record_of(listed).removed);
   FitOptions options;
   options.outliers = OutlierPolicy::Remove;
-  const FitResult removed = fit(simulated.campaign, spline_model(5), options);
+  const FitResult removed = fit(simulated.campaign, fitted_splines(5), options);
   EXPECT_TRUE(record_of(removed).removed);
   EXPECT_NEAR(record_of(removed).residual(), 20e-6, 4e-6);
 }
@@ -232,7 +232,7 @@ TEST(Fit, RemovesManyOutliersOfOneSetup) {
   for (std::size_t row = 3; row < 3 + 22 * 6; row += 6) value[row] += row % 4 == 1 ? 60e-6 : -45e-6;
   FitOptions options;
   options.outliers = OutlierPolicy::Remove;
-  const FitResult result = fit(simulated.campaign, spline_model(5), options);
+  const FitResult result = fit(simulated.campaign, fitted_splines(5), options);
   for (const ResidualRecord& record : result.residuals) {
     const bool wrong = record.setup == 2 && record.row >= 3 && record.row < 3 + 22 * 6 && record.row % 6 == 3;
     EXPECT_TRUE(!wrong || record.removed) << "row " << record.row;
@@ -249,7 +249,7 @@ TEST(Fit, SaysThatAGuessIsContradicted) {
   const auto bar = std::ranges::find(simulated.campaign.setups, "ball-bar", &Setup::instrument);
   ASSERT_NE(bar, simulated.campaign.setups.end());
   const auto told = [&] {
-    const FitResult result = fit(simulated.campaign, spline_model(4));
+    const FitResult result = fit(simulated.campaign, fitted_splines(4));
     return std::ranges::count_if(result.messages, [&](const std::string& message) {
       return message.starts_with(bar->name + ": centre x: estimated 30") &&
              message.find("times its default standard deviation of 0.1 mm") != std::string::npos;
@@ -290,7 +290,7 @@ TEST(Fit, RollOfTheLastAxisNeedsASidewaysTool) {
                        {"P2", {1.3, -0.2, -0.3}},
                        {"P3", {1.2, 0.8, -0.2}},
                        {"P4", {-0.2, 0.8, -0.3}}};
-  const FitResult result = fit(sim::simulate(study).campaign, spline_model(4));
+  const FitResult result = fit(sim::simulate(study).campaign, fitted_splines(4));
   EXPECT_EQ(result.status, FitStatus::RankDeficient);
   const Observability& roll = figure_of(result, "ECZ");
   EXPECT_FALSE(roll.visible);
@@ -305,7 +305,7 @@ TEST(Fit, ASingleStationIsNamedAsTheReason) {
   auto& tracking = std::get<sim::Tracking>(study.measurements[0].settings);
   tracking.stations = {{"P1", {-0.3, -0.2, -0.2}}};
   tracking.runs = {{"P1", "short"}};
-  const FitResult result = fit(sim::simulate(study).campaign, spline_model(4));
+  const FitResult result = fit(sim::simulate(study).campaign, fitted_splines(4));
   EXPECT_EQ(result.status, FitStatus::RankDeficient);
   const auto invisible =
       std::ranges::count_if(result.rank.errors, [](const Observability& e) { return !e.visible; });
@@ -316,7 +316,7 @@ TEST(Fit, ASingleStationIsNamedAsTheReason) {
 }
 
 TEST(Fit, TwelveErrorModelLeavesTheAngularErrorsOut) {
-  ModelSpec model = spline_model(4);
+  ModelSpec model = fitted_splines(4);
   for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
     for (const Component component : {Component::A, Component::B, Component::C}) {
       model.functions[{component, axis}].basis = "zero";
@@ -331,7 +331,7 @@ TEST(Fit, TwelveErrorModelLeavesTheAngularErrorsOut) {
 /// Noise in proportion to length counts from where the station is found to stand.
 TEST(Fit, AStationsGuessChangesNoStatus) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));
-  const FitResult near = fit(simulated.campaign, spline_model(4));
+  const FitResult near = fit(simulated.campaign, fitted_splines(4));
   const auto tells_guess = [](const FitResult& result) {
     return std::ranges::any_of(result.messages, [](const std::string& message) {
       return message.find("mm from its guess") != std::string::npos;
@@ -342,7 +342,7 @@ TEST(Fit, AStationsGuessChangesNoStatus) {
     setup.options.set("station",
                       Eigen::Vector3d(*setup.options.vector("station") + Eigen::Vector3d(0.4, -0.3, 0.2)));
   }
-  const FitResult far = fit(simulated.campaign, spline_model(4));
+  const FitResult far = fit(simulated.campaign, fitted_splines(4));
   EXPECT_EQ(far.status, near.status);
   EXPECT_NEAR(far.sigma0, near.sigma0, 0.01 * near.sigma0);
   EXPECT_TRUE(tells_guess(far));

@@ -14,7 +14,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kNormalsRounding = 1e-12;
 
 NormalEquations sum_of_rows(const MeasurementModel& model, const ReadingIndex& index,
                             const std::vector<double>& weight, const ceres::LossFunction* loss,
@@ -66,9 +66,9 @@ class NormalEquationsOnRandomChains : public ::testing::TestWithParam<std::uint6
     }
     const NormalEquations expected = sum_of_rows(model, index, weight, loss, parameters, include);
     const NormalEquations sums = NormalAccumulator(index, weight, loss, 2).accumulate(parameters, &include);
-    EXPECT_LT(difference(sums, expected), kRounding);
-    EXPECT_NEAR(sums.cost / expected.cost, 1.0, kRounding);
-    EXPECT_NEAR(sums.squares / expected.squares, 1.0, kRounding);
+    EXPECT_LT(difference(sums, expected), kNormalsRounding);
+    EXPECT_NEAR(sums.cost / expected.cost, 1.0, kNormalsRounding);
+    EXPECT_NEAR(sums.squares / expected.squares, 1.0, kNormalsRounding);
     EXPECT_EQ(sums.observations, expected.observations);
     EXPECT_TRUE(sums.matrix == sums.matrix.transpose());
     expect_the_same_without_matrix(index, weight, loss, parameters, include, expected);
@@ -82,8 +82,8 @@ class NormalEquationsOnRandomChains : public ::testing::TestWithParam<std::uint6
     NormalEquations sums =
         NormalAccumulator(index, weight, loss, 2).accumulate(parameters, &include, Sums::AllButMatrix);
     sums.matrix = expected.matrix;
-    EXPECT_LT(difference(sums, expected), kRounding);
-    EXPECT_NEAR(sums.cost / expected.cost, 1.0, kRounding);
+    EXPECT_LT(difference(sums, expected), kNormalsRounding);
+    EXPECT_NEAR(sums.cost / expected.cost, 1.0, kNormalsRounding);
     EXPECT_EQ(sums.observations, expected.observations);
   }
 

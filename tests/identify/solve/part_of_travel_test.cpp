@@ -14,11 +14,11 @@
 namespace volcal {
 namespace {
 
-constexpr double kMeasured = 0.2;    // m
-constexpr double kStep = 0.025;      // m
-constexpr double kPeriod = 0.1;      // m
-constexpr double kAmplitude = 1e-5;  // m
-constexpr double kSigma = 5e-7;      // m
+constexpr double kMeasured = 0.2;        // m
+constexpr double kStepOfTravel = 0.025;  // m
+constexpr double kPeriod = 0.1;          // m
+constexpr double kAmplitude = 1e-5;      // m
+constexpr double kSigmaOfTravel = 5e-7;  // m
 
 double truth(double x) { return kAmplitude * std::sin(2.0 * 3.14159265358979323846 * x / kPeriod); }
 
@@ -39,17 +39,18 @@ Campaign line_on(double travel, double start = 0.0) {
   Setup& setup = campaign.setups.emplace_back();
   setup.name = "X";
   setup.instrument = "displacement";
-  setup.noise.set("constant", kSigma);
+  setup.noise.set("constant", kSigmaOfTravel);
   setup.readings.value.resize(1);
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (int run = 0; run < 5; ++run) {
-    for (int i = 0; i * kStep < kMeasured + 1e-9; ++i) {
-      const double x = start + i * kStep;
+    for (int i = 0; i * kStepOfTravel < kMeasured + 1e-9; ++i) {
+      const double x = start + i * kStepOfTravel;
       setup.readings.position[0].push_back(x);
       setup.readings.position[1].push_back(0.0);
       setup.readings.position[2].push_back(0.0);
-      setup.readings.value[0].push_back(x - start + truth(x) - truth(start) + kSigma * normal(random));
+      setup.readings.value[0].push_back(x - start + truth(x) - truth(start) +
+                                        kSigmaOfTravel * normal(random));
       setup.readings.source_line.push_back(static_cast<std::int64_t>(setup.readings.source_line.size()) + 2);
     }
   }
@@ -69,7 +70,7 @@ FitResult positioning_of(const Campaign& campaign) {
 
 ErrorTableRow value_at(const FitResult& result, double x) {
   ErrorTableOptions options;
-  options.step = kStep;
+  options.step = kStepOfTravel;
   for (const ErrorTableRow& row : error_table(result, options)) {
     if (row.symbol == "EXX" && std::abs(row.position - x) < 1e-9) return row;
   }
@@ -116,13 +117,14 @@ TEST(PartOfTravel, PiecesAreEvenInsideAndDoubleOutside) {
   ASSERT_TRUE(std::ranges::is_sorted(knots, std::less_equal{}));
   std::vector<double> pieces;
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) pieces.push_back(knots[i + 1] - knots[i]);
-  EXPECT_EQ(std::ranges::count_if(pieces, [](double each) { return std::abs(each - kStep) < 1e-9; }), 8);
+  EXPECT_EQ(std::ranges::count_if(pieces, [](double each) { return std::abs(each - kStepOfTravel) < 1e-9; }),
+            8);
   for (std::size_t i = 0; i + 1 < pieces.size(); ++i)
     EXPECT_LT(std::max(pieces[i + 1] / pieces[i], pieces[i] / pieces[i + 1]), 3.001);
 }
 
 TEST(PartOfTravel, AGapOfOneIntervalIsNone) {
-  const Axis axis = axis_of(kMeasured + kStep);
+  const Axis axis = axis_of(kMeasured + kStepOfTravel);
   const ResolvedStretch stretch = resolved_stretch(line_on(axis.travel_max), AxisName::X);
   EXPECT_TRUE(stretch.is_whole(axis));
   EXPECT_EQ(stretch.intervals, 8);

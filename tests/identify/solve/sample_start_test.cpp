@@ -31,7 +31,7 @@ Campaign tracked_campaign() {
   return campaign;
 }
 
-ModelSpec spline_model(const Machine& machine) {
+ModelSpec splines_of_tracking(const Machine& machine) {
   ModelSpec model;
   for (const Axis& axis : machine.axes) {
     FunctionSpec function;
@@ -69,7 +69,7 @@ class SampleStartOfTracking : public ::testing::Test {
   }
 
   Campaign campaign_ = tracked_campaign();
-  MeasurementModel model_{campaign_, spline_model(campaign_.machine)};
+  MeasurementModel model_{campaign_, splines_of_tracking(campaign_.machine)};
   ReadingIndex index_{model_};
   Eigen::VectorXd start_ = model_.initial_parameters();
   DatumSpace datum_{model_.layout(), campaign_.machine, start_};

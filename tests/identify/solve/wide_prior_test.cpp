@@ -58,7 +58,7 @@ double squareness_of(const FitResult& result) {
   return result.parameters[result.layout.find_block("EC0Y")->offset];
 }
 
-const Observability& figure_of(const FitResult& result, const std::string& symbol) {
+const Observability& figure_with_prior(const FitResult& result, const std::string& symbol) {
   return *std::ranges::find(result.rank.errors, symbol, &Observability::symbol);
 }
 
@@ -74,8 +74,8 @@ TEST(WidePrior, DoesNotPullASquarenessAtAnyStatedNoise) {
   for (const double sigma : {0.5e-6, 3e-6, 10e-6, 20e-6, 50e-6}) {
     const FitResult result = fit(printed_square(sigma), straight_scales());
     EXPECT_NEAR(squareness_of(result), -skew_by_the_cosine_rule(), 2e-6) << sigma;
-    EXPECT_TRUE(figure_of(result, "EC0Y").visible) << sigma;
-    EXPECT_FALSE(figure_of(result, "EB0Z").visible) << "Z stands still";
+    EXPECT_TRUE(figure_with_prior(result, "EC0Y").visible) << sigma;
+    EXPECT_FALSE(figure_with_prior(result, "EB0Z").visible) << "Z stands still";
     EXPECT_EQ(result.status, FitStatus::RankDeficient);
   }
 }
@@ -86,15 +86,16 @@ TEST(WidePrior, WidthIsThatOfTheModel) {
   model.priors.squareness = 5e-2;
   const FitResult wider = fit(printed_square(10e-6), model);
   EXPECT_NEAR(squareness_of(wider), squareness_of(by_default), 1e-9);
-  EXPECT_TRUE(figure_of(wider, "EC0Y").visible);
-  EXPECT_NEAR(figure_of(wider, "EC0Y").u_rms / figure_of(by_default, "EC0Y").u_rms, 1.0, 1e-3);
+  EXPECT_TRUE(figure_with_prior(wider, "EC0Y").visible);
+  EXPECT_NEAR(figure_with_prior(wider, "EC0Y").u_rms / figure_with_prior(by_default, "EC0Y").u_rms, 1.0,
+              1e-3);
   const auto u_of_unseen = [](const FitResult& result) {
     const int at = result.layout.find_block("EB0Z")->offset;
     return std::sqrt(result.covariance(at, at));
   };
   EXPECT_NEAR(u_of_unseen(wider), 5e-2, 5e-4) << "what no reading sees is as uncertain as the model says";
   model.priors.squareness = 3e-4;  // twice u
-  EXPECT_FALSE(figure_of(fit(printed_square(10e-6), model), "EC0Y").visible);
+  EXPECT_FALSE(figure_with_prior(fit(printed_square(10e-6), model), "EC0Y").visible);
 }
 
 }  // namespace

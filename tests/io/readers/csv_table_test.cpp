@@ -18,7 +18,7 @@ CsvColumns read(const std::string& text, const CsvFormat& format = {}) {
   return table.numbers(all);
 }
 
-std::string refusal(const std::string& text, const CsvFormat& format = {}) {
+std::string refusal_of_table(const std::string& text, const CsvFormat& format = {}) {
   try {
     read(text, format);
   } catch (const InputError& error) {
@@ -73,20 +73,21 @@ TEST(CsvTable, NoticesAnotherDelimiter) {
 }
 
 TEST(CsvTable, NamesLineAndColumnOfABadCell) {
-  EXPECT_EQ(refusal("a,b\n1,2\n3,x\n"),
+  EXPECT_EQ(refusal_of_table("a,b\n1,2\n3,x\n"),
             "t.csv:3: column b holds \"x\", not a number (write plain numbers without units or thousands "
             "separators; "
             "skip_rows skips lines above the header)");
-  EXPECT_THAT(refusal("a,b\n1,\n"), HasSubstr("t.csv:2: column b is empty"));
-  EXPECT_THAT(refusal("a,b\n1\n"),
+  EXPECT_THAT(refusal_of_table("a,b\n1,\n"), HasSubstr("t.csv:2: column b is empty"));
+  EXPECT_THAT(refusal_of_table("a,b\n1\n"),
               HasSubstr("t.csv:2: the row has 1 cell, the header has 2; column b is missing"));
-  EXPECT_THAT(refusal("a,b\n1,1.2.3\n"), HasSubstr("not a number"));
-  EXPECT_THAT(refusal("a,b\n1,1e400\n"), HasSubstr("no double can hold"));
-  EXPECT_THAT(refusal("a,b\n1,--2\n"), HasSubstr("not a number"));
-  EXPECT_THAT(refusal("a,b\n1,+\n"), HasSubstr("not a number"));
-  EXPECT_THAT(refusal("a,b\n1,+-2\n"), HasSubstr("t.csv:2: column b holds \"+-2\", not a number"));
-  EXPECT_THAT(refusal("a,b\n1,++2\n"), HasSubstr("not a number"));
-  EXPECT_THAT(refusal("a;b\n1;+-2,5\n", {.delimiter = ';', .decimal = ','}), HasSubstr("not a number"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,1.2.3\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,1e400\n"), HasSubstr("no double can hold"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,--2\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,+\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,+-2\n"), HasSubstr("t.csv:2: column b holds \"+-2\", not a number"));
+  EXPECT_THAT(refusal_of_table("a,b\n1,++2\n"), HasSubstr("not a number"));
+  EXPECT_THAT(refusal_of_table("a;b\n1;+-2,5\n", {.delimiter = ';', .decimal = ','}),
+              HasSubstr("not a number"));
 }
 
 /// Rows in a form that is read at once stand between others; a long tail keeps all of them away from the end.
@@ -106,7 +107,7 @@ TEST(CsvTable, RowsOfPlainNumbersAndOthersAreTheSameTable) {
     EXPECT_EQ(columns.source_line[i], static_cast<std::int64_t>(2 + i / 2 * 4 + (i % 2) * 3)) << i;
   }
   for (const char* bad : {"1,2\n", "1,2,3,4\n", "1,2,x\n", "1,2,3x\n", "1,2,1.2.3\n", "1,2,+-3\n", "1,2,\n"})
-    EXPECT_THAT(refusal("a,remark,b\n1,1,1\n" + std::string(bad) + "1,1,1\n# far behind the rows\n"),
+    EXPECT_THAT(refusal_of_table("a,remark,b\n1,1,1\n" + std::string(bad) + "1,1,1\n# far behind the rows\n"),
                 HasSubstr("t.csv:3: "))
         << bad;
 }

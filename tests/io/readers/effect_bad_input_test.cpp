@@ -29,7 +29,7 @@ constexpr int kFirstLine = 5;  // of the effect
 const std::string kHead = "format = \"volcal-model-1\"\n\n[functions]\ndefault = { basis = \"zero\" }";
 
 /// What reading the model, and binding it to a campaign that has everything, say; nothing when accepted.
-std::optional<InputError> refusal(const std::string& effect) {
+std::optional<InputError> refusal_of_effect(const std::string& effect) {
   static const Campaign campaign = testing_support::effect_campaign();
   try {
     const MeasurementModel model(campaign, parse_model(kHead + effect, "model.toml", campaign.machine));
@@ -40,7 +40,7 @@ std::optional<InputError> refusal(const std::string& effect) {
 }
 
 void expect_refused(const std::string& effect, const std::string& why) {
-  const auto error = refusal(effect);
+  const auto error = refusal_of_effect(effect);
   ASSERT_TRUE(error.has_value()) << why << " is accepted:" << effect;
   const auto lines = static_cast<int>(std::ranges::count(effect, '\n'));
   EXPECT_EQ(error->place().file, "model.toml") << effect;
@@ -76,7 +76,7 @@ std::vector<Sample> samples() {
 
 TEST(EffectBadInput, TheSamplesThemselvesAreAccepted) {
   for (const Sample& sample : samples()) {
-    const auto error = refusal(with_value(sample.text, sample.amplitude, "1"));
+    const auto error = refusal_of_effect(with_value(sample.text, sample.amplitude, "1"));
     EXPECT_FALSE(error.has_value()) << error->what();
   }
 }
@@ -128,7 +128,7 @@ TEST(EffectBadInput, AmplitudesInTheUnitOfAnother) {
 
 TEST(EffectBadInput, TheSameEffectTwice) {
   for (const Sample& sample : samples()) {
-    const auto error = refusal(sample.text + sample.text);
+    const auto error = refusal_of_effect(sample.text + sample.text);
     ASSERT_TRUE(error.has_value()) << sample.text;
     EXPECT_THAT(error->problem(), HasSubstr("is given twice"));
   }
@@ -148,7 +148,7 @@ class BrokenCustomEffect : public ::testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenCustomEffect, IsRefusedWithPlaceProblemAndRemedy) {
   const Broken& broken = GetParam();
-  const auto error = refusal(std::string("\n[[effects]]\nkind = \"custom\"\n") + broken.keys);
+  const auto error = refusal_of_effect(std::string("\n[[effects]]\nkind = \"custom\"\n") + broken.keys);
   ASSERT_TRUE(error.has_value()) << "accepted";
   EXPECT_EQ(error->place().line, broken.line) << error->what();
   EXPECT_THAT(error->problem(), HasSubstr(broken.problem));

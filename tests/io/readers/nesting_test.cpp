@@ -22,7 +22,7 @@ std::string repeated(const std::string& piece, int count) {
 }
 
 template <class Read>
-InputError refusal(const Read& read) {
+InputError refusal_of_nesting(const Read& read) {
   try {
     read();
   } catch (const InputError& error) {
@@ -32,7 +32,7 @@ InputError refusal(const Read& read) {
 }
 
 TEST(Nesting, TellsTheLineWhereItIsTooDeep) {
-  const InputError error = refusal(
+  const InputError error = refusal_of_nesting(
       [] { require_shallow("a = 1\nb = " + repeated("[", 10000) + "\n", NestedText::Toml, "machine.toml"); });
   EXPECT_THAT(error.problem(), HasSubstr("nested deeper than 100"));
   EXPECT_EQ(error.place().line, 2);
@@ -40,7 +40,8 @@ TEST(Nesting, TellsTheLineWhereItIsTooDeep) {
 
 TEST(Nesting, CountsKeysJoinedByDots) {
   const std::string dots = repeated("a . ", 10000) + "a = 1\n";
-  EXPECT_THAT(refusal([&] { require_shallow(dots, NestedText::Toml, "m"); }).problem(), HasSubstr("nested"));
+  EXPECT_THAT(refusal_of_nesting([&] { require_shallow(dots, NestedText::Toml, "m"); }).problem(),
+              HasSubstr("nested"));
 }
 
 TEST(Nesting, LeavesTextsAndCommentsAlone) {
@@ -54,16 +55,20 @@ TEST(Nesting, LeavesTextsAndCommentsAlone) {
 
 TEST(Nesting, EveryReaderAsksFirst) {
   const std::string deep = repeated("[", 100000);
-  EXPECT_THAT(refusal([&] { parse_machine("a = " + deep, "machine.toml"); }).problem(), HasSubstr("nested"));
-  EXPECT_THAT(refusal([&] { parse_machine("a = " + repeated("{a=", 10000), "machine.toml"); }).problem(),
+  EXPECT_THAT(refusal_of_nesting([&] { parse_machine("a = " + deep, "machine.toml"); }).problem(),
               HasSubstr("nested"));
-  EXPECT_THAT(refusal([&] { result_from_json(deep, "result.json"); }).problem(), HasSubstr("nested"));
-  EXPECT_THAT(refusal([&] { diagnosis_from_json(deep, "diagnosis.json"); }).problem(), HasSubstr("nested"));
+  EXPECT_THAT(
+      refusal_of_nesting([&] { parse_machine("a = " + repeated("{a=", 10000), "machine.toml"); }).problem(),
+      HasSubstr("nested"));
+  EXPECT_THAT(refusal_of_nesting([&] { result_from_json(deep, "result.json"); }).problem(),
+              HasSubstr("nested"));
+  EXPECT_THAT(refusal_of_nesting([&] { diagnosis_from_json(deep, "diagnosis.json"); }).problem(),
+              HasSubstr("nested"));
 }
 
 TEST(JsonInput, SaysInWordsWhatIsWrong) {
   const auto problem = [](const std::string& text) {
-    return refusal([&] { result_from_json(text, "result.json"); }).problem();
+    return refusal_of_nesting([&] { result_from_json(text, "result.json"); }).problem();
   };
   EXPECT_THAT(problem("{}"), HasSubstr("the key format is missing"));
   EXPECT_THAT(problem("[1]"), HasSubstr("a value is of another type than volcal writes"));

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 TomlTable parse(const std::string& text) { return TomlDocument::parse(text, "t.toml").root(); }
 
-std::string refusal(const std::function<void()>& action) {
+std::string refusal_of_toml(const std::function<void()>& action) {
   try {
     action();
   } catch (const InputError& error) {
@@ -59,27 +59,29 @@ TEST(TomlDocument, RejectsTheFirstUnknownKey) {
   const TomlTable sub = *root.table("sub");
   sub.number("width");
   sub.number("height");
-  EXPECT_EQ(refusal([&] { document.reject_unknown(); }),
+  EXPECT_EQ(refusal_of_toml([&] { document.reject_unknown(); }),
             "t.toml:3: unknown key sub.widht (did you mean \"width\"?)");
 }
 
 TEST(TomlDocument, NamesTheConversionWhenOnlyTheUnitDiffers) {
-  EXPECT_EQ(refusal([] { parse("station_um = 5").required_number("station_mm"); }),
+  EXPECT_EQ(refusal_of_toml([] { parse("station_um = 5").required_number("station_mm"); }),
             "t.toml:1: unknown key station_um (write station_mm, in mm: 1 um = 0.001 mm)");
-  EXPECT_EQ(refusal([] { parse("limit_um = 5").required_number("limit_urad"); }),
+  EXPECT_EQ(refusal_of_toml([] { parse("limit_um = 5").required_number("limit_urad"); }),
             "t.toml:1: unknown key limit_um (write limit_urad, in urad)");
 }
 
 TEST(TomlDocument, ChecksTypesAndBounds) {
   const TomlTable table = parse("n = 1.5\ns = \"x\"\nv = [1, 2]\nd = 2024-01-01\ni = 9223372036854775807\n");
-  EXPECT_THAT(refusal([&] { table.integer("n", 0, 9); }), HasSubstr("n is a number, expected an integer"));
-  EXPECT_THAT(refusal([&] { table.number("s"); }), HasSubstr("s is the text \"x\", expected a number"));
-  EXPECT_THAT(refusal([&] { table.vector3("v"); }), HasSubstr("2 numbers, expected 3"));
-  EXPECT_THAT(refusal([&] { table.text("d"); }), HasSubstr("d is a date or time"));
-  EXPECT_THAT(refusal([&] { table.integer("i", 0, 9); }), HasSubstr("it must be 0 to 9"));
-  EXPECT_THAT(refusal([&] { table.number("n", {2.0, 3.0}); }), HasSubstr("it must be at least 2"));
-  EXPECT_THAT(refusal([&] { table.table("n"); }), HasSubstr("expected a table [n]"));
-  EXPECT_THAT(refusal([&] { table.tables("n"); }), HasSubstr("expected tables [[n]]"));
+  EXPECT_THAT(refusal_of_toml([&] { table.integer("n", 0, 9); }),
+              HasSubstr("n is a number, expected an integer"));
+  EXPECT_THAT(refusal_of_toml([&] { table.number("s"); }),
+              HasSubstr("s is the text \"x\", expected a number"));
+  EXPECT_THAT(refusal_of_toml([&] { table.vector3("v"); }), HasSubstr("2 numbers, expected 3"));
+  EXPECT_THAT(refusal_of_toml([&] { table.text("d"); }), HasSubstr("d is a date or time"));
+  EXPECT_THAT(refusal_of_toml([&] { table.integer("i", 0, 9); }), HasSubstr("it must be 0 to 9"));
+  EXPECT_THAT(refusal_of_toml([&] { table.number("n", {2.0, 3.0}); }), HasSubstr("it must be at least 2"));
+  EXPECT_THAT(refusal_of_toml([&] { table.table("n"); }), HasSubstr("expected a table [n]"));
+  EXPECT_THAT(refusal_of_toml([&] { table.tables("n"); }), HasSubstr("expected tables [[n]]"));
 }
 
 TEST(TomlDocument, ReadsASchemaIntoOptions) {
@@ -94,7 +96,7 @@ TEST(TomlDocument, ReadsASchemaIntoOptions) {
   EXPECT_TRUE(options.vector("station")->isApprox(Eigen::Vector3d(1e-3, 2e-3, 3e-3)));
   EXPECT_EQ(options.boolean("free"), true);
   EXPECT_DOUBLE_EQ(*options.number("lead"), 0.01);
-  EXPECT_EQ(refusal([&] { parse("station_mm = [1, 2, 3]\nlead_mm = 0.01\n").options(schema); }),
+  EXPECT_EQ(refusal_of_toml([&] { parse("station_mm = [1, 2, 3]\nlead_mm = 0.01\n").options(schema); }),
             "t.toml:2: lead_mm = 0.01 mm is too small (0 or at least 0.5 mm is believed; wrong unit by 1000? "
             "lead is "
             "stated in mm, write 10)");

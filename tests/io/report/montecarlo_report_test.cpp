@@ -62,7 +62,7 @@ MonteCarloResult hand_made_study() {
   return study;
 }
 
-nlohmann::json page_data(const std::string& report, const std::string& kind) {
+nlohmann::json page_data_of_study(const std::string& report, const std::string& kind) {
   const auto document = nlohmann::json::parse(report);
   for (const auto& page : document.at("pages")) {
     if (page.at("kind") == kind) return page.at("data");
@@ -75,7 +75,7 @@ std::string report_of(const MonteCarloResult& study) {
 }
 
 TEST(MonteCarloReport, CurvesAreByDirectionAndVerdictsAreCounted) {
-  const auto data = page_data(report_of(hand_made_study()), "uncertainties");
+  const auto data = page_data_of_study(report_of(hand_made_study()), "uncertainties");
   EXPECT_EQ(data.at("verdicts").at("validated"), 1);
   EXPECT_EQ(data.at("verdicts").at("undecided"), 6);
   EXPECT_EQ(data.at("verdicts").at("not_validated"), 1);
@@ -91,7 +91,7 @@ TEST(MonteCarloReport, CurvesAreByDirectionAndVerdictsAreCounted) {
 
 // Variances 0.09 and 0.16 of 0.25; with half of the second source 0.09 + 0.04 = 0.13.
 TEST(MonteCarloReport, BudgetHasSharesAndWhatHalvingBrings) {
-  const auto data = page_data(report_of(hand_made_study()), "budget");
+  const auto data = page_data_of_study(report_of(hand_made_study()), "budget");
   EXPECT_EQ(data.at("sources"), nlohmann::json({"prior of station", "noise of <laser>"}));
   EXPECT_EQ(data.at("others"), 1);
   ASSERT_EQ(data.at("groups").size(), 4U);  // EXX, EC0Y, ex and ey; the station is left out

@@ -19,7 +19,7 @@
 namespace volcal {
 namespace {
 
-const std::string kHead = "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\n";
+const std::string kHiddenHead = "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\n";
 const std::string kAir = "[[temperatures]]\nchannel = \"air\"\nstart_degC = 21.0\ndrift_K_per_hour = 0.5\n";
 const std::string kTracer = R"([[measurements]]
 kind = "laser-tracer"
@@ -29,12 +29,12 @@ shuffled = true
 noise = { constant_um = 0.3, wander_um = 0.4, wander_time_s = 500.0, line_um = 0.2, outlier_share = 0.02, outlier_sigma = 9.0 }
 )";
 
-sim::Study parse(const std::string& body) {
-  return parse_study(kHead + body, "study.toml", sim::reference_machines()[0]);
+sim::Study parse_hidden(const std::string& body) {
+  return parse_study(kHiddenHead + body, "study.toml", sim::reference_machines()[0]);
 }
 
 TEST(HiddenStudy, ReadsEffectsInSi) {
-  const sim::Study study = parse(kAir + kTracer + R"([[hidden]]
+  const sim::Study study = parse_hidden(kAir + kTracer + R"([[hidden]]
 kind = "screw-lead"
 symbol = "EXX"
 period_mm = 10
@@ -81,7 +81,7 @@ amplitude_urad = 4.0
 }
 
 TEST(HiddenStudy, ReadsFeedAndAngularNoise) {
-  const sim::Study study = parse(R"(unseen = true
+  const sim::Study study = parse_hidden(R"(unseen = true
 [[measurements]]
 kind = "ball-bar-circles"
 feed_mm_min = 3000.0
@@ -108,7 +108,7 @@ std::string content(const std::filesystem::path& path) {
 
 TEST(HiddenStudy, SealsTheAnswerBesideUnseenReadings) {
   const testing::ScratchFolder scratch;
-  const sim::SimulatedCampaign simulated = sim::simulate(parse(kAir + kTracer + R"([[hidden]]
+  const sim::SimulatedCampaign simulated = sim::simulate(parse_hidden(kAir + kTracer + R"([[hidden]]
 kind = "thermal-tilt"
 symbol = "EAZ"
 channel = "air"
@@ -167,7 +167,7 @@ amplitude_um = 3.0
 TEST(HiddenStudy, WritesNoAnswerUnlessAskedFor) {
   const testing::ScratchFolder scratch;
   for (const bool asked : {false, true}) {
-    sim::Study study = parse(kTracer);
+    sim::Study study = parse_hidden(kTracer);
     study.unseen = asked;
     AtomicFolder folder((scratch.path() / "out").string());
     write_simulation(sim::simulate(study), folder);
@@ -201,7 +201,7 @@ class BadHiddenTables : public ::testing::TestWithParam<BadEffect> {};
 TEST_P(BadHiddenTables, NameLineAndProblem) {
   const std::string measurement = "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [2, 2, 2]\n";
   try {
-    sim::simulate(parse(measurement + "[[hidden]]\n" + GetParam().body));
+    sim::simulate(parse_hidden(measurement + "[[hidden]]\n" + GetParam().body));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_EQ(error.place().file, "study.toml");
@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(SealedNoise, NumbersAreChecked) {
   const auto message = [](const std::string& noise) -> std::string {
     try {
-      parse("[[measurements]]\nkind = \"diagonals\"\nnoise = { " + noise + " }\n");
+      parse_hidden("[[measurements]]\nkind = \"diagonals\"\nnoise = { " + noise + " }\n");
     } catch (const InputError& error) {
       return error.what();
     }

@@ -132,7 +132,7 @@ struct BadStudy {
 
 void PrintTo(const BadStudy& study, std::ostream* out) { *out << study.expected; }
 
-class BadSimulationFiles : public testing::TestWithParam<BadStudy> {};
+class BadSimulationFiles : public ::testing::TestWithParam<BadStudy> {};
 
 TEST_P(BadSimulationFiles, NamesLineAndProblem) {
   try {
@@ -148,7 +148,7 @@ TEST_P(BadSimulationFiles, NamesLineAndProblem) {
 
 INSTANTIATE_TEST_SUITE_P(
     SimulationFile, BadSimulationFiles,
-    testing::Values(
+    ::testing::Values(
         BadStudy{"seed = -1\n" + kOneMeasurement, 3, "seed"},
         BadStudy{"sed = 1\n" + kOneMeasurement, 3, "sed"}, BadStudy{"seed = 1\n", 0, "measurements"},
         BadStudy{"[[measurements]]\nkind = \"diagonal\"\n", 4, "diagonal"},

@@ -29,7 +29,7 @@ Campaign campaign_with_directions(std::vector<std::int8_t> directions) {
   return campaign;
 }
 
-std::unique_ptr<Effect> made(const EffectSpec& spec) {
+std::unique_ptr<Effect> made_reversal(const EffectSpec& spec) {
   return find_effect("reversal")->make(spec, "model.toml");
 }
 
@@ -37,32 +37,32 @@ std::unique_ptr<Effect> made(const EffectSpec& spec) {
 TEST(Reversal, FollowsTheDirectionOfItsOwnAxis) {
   const Campaign campaign = campaign_with_directions({+1, -1, 0});
   const SetupView view{campaign, campaign.setups[0], {}, {}};
-  EXPECT_EQ(made(reversal_of("EXY"))->drivers(view, {}), Eigen::Vector3d(0.5, -0.5, 0.0));
-  EXPECT_EQ(made(reversal_of("EXZ"))->drivers(view, {}), Eigen::Vector3d::Zero());
-  EXPECT_EQ(made(reversal_of("EXY"))->unrecorded(view), 1U);
-  EXPECT_EQ(made(reversal_of("EXZ"))->unrecorded(view), 3U);
+  EXPECT_EQ(made_reversal(reversal_of("EXY"))->drivers(view, {}), Eigen::Vector3d(0.5, -0.5, 0.0));
+  EXPECT_EQ(made_reversal(reversal_of("EXZ"))->drivers(view, {}), Eigen::Vector3d::Zero());
+  EXPECT_EQ(made_reversal(reversal_of("EXY"))->unrecorded(view), 1U);
+  EXPECT_EQ(made_reversal(reversal_of("EXZ"))->unrecorded(view), 3U);
 }
 
 TEST(Reversal, TargetsItsSymbolInItsUnit) {
-  const auto length = made(reversal_of("EYY"));
+  const auto length = made_reversal(reversal_of("EYY"));
   EXPECT_EQ(length->amplitudes()[0].label, "reversal EYY");
   EXPECT_EQ(length->amplitudes()[0].unit(), "um");
   EXPECT_EQ(length->amplitudes()[0].target.symbol, (ErrorSymbol{Component::Y, AxisName::Y}));
   EXPECT_EQ(length->name(), (EffectName{"reversal", "EYY", "dir_y", "step"}));
-  EXPECT_EQ(made(reversal_of("ECX"))->amplitudes()[0].unit(), "urad");
+  EXPECT_EQ(made_reversal(reversal_of("ECX"))->amplitudes()[0].unit(), "urad");
 }
 
 TEST(Reversal, TakesTheValueOfAnIdentifiedModel) {
   EffectSpec spec = reversal_of("EYY");
   spec.options.set("amplitude", 3.5e-6);
-  EXPECT_EQ(made(spec)->amplitudes()[0].guess, 3.5e-6);
+  EXPECT_EQ(made_reversal(spec)->amplitudes()[0].guess, 3.5e-6);
 }
 
 TEST(Reversal, RefusesWhatIsNoErrorMotionOfTheMachine) {
   const Campaign campaign = campaign_with_directions({+1, -1, 0});
   for (const char* wrong : {"EXW", "XX", "EC0Y", "EXC", ""}) {
     try {
-      made(reversal_of(wrong))->check(campaign, {"model.toml", 5});
+      made_reversal(reversal_of(wrong))->check(campaign, {"model.toml", 5});
       ADD_FAILURE() << wrong << " is accepted";
     } catch (const InputError& error) {
       EXPECT_EQ(error.place().line, 5);

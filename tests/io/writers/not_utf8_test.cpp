@@ -18,8 +18,8 @@ const std::string kName = "Gr\xF6\xDF\x65";  // latin1
 const std::string kReplaced = "Gr\uFFFD\uFFFDe";
 
 TEST(NotUtf8, BecomesTheReplacementCharacterInJson) {
-  const nlohmann::json json = {{"written", kName}};
-  const auto read = nlohmann::json::parse(json_text(json, 2));
+  const nlohmann::json document = {{"written", kName}};
+  const auto read = nlohmann::json::parse(json_text(document, 2));
   EXPECT_EQ(read.at("written").get<std::string>(), kReplaced);
   EXPECT_EQ(utf8_text("plain \u00E4"), "plain \u00E4");
 }

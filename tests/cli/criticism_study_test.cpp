@@ -19,15 +19,15 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::content;
 using ::testing::HasSubstr;
 using testing::run_program;
 
-const json& figure(const json& study, const std::string& name) {
+const Json& figure(const Json& study, const std::string& name) {
   const auto& figures = study.at("figures");
   const auto found =
-      std::ranges::find_if(figures, [&](const json& each) { return each.at("figure") == name; });
+      std::ranges::find_if(figures, [&](const Json& each) { return each.at("figure") == name; });
   if (found == figures.end()) throw std::out_of_range("no figure " + name);
   return *found;
 }
@@ -41,7 +41,7 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
       testing::short_or_long<std::string>("-n 1 --seed 41 --readings 700", "-n 6 --seed 40 --readings 1000") +
       " -o " + output);
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json study = json::parse(run.output);
+  const Json study = Json::parse(run.output);
   int strong = 0;
   for (const auto& campaign : study.at("campaigns")) {
     if (campaign.at("hidden")[0].at("signal").get<double>() < 11.9) continue;
@@ -68,7 +68,7 @@ TEST(CriticismStudy, NamesWhatAShortWanderHasTakenUp) {
   const auto run =
       run_program("diagnose " + output + "/campaign.toml -m " + output + "/model.toml --auto --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json diagnosis = json::parse(run.output);
+  const Json diagnosis = Json::parse(run.output);
   EXPECT_EQ(diagnosis.at("verdict"), "NAMED");
   ASSERT_EQ(diagnosis.at("effects").size(), 1U);
   EXPECT_EQ(diagnosis.at("effects")[0].at("kind"), "servo-mismatch");
@@ -94,15 +94,15 @@ class CriticismStudyFolder : public ::testing::Test {
     ASSERT_EQ(nothing_hidden().exit_code, 0) << nothing_hidden().errors;
     std::filesystem::copy(nothing_kept(), output_, std::filesystem::copy_options::recursive);
   }
-  std::vector<json> kept() const {
-    std::vector<json> records;
+  std::vector<Json> kept() const {
+    std::vector<Json> records;
     std::istringstream lines(content(file_));
-    for (std::string line; std::getline(lines, line);) records.push_back(json::parse(line));
+    for (std::string line; std::getline(lines, line);) records.push_back(Json::parse(line));
     return records;
   }
-  void keep(const std::vector<json>& records) const {
+  void keep(const std::vector<Json>& records) const {
     std::ofstream file(file_, std::ios::trunc);
-    for (const json& record : records) file << record.dump() << '\n';
+    for (const Json& record : records) file << record.dump() << '\n';
   }
 
   testing::ScratchFolder scratch_;
@@ -110,7 +110,7 @@ class CriticismStudyFolder : public ::testing::Test {
   std::filesystem::path file_ = std::filesystem::path(output_) / "campaigns.jsonl";
 };
 
-void expect_no_wrong_name(const json& campaign) {
+void expect_no_wrong_name(const Json& campaign) {
   if (campaign.at("row") == "null") {
     EXPECT_THAT(campaign.at("verdict"), ::testing::AnyOf("NOTHING_ABOVE", "NOT_VISIBLE")) << campaign;
   }
@@ -124,7 +124,7 @@ void expect_no_wrong_name(const json& campaign) {
 
 TEST_F(CriticismStudyFolder, SaysNothingOfNothing) {
   ASSERT_EQ(nothing_hidden().exit_code, 0) << nothing_hidden().errors;
-  const json study = json::parse(nothing_hidden().output);
+  const Json study = Json::parse(nothing_hidden().output);
   ASSERT_EQ(study.at("campaigns").size(), 5U);
   for (const auto& campaign : study.at("campaigns")) {
     expect_no_wrong_name(campaign);
@@ -138,7 +138,7 @@ TEST(CriticismStudy, SaysNothingOfNothingAndNamesNoWrongEffect) {
   if (!testing::long_tests()) GTEST_SKIP() << "VOLCAL_LONG_TESTS=1 runs it";
   const auto run = run_program("study criticism --rows null,listed -n 1 --seed 1 --readings 700 --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json study = json::parse(run.output);
+  const Json study = Json::parse(run.output);
   ASSERT_EQ(study.at("campaigns").size(), 6U);
   for (const auto& campaign : study.at("campaigns")) {
     expect_no_wrong_name(campaign);
@@ -155,7 +155,7 @@ TEST_F(CriticismStudyFolder, DoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(run_program(command + "1").output, run_program(command + "2").output);
   }
   copy_nothing_hidden();
-  std::vector<json> records = kept();
+  std::vector<Json> records = kept();
   ASSERT_EQ(records.size(), 5U);
   keep({records[0], records[1], records[3]});
   const auto two = study("-n 1 --json --resume --threads 2 -o " + output_);
@@ -165,7 +165,7 @@ TEST_F(CriticismStudyFolder, DoesNotDependOnTheNumberOfThreads) {
 
 TEST_F(CriticismStudyFolder, GoesOnWhereItWasInterrupted) {
   copy_nothing_hidden();
-  const std::vector<json> records = kept();
+  const std::vector<Json> records = kept();
   ASSERT_EQ(records.size(), 5U);
   // Of one half a line was written.
   keep({records[0], records[2], records[3], records[4]});
@@ -182,10 +182,10 @@ TEST_F(CriticismStudyFolder, WritesOneCampaign) {
   const auto written = run_program("study criticism --one listed:0 --readings 400 -o " + one);
   ASSERT_EQ(written.exit_code, 0) << written.errors;
   EXPECT_THAT(written.output, HasSubstr("volcal diagnose"));
-  const json hidden = json::parse(content(std::filesystem::path(one) / "truth" / "hidden.json"));
+  const Json hidden = Json::parse(content(std::filesystem::path(one) / "truth" / "hidden.json"));
   const auto counted = run_program("study criticism --rows listed -n 1 --readings 400 --json");
   ASSERT_EQ(counted.exit_code, 0) << counted.errors;
-  const json record = json::parse(counted.output).at("campaigns").at(0);
+  const Json record = Json::parse(counted.output).at("campaigns").at(0);
   expect_no_wrong_name(record);
   EXPECT_NEAR(record.at("hidden").at(0).at("rms_um").get<double>(),
               hidden.at("effects").at(0).at("rms_um").get<double>(), 1e-3);
@@ -219,15 +219,15 @@ TEST_F(CriticismStudyFolder, RefusesCampaignsOfAnotherRun) {
 
 TEST_F(CriticismStudyFolder, CountsFalseAlarmsWithWilsonIntervals) {
   copy_nothing_hidden();
-  std::vector<json> records = kept();
-  const json alarm = json::parse(R"({"name": "reversal:EXX:dir_x:step", "hidden": -1, "by_name": false,
+  std::vector<Json> records = kept();
+  const Json alarm = Json::parse(R"({"name": "reversal:EXX:dir_x:step", "hidden": -1, "by_name": false,
       "resolution": false, "scanned": false, "explains": 0.0, "log10_p": -4.0, "gain": 9.0, "amplitudes": []})");
   records[3]["verdict"] = "NAMED";
-  records[3]["named"] = json::array({alarm});
+  records[3]["named"] = Json::array({alarm});
   keep(records);
   const auto counted = study("-n 1 --json --resume -o " + output_);
   ASSERT_EQ(counted.exit_code, 0) << counted.errors;
-  const json total = figure(json::parse(counted.output), "false alarm, nothing hidden");
+  const Json total = figure(Json::parse(counted.output), "false alarm, nothing hidden");
   EXPECT_EQ(total.at("count"), 1);
   EXPECT_EQ(total.at("of"), 5);
   // (p + z2/2n -+ z sqrt(p (1 - p) / n + z2/4n2)) / (1 + z2/n) with p = 0.2, n = 5, z = 1.96
@@ -240,40 +240,40 @@ TEST_F(CriticismStudyFolder, CountsFalseAlarmsWithWilsonIntervals) {
 TEST_F(CriticismStudyFolder, CountsWhatIsFoundOfTwo) {
   copy_nothing_hidden();
   const auto hidden = [](const char* name) {
-    return json{{"text", name},
+    return Json{{"text", name},
                 {"right", name},
                 {"signal", 12.0},
                 {"visible_fraction", 1},
                 {"rms_um", 1.0},
-                {"drivers", json::array()},
-                {"companions", json::array()},
-                {"directions", json::array()}};
+                {"drivers", Json::array()},
+                {"companions", Json::array()},
+                {"directions", Json::array()}};
   };
   const auto answer = [](const std::string& name, int of, double gain) {
-    return json{{"name", name},        {"hidden", of},     {"by_name", of >= 0},
+    return Json{{"name", name},        {"hidden", of},     {"by_name", of >= 0},
                 {"resolution", false}, {"scanned", false}, {"explains", 1.0},
-                {"log10_p", -20.0},    {"gain", gain},     {"amplitudes", json::array()}};
+                {"log10_p", -20.0},    {"gain", gain},     {"amplitudes", Json::array()}};
   };
-  json pair = kept().at(0);
+  Json pair = kept().at(0);
   pair["row"] = "pairs";
   pair["index"] = 0;
   pair["hidden"] = {hidden("a"), hidden("b")};
   pair["verdict"] = "NAMED_MORE_REMAINS";
-  pair["named"] = json::array({answer("a", 0, 100.0)});
-  const auto outcome = [&](const std::vector<json>& set) {
-    pair["sets"] = json::array({set});
+  pair["named"] = Json::array({answer("a", 0, 100.0)});
+  const auto outcome = [&](const std::vector<Json>& set) {
+    pair["sets"] = Json::array({set});
     keep({pair});
     const auto counted =
         run_program("study criticism --rows pairs -n 1 --readings 400 --json --resume -o " + output_);
     EXPECT_EQ(counted.exit_code, 0) << counted.errors;
-    return json::parse(counted.output).at("campaigns").at(0).at("outcome").get<std::string>();
+    return Json::parse(counted.output).at("campaigns").at(0).at("outcome").get<std::string>();
   };
-  const json b = answer("b", 1, 90.0), twin = answer("b2", 1, 90.0), other = answer("c", -1, 88.0);
+  const Json b = answer("b", 1, 90.0), twin = answer("b2", 1, 90.0), other = answer("c", -1, 88.0);
   EXPECT_EQ(outcome({b, other}), "right, in a set of up to 3");
   EXPECT_EQ(outcome({b, twin, twin, other}), "right, in a set of up to 3 that differ");
   EXPECT_EQ(outcome({b, other, answer("d", -1, 87.0), answer("e", -1, 86.0)}), "in a set of over 3");
   EXPECT_EQ(outcome({other, other}), "right, more remains");
-  pair["unknown"] = json::array({{{"variables", {"x"}}, {"direction", "X"}, {"log10_p", -4.0}}});
+  pair["unknown"] = Json::array({{{"variables", {"x"}}, {"direction", "X"}, {"log10_p", -4.0}}});
   EXPECT_EQ(outcome({b, other}), "right, more remains");
 }
 

@@ -16,7 +16,7 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::run_program;
@@ -61,13 +61,13 @@ TEST(EffectList, HoldsEveryIdentifierOfARealDiagnosis) {
 
   const auto run = run_program("diagnose " + kSmall + " --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json diagnosis = json::parse(run.output);
+  const Json diagnosis = Json::parse(run.output);
   const auto named = run_program("diagnose " + kSmall + " --list --json");
   ASSERT_EQ(named.exit_code, 0) << named.errors;
-  const json testable = json::parse(named.output).at("testable");
+  const Json testable = Json::parse(named.output).at("testable");
   std::size_t effects = 0;
   for (const char* key : {"effects", "one_of", "not_visible", "model_changes", "ranking", "detectable"}) {
-    for (const json& effect : diagnosis.at(key)) {
+    for (const Json& effect : diagnosis.at(key)) {
       ++effects;
       const std::string kind = effect.at("kind"), target = effect.at("target");
       const std::string driver = effect.at("driver"), shape = effect.at("shape");
@@ -79,8 +79,8 @@ TEST(EffectList, HoldsEveryIdentifierOfARealDiagnosis) {
     }
   }
   EXPECT_GT(effects, 50U);
-  for (const json& unknown : diagnosis.at("unknown")) {
-    for (const json& variable : unknown.at("variables")) {
+  for (const Json& unknown : diagnosis.at("unknown")) {
+    for (const Json& variable : unknown.at("variables")) {
       EXPECT_TRUE(is_listed(variables, variable.get<std::string>())) << variable;
     }
   }
@@ -89,21 +89,21 @@ TEST(EffectList, HoldsEveryIdentifierOfARealDiagnosis) {
 TEST(EffectList, SaysWhatEveryWordMeans) {
   const auto run = run_program("diagnose --list --json");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json list = json::parse(run.output);
+  const Json list = Json::parse(run.output);
   EXPECT_GT(list.at("kinds").size(), 20U);
   std::set<std::string> kinds;
-  for (const json& kind : list.at("kinds")) {
+  for (const Json& kind : list.at("kinds")) {
     EXPECT_FALSE(kind.at("summary").get<std::string>().empty());
     EXPECT_TRUE(kinds.insert(kind.at("kind")).second);
   }
   EXPECT_TRUE(kinds.contains("reversal"));
   for (const char* key : {"targets", "drivers", "shapes", "variables"}) {
-    for (const json& word : list.at(key)) {
+    for (const Json& word : list.at(key)) {
       EXPECT_FALSE(word.at("name").get<std::string>().empty()) << key;
       EXPECT_FALSE(word.at("meaning").get<std::string>().empty()) << word;
     }
   }
-  EXPECT_EQ(list.at("directions"), (json{"X", "Y", "Z", "beam"}));
+  EXPECT_EQ(list.at("directions"), (Json{"X", "Y", "Z", "beam"}));
   EXPECT_FALSE(list.contains("testable"));
 }
 

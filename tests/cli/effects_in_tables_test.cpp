@@ -16,7 +16,7 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::run_program;
 
 /// A study of tests/data, simulated and fitted once with the rigid model ("rigid") and once with an effect
@@ -41,8 +41,8 @@ class EffectsInTables : public ::testing::Test {
     return run.output;
   }
 
-  json error_at(const std::string& result, const std::string& options) const {
-    return json::parse(done("tables " + path(result) + " --tool short --json " + options))
+  Json error_at(const std::string& result, const std::string& options) const {
+    return Json::parse(done("tables " + path(result) + " --tool short --json " + options))
         .at("volumetric_errors")
         .at(0);
   }
@@ -55,10 +55,10 @@ class EffectsInTables : public ::testing::Test {
     const std::string tables = path("tables"), again = path("again");
     std::filesystem::remove_all(tables);
     std::filesystem::remove_all(again);
-    const json made =
-        json::parse(done("tables " + path(result) + " --tool short --json " + options + " -o " + tables));
+    const Json made =
+        Json::parse(done("tables " + path(result) + " --tool short --json " + options + " -o " + tables));
     done("simulate " + study_ + " --compensation " + tables + " -o " + again);
-    const json compared = json::parse(done("compare " + again + "/truth/campaign.toml nominal --json"));
+    const Json compared = Json::parse(done("compare " + again + "/truth/campaign.toml nominal --json"));
     const double rms = compared.at("models").at(0).at("total").at("lengths_um").at("rms").get<double>();
     return {made.at("error_left").at("tables").at("rms_um").get<double>(), std::sqrt(3.0) * rms};
   }
@@ -74,7 +74,7 @@ class EffectsInTables : public ::testing::Test {
 TEST_F(EffectsInTables, ProductOfAxes) {
   make("effects-in-tables",
        "kind = \"product-coupling\"\nsymbol = \"EAY\"\naxis = \"Y\"\nsecond_axis = \"Z\"\n");
-  const json error = error_at("effect", "--at X=100,Y=200,Z=-400");
+  const Json error = error_at("effect", "--at X=100,Y=200,Z=-400");
   EXPECT_NEAR(error.at("error_um").at(1).get<double>(), -1.07, 0.05);
   EXPECT_NEAR(error.at("rotation_urad").at(0).get<double>(), -20.7, 0.3);
 
@@ -98,7 +98,7 @@ TEST_F(EffectsInTables, ExpansionAtStatedTemperature) {
   // From the home of X at -400 mm, 800 mm expand; the coefficient is found to some 5 %.
   EXPECT_NEAR(exx_at("--conditions T_column=23.34") - exx_at(""), 3.34 * 10.0 * 0.8, 1.4);
   EXPECT_EQ(exx_at("--conditions T_column=20"), exx_at(""));
-  const json made = json::parse(
+  const Json made = Json::parse(
       done("tables " + path("effect") + " --conditions T_column=23.34 --json -o " + path("warm")));
   EXPECT_EQ(made.at("conditions").at("T_column_degC").at("value"), 23.34);
   const std::string metadata = testing::content(path("warm/metadata.csv"));
@@ -119,14 +119,14 @@ TEST_F(EffectsInTables, KnownErrorsGoInAndTablesComeBack) {
   make("expansion-in-tables", "kind = \"reversal\"\nsymbol = \"EXX\"\n");
   done("tables " + path("effect") + " -o " + path("tables"));
   const auto at = [&](const std::string& errors, const std::string& options) {
-    return json::parse(
+    return Json::parse(
                done("tables " + path(errors) + " --tool side_x --json --at X=120,Y=40,Z=-110 " + options))
         .at("volumetric_errors")
         .at(0)
         .at("error_um");
   };
   for (const char* approach : {"", "--approach X+", "--approach X-"}) {
-    const json identified = at("effect", approach), model = at("effect/identified.toml", approach),
+    const Json identified = at("effect", approach), model = at("effect/identified.toml", approach),
                tables = at("tables", approach);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_NEAR(model.at(k).get<double>(), identified.at(k).get<double>(), 1e-6) << approach;
@@ -134,12 +134,12 @@ TEST_F(EffectsInTables, KnownErrorsGoInAndTablesComeBack) {
     }
   }
   EXPECT_NE(at("effect", "--approach X+").at(0), at("effect", "--approach X-").at(0));
-  const json budget = json::parse(done("budget " + path("effect") + " --json"));
+  const Json budget = Json::parse(done("budget " + path("effect") + " --json"));
   double share = 0.0;
-  for (const json& cause : budget.at("causes")) share += cause.at("share_percent").get<double>();
+  for (const Json& cause : budget.at("causes")) share += cause.at("share_percent").get<double>();
   EXPECT_NEAR(share, 100.0, 1e-6);
   EXPECT_EQ(budget.at("total").at("rms_um"),
-            json::parse(done("budget " + path("effect") + " --verbose --json")).at("total").at("rms_um"));
+            Json::parse(done("budget " + path("effect") + " --verbose --json")).at("total").at("rms_um"));
   const auto refused = run_program("budget " + path("nowhere"));
   EXPECT_EQ(refused.exit_code, 2);
 }

@@ -21,14 +21,14 @@ namespace volcal {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using Json = nlohmann::json;
 using testing::content;
 using testing::run_program;
 
 const fs::path kHiddenCampaigns = fs::path(VOLCAL_SOURCE_DIR) / "datasets" / "hidden";
 
-const json& answers() {
-  static const json all = json::parse(content(kHiddenCampaigns / "sealed" / "answers.json"));
+const Json& answers() {
+  static const Json all = Json::parse(content(kHiddenCampaigns / "sealed" / "answers.json"));
   return all;
 }
 
@@ -38,7 +38,7 @@ std::vector<std::string> campaigns() {
   return names;
 }
 
-std::set<std::string> names_of(const json& findings) {
+std::set<std::string> names_of(const Json& findings) {
   std::set<std::string> names;
   for (const auto& each : findings) {
     names.insert(each.at("kind").get<std::string>() + ":" + each.at("target").get<std::string>() + ":" +
@@ -49,7 +49,7 @@ std::set<std::string> names_of(const json& findings) {
 
 class HiddenCampaign : public ::testing::TestWithParam<std::string> {
  protected:
-  const json& answer() const { return answers().at(GetParam()); }
+  const Json& answer() const { return answers().at(GetParam()); }
   std::string campaign() const { return (kHiddenCampaigns / GetParam() / "campaign.toml").string(); }
   std::string in_scratch(const std::string& name) const { return (scratch_.path() / name).string(); }
 
@@ -62,7 +62,7 @@ class HiddenCampaign : public ::testing::TestWithParam<std::string> {
 
   /// Root mean square over noise-free readings at positions that were not measured, um.
   double unseen_error(const std::string& result) const {
-    const json compared = json::parse(
+    const Json compared = Json::parse(
         done("compare " + in_scratch("truth/truth/unseen/campaign.toml") + " " + result + " --json"));
     return compared.at("models").at(0).at("total").at("lengths_um").at("rms").get<double>();
   }
@@ -86,8 +86,8 @@ TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
   }
   done("fit " + campaign() + " -o " + in_scratch("given"));
   EXPECT_THAT(done("compare " + campaign() + " " + in_scratch("given")), ::testing::HasSubstr("chi2/dof"));
-  const json diagnosis =
-      json::parse(done("diagnose " + campaign() + " --auto --json -o " + in_scratch("diagnosis")));
+  const Json diagnosis =
+      Json::parse(done("diagnose " + campaign() + " --auto --json -o " + in_scratch("diagnosis")));
   const auto verdict = diagnosis.at("verdict").get<std::string>();
   EXPECT_THAT(answer().at("verdicts").get<std::vector<std::string>>(), ::testing::Contains(verdict));
 
@@ -103,7 +103,7 @@ TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
         << ::testing::PrintToString(set);
   }
   if (verdict == "UNKNOWN") {
-    const json& unknown = diagnosis.at("unknown").at(0);
+    const Json& unknown = diagnosis.at("unknown").at(0);
     const auto variables = answer().at("variables").get<std::set<std::string>>();
     EXPECT_TRUE(std::ranges::any_of(unknown.at("variables").get<std::vector<std::string>>(),
                                     [&](const auto& name) { return variables.contains(name); }))
@@ -117,7 +117,7 @@ TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
        in_scratch("truth"));
   const double before = unseen_error(in_scratch("given")), after = unseen_error(in_scratch("extended"));
   EXPECT_LT(after, answer().value("share", 0.8) * before);
-  const json& ladder = diagnosis.at("ladder");
+  const Json& ladder = diagnosis.at("ladder");
   EXPECT_LT(ladder.back().at("rms_heldout_um").get<double>(),
             1.01 * ladder.front().at("rms_heldout_um").get<double>());
   RecordProperty("unseen", fmt::format("{:.3f} -> {:.3f} um", before, after));

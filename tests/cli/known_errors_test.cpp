@@ -18,7 +18,7 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::HasSubstr;
 using testing::run_program;
 
@@ -31,7 +31,7 @@ TEST(Exercise3, IsOneCommand) {
   for (std::size_t y = 0; y < printed.size(); ++y) arguments += " --at Y=" + std::to_string(y);
   const auto run = run_program(arguments);
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const json errors = json::parse(run.output).at("volumetric_errors");
+  const Json errors = Json::parse(run.output).at("volumetric_errors");
   ASSERT_EQ(errors.size(), printed.size());
   for (std::size_t y = 0; y < printed.size(); ++y)
     EXPECT_EQ(std::round(errors[y].at("error_um")[1].get<double>()), printed[y]) << "y = " << y << " mm";
@@ -105,9 +105,9 @@ class KnownErrors : public ::testing::Test {
 
   /// RMS and largest residual of what a model leaves of a campaign, um.
   std::pair<double, double> left(const std::string& campaign, const std::string& model) const {
-    const json compared =
-        json::parse(done("compare " + path(campaign) + "/campaign.toml " + model + " --json"));
-    const json& lengths = compared.at("models").at(0).at("total").at("lengths_um");
+    const Json compared =
+        Json::parse(done("compare " + path(campaign) + "/campaign.toml " + model + " --json"));
+    const Json& lengths = compared.at("models").at(0).at("total").at("lengths_um");
     return {lengths.at("rms").get<double>(), lengths.at("max").get<double>()};
   }
 
@@ -147,7 +147,7 @@ TEST_F(KnownErrors, TablesAndResultsAreSimulatedToo) {
 TEST_F(KnownErrors, AModelIsAlignedAsAResultIs) {
   done("align " + path("known.toml") + " --primary Y --secondary X -o " + path("aligned"));
   const auto rms = [&](const std::string& errors) {
-    return json::parse(done("budget " + errors + " --json")).at("total").at("rms_um").get<double>();
+    return Json::parse(done("budget " + errors + " --json")).at("total").at("rms_um").get<double>();
   };
   EXPECT_NEAR(rms(path("known.toml")), rms(path("aligned")), 0.01);
   EXPECT_NEAR(rms(path("known.toml")), rms(path("aligned/identified.toml")), 0.01);
@@ -157,8 +157,8 @@ TEST_F(KnownErrors, AModelIsAlignedAsAResultIs) {
 
 TEST_F(KnownErrors, AModelIsValidatedOnReadings) {
   done("simulate " + path("study.toml") + " --errors " + path("known.toml") + " -o " + path("campaign"));
-  const json figures =
-      json::parse(done("validate " + path("known.toml") + " " + path("campaign/campaign.toml") + " --json"));
+  const Json figures =
+      Json::parse(done("validate " + path("known.toml") + " " + path("campaign/campaign.toml") + " --json"));
   EXPECT_GT(figures.at("rms_before_um").get<double>(), 5.0);
   EXPECT_LT(figures.at("rms_after_um").get<double>(), 0.01);
 }
@@ -190,10 +190,10 @@ TEST_F(KnownErrors, ABudgetOfTolerancesIsOneCommand) {
         "format = \"volcal-tolerances-1\"\n[tolerances]\npositioning_um = 10\nstraightness_um = 8\n"
         "angles_urad = 15\nsquareness_urad = 20\n");
   const std::string command = "budget " + testing::kDemoMachine + " --tolerances " + path("tolerances.toml");
-  const json budget = json::parse(done(command + " --tool side_y --json"));
+  const Json budget = Json::parse(done(command + " --tool side_y --json"));
   EXPECT_EQ(budget.at("tool"), "side_y");
   double share = 0.0;
-  for (const json& cause : budget.at("causes")) share += cause.at("expected_share_percent").get<double>();
+  for (const Json& cause : budget.at("causes")) share += cause.at("expected_share_percent").get<double>();
   EXPECT_NEAR(share, 100.0, 0.01);
   EXPECT_EQ(budget.at("contributions").size(), 21U);
   EXPECT_GT(budget.at("rms_95_um").get<double>(), budget.at("total").at("expected_rms_um").get<double>());

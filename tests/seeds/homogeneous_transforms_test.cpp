@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <sstream>
@@ -145,9 +146,10 @@ TEST(HomogeneousTransforms, Exercise2MatrixOfASlide) {
 
 /// Rows of numbers below a header.
 std::vector<std::vector<double>> read_exercise(const std::string& name) {
-  const std::string path = std::string(VOLCAL_SOURCE_DIR) + "/datasets/exercises/" + name;
+  const std::filesystem::path path =
+      std::filesystem::path(VOLCAL_SOURCE_DIR) / "datasets" / "exercises" / name;
   std::ifstream file(path);
-  if (!file) throw std::runtime_error("cannot read " + path);
+  if (!file) throw std::runtime_error("cannot read " + path.string());
   std::string line;
   std::getline(file, line);
   std::vector<std::vector<double>> rows;

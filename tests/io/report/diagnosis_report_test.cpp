@@ -17,7 +17,7 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::HasSubstr;
 
 /// Two setups; figures of two drawn readings.
@@ -75,11 +75,11 @@ class DiagnosisReport : public ::testing::Test {
     memory.expected = {0.5, 0.375};
     memory.whitened = {0.01, -0.02};
     figures.autocorrelation = {memory};
-    document_ = json::parse(report_json(diagnosis_, campaign_, {.date = "2024-05-17"}));
+    document_ = Json::parse(report_json(diagnosis_, campaign_, {.date = "2024-05-17"}));
   }
 
-  json page(const std::string& kind) const {
-    for (const json& each : document_.at("pages")) {
+  Json page(const std::string& kind) const {
+    for (const Json& each : document_.at("pages")) {
       if (each.at("kind") == kind) return each.at("data");
     }
     ADD_FAILURE() << "no page " << kind;
@@ -88,7 +88,7 @@ class DiagnosisReport : public ::testing::Test {
 
   Diagnosis diagnosis_ = testing::hand_made_diagnosis();
   Campaign campaign_;
-  json document_;
+  Json document_;
 };
 
 TEST_F(DiagnosisReport, EverySectionIsInTheDocumentAndHasARenderer) {
@@ -107,12 +107,12 @@ TEST_F(DiagnosisReport, EverySectionIsInTheDocumentAndHasARenderer) {
 }
 
 TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
-  const json story = page("story");
+  const Json story = page("story");
   EXPECT_EQ(story.at("level"), "warning");
   const std::string before = story.at("before").at(0);
   EXPECT_THAT(before, HasSubstr("2.5 µm RMS"));
   EXPECT_THAT(before, HasSubstr("1.5 µm (95 %: 1.25 to 1.75 µm)"));
-  const json& missing = story.at("missing").at(0);
+  const Json& missing = story.at("missing").at(0);
   EXPECT_EQ(missing.at("label"), "reversal EXX");
   EXPECT_EQ(missing.at("amplitudes").at(0).at("value"), 4.0);
   EXPECT_NEAR(missing.at("amplitudes").at(0).at("U95").get<double>(), 0.196, 1e-9);
@@ -122,7 +122,7 @@ TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
               HasSubstr("x and time, along Z, as EBX, about 0.3 µm"));
   ASSERT_EQ(story.at("ladder").size(), 2U);
   EXPECT_EQ(story.at("ladder").at(1).at("systematic_high_um"), 0.5);
-  const json& below = story.at("below").at(0);
+  const Json& below = story.at("below").at(0);
   EXPECT_EQ(below.at("effects"), 3);
   EXPECT_EQ(below.at("not_visible"), 1);
   EXPECT_EQ(below.at("smallest"), 0.5);
@@ -130,10 +130,10 @@ TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {
 }
 
 TEST_F(DiagnosisReport, EvidenceHasItsThreshold) {
-  const json evidence = page("evidence");
+  const Json evidence = page("evidence");
   EXPECT_NEAR(evidence.at("threshold").get<double>(), -2.301, 1e-3);  // 0.5 %
   EXPECT_EQ(evidence.at("added").size(), 1U);
-  const json& sets = evidence.at("alternatives");
+  const Json& sets = evidence.at("alternatives");
   ASSERT_EQ(sets.size(), 2U);
   EXPECT_EQ(sets.at(0).at(0).at("label"), "reversal EYY");
   EXPECT_EQ(sets.at(1).at(0).at("label"), "reversal EZZ");
@@ -142,20 +142,20 @@ TEST_F(DiagnosisReport, EvidenceHasItsThreshold) {
 }
 
 TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
-  const json confounding = page("confounding");
-  EXPECT_EQ(confounding.at("cosine"), (json{json::array(), {0.96}, {nullptr, nullptr}}));
-  const json& effects = confounding.at("effects");
+  const Json confounding = page("confounding");
+  EXPECT_EQ(confounding.at("cosine"), (Json{Json::array(), {0.96}, {nullptr, nullptr}}));
+  const Json& effects = confounding.at("effects");
   ASSERT_EQ(effects.size(), 3U);
   EXPECT_EQ(effects.at(0).at("role"), "added");
   EXPECT_EQ(effects.at(1).at("role"), "alternative");
   EXPECT_EQ(effects.at(2).at("role"), "alternative");  // of a further set
   EXPECT_EQ(effects.at(0).at("name"), "reversal:EXX:dir_x:step");
   EXPECT_TRUE(effects.at(0).at("can_be_asked").get<bool>());
-  const json& limit = effects.at(0).at("limits").at(0);
+  const Json& limit = effects.at(0).at("limits").at(0);
   EXPECT_EQ(limit.at("mdb"), 0.5);
   EXPECT_EQ(limit.at("mib"), 1.75);
   EXPECT_EQ(limit.at("rival"), "reversal EYY");
-  const json& proposal = confounding.at("proposals").at(0);
+  const Json& proposal = confounding.at("proposals").at(0);
   EXPECT_EQ(proposal.at("separates").at(1).at("label"), "reversal EYY");
   EXPECT_NEAR(proposal.at("now").get<double>(), 1.58, 1e-9);      // square root of 2.5
   EXPECT_NEAR(proposal.at("reached").get<double>(), 2.74, 1e-9);  // of 7.5
@@ -172,8 +172,8 @@ TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
   nothing.action.clear();
   nothing.gain = std::numeric_limits<double>::infinity();
   diagnosis_.proposals.push_back(nothing);
-  document_ = json::parse(report_json(diagnosis_, campaign_));
-  const json proposals = page("confounding").at("proposals");
+  document_ = Json::parse(report_json(diagnosis_, campaign_));
+  const Json proposals = page("confounding").at("proposals");
   EXPECT_EQ(proposals.at(0).at("what"), "Measure P1 again after 3 h");
   EXPECT_EQ(proposals.at(0).at("separates").at(0).at("label"), "axis-coupling:EAY:z:linear");
   EXPECT_EQ(proposals.at(0).at("separates").at(1).at("label"), "EYX finer");
@@ -184,25 +184,25 @@ TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
 }
 
 TEST_F(DiagnosisReport, PlotsAreInEdgeUnits) {
-  const json leading = page("added_variable");
+  const Json leading = page("added_variable");
   EXPECT_EQ(leading.at("amplitude"), 4.0);
-  EXPECT_EQ(leading.at("driver"), (json{-2.0, 2.0}));
-  EXPECT_EQ(leading.at("residual"), (json{-8.5, 7.5}));
-  EXPECT_EQ(leading.at("mean").at("count"), (json{4, 16}));
-  const json against = page("residual_variables");
+  EXPECT_EQ(leading.at("driver"), (Json{-2.0, 2.0}));
+  EXPECT_EQ(leading.at("residual"), (Json{-8.5, 7.5}));
+  EXPECT_EQ(leading.at("mean").at("count"), (Json{4, 16}));
+  const Json against = page("residual_variables");
   EXPECT_EQ(against.at("total"), 5000);
   EXPECT_EQ(against.at("variables").at(0).at("unit"), "min");
-  EXPECT_EQ(against.at("variables").at(0).at("x"), (json{1.0, 2.0}));
+  EXPECT_EQ(against.at("variables").at(0).at("x"), (Json{1.0, 2.0}));
   EXPECT_EQ(against.at("variables").at(0).at("length").at("given").at("mean").at(0), 1.5);
   EXPECT_EQ(against.at("variables").at(0).at("length").at("reached").at("noise").at(0), 0.25);
   EXPECT_FALSE(against.at("variables").at(0).contains("angle"));
-  const json& elevation = against.at("variables").at(1);
+  const Json& elevation = against.at("variables").at(1);
   EXPECT_EQ(elevation.at("title"), "Elevation of the beam");
   EXPECT_EQ(elevation.at("unit"), "deg");
   EXPECT_NEAR(elevation.at("x").at(0).get<double>(), 28.648, 1e-9);  // 0.5 rad
   EXPECT_EQ(against.at("variables").at(2).at("title"), "Run");
   EXPECT_EQ(against.at("variables").at(3).at("title"), "Tool long");
-  EXPECT_EQ(against.at("records").at("held_out"), (json{0, 1}));
+  EXPECT_EQ(against.at("records").at("held_out"), (Json{0, 1}));
   EXPECT_EQ(against.at("records").at("reached").at(0), -1.0);
 }
 
@@ -210,11 +210,11 @@ TEST_F(DiagnosisReport, AnAlternativeIsNotSaidToBeAdded) {
   EXPECT_FALSE(page("added_variable").at("alternative").get<bool>());
   diagnosis_.one_of = diagnosis_.effects;
   diagnosis_.effects.clear();
-  document_ = json::parse(report_json(diagnosis_, campaign_));
+  document_ = Json::parse(report_json(diagnosis_, campaign_));
   EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
   diagnosis_.further_one_of = {diagnosis_.one_of};
   diagnosis_.one_of = {testing::found_effect("reversal", "EYY", 1e-6)};
-  document_ = json::parse(report_json(diagnosis_, campaign_));
+  document_ = Json::parse(report_json(diagnosis_, campaign_));
   EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
   EXPECT_THAT(page("story").at("after").at(0).get<std::string>(),
               HasSubstr("With reversal EXX, one of the alternatives, the systematic error"));
@@ -223,29 +223,29 @@ TEST_F(DiagnosisReport, AnAlternativeIsNotSaidToBeAdded) {
 /// A reading that feels half of a displacement along Y asks for twice its residual; one that feels none is
 /// not drawn.
 TEST_F(DiagnosisReport, VectorsPointAlongWhatReadingsFeel) {
-  const json vectors = page("residual_vectors");
+  const Json vectors = page("residual_vectors");
   ASSERT_EQ(vectors.at("single").size(), 1U);
-  EXPECT_EQ(vectors.at("single").at(0).at("given_um"), (json{0, 4.0, 0}));
-  EXPECT_EQ(vectors.at("single").at(0).at("point_mm"), (json{100.0, 200.0, 300.0}));
-  EXPECT_EQ(vectors.at("means").at(0).at("given_um"), (json{1.0, 2.0, 2.0}));
+  EXPECT_EQ(vectors.at("single").at(0).at("given_um"), (Json{0, 4.0, 0}));
+  EXPECT_EQ(vectors.at("single").at(0).at("point_mm"), (Json{100.0, 200.0, 300.0}));
+  EXPECT_EQ(vectors.at("means").at(0).at("given_um"), (Json{1.0, 2.0, 2.0}));
   EXPECT_EQ(vectors.at("means").at(0).at("readings"), 40);
 }
 
 TEST_F(DiagnosisReport, MapMemoryMdbAndNoise) {
-  const json map = page("generic_map");
+  const Json map = page("generic_map");
   EXPECT_EQ(map.at("directions").at(2).at("name"), "Z");
-  EXPECT_EQ(map.at("directions").at(2).at("given"), (json{{0}, {-6.5, 0}}));
-  const json memory = page("autocorrelation").at("instruments").at(0);
+  EXPECT_EQ(map.at("directions").at(2).at("given"), (Json{{0}, {-6.5, 0}}));
+  const Json memory = page("autocorrelation").at("instruments").at(0);
   EXPECT_EQ(memory.at("instrument"), "laser-tracer");
-  EXPECT_EQ(memory.at("band"), (json{0.1, 0.2}));
+  EXPECT_EQ(memory.at("band"), (Json{0.1, 0.2}));
   EXPECT_EQ(memory.at("whitened").at(1), -0.02);
-  const json detectable = page("detectable");
+  const Json detectable = page("detectable");
   EXPECT_EQ(detectable.at("not_visible"), 1);
   EXPECT_EQ(detectable.at("rows").at(1).at("mdb"), 0.75);
   EXPECT_EQ(detectable.at("rows").at(1).at("volumetric_um"), 0.375);
   EXPECT_TRUE(detectable.at("rows").at(2).at("mdb").is_null());
   EXPECT_FALSE(detectable.at("rows").at(2).at("visible").get<bool>());
-  const json noise = page("noise_model");
+  const Json noise = page("noise_model");
   EXPECT_EQ(noise.at("rows").at(1).at("value"), 0.5);
   EXPECT_EQ(noise.at("rows").at(1).at("unit"), "µm");
   EXPECT_EQ(noise.at("removed_readings"), 3);

@@ -21,7 +21,7 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 std::string file_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -30,8 +30,8 @@ std::string file_text(const std::filesystem::path& path) {
   return text.str();
 }
 
-json page_data(const json& document, const std::string& kind) {
-  for (const json& page : document.at("pages")) {
+Json page_data(const Json& document, const std::string& kind) {
+  for (const Json& page : document.at("pages")) {
     if (page.at("kind") == kind) return page.at("data");
   }
   ADD_FAILURE() << "no page " << kind;
@@ -42,17 +42,17 @@ class ReportTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     fit_ = new test::SyntheticFit(test::synthetic_fit());
-    document_ = new json(json::parse(report_json(fit_->result, fit_->campaign, {.date = "2024-05-17"})));
+    document_ = new Json(Json::parse(report_json(fit_->result, fit_->campaign, {.date = "2024-05-17"})));
   }
   static void TearDownTestSuite() {
     delete document_;
     delete fit_;
   }
   static test::SyntheticFit* fit_;
-  static json* document_;
+  static Json* document_;
 };
 test::SyntheticFit* ReportTest::fit_ = nullptr;
-json* ReportTest::document_ = nullptr;
+Json* ReportTest::document_ = nullptr;
 
 TEST_F(ReportTest, EveryRegisteredPageIsInTheDocumentAndHasARenderer) {
   const std::string renderers =
@@ -68,9 +68,9 @@ TEST_F(ReportTest, EveryRegisteredPageIsInTheDocumentAndHasARenderer) {
 }
 
 TEST_F(ReportTest, ShowsAllEighteenFunctionsWithTheirState) {
-  const json data = page_data(*document_, "functions");
+  const Json data = page_data(*document_, "functions");
   ASSERT_EQ(data.at("functions").size(), 18u);
-  for (const json& function : data.at("functions")) {
+  for (const Json& function : data.at("functions")) {
     const std::string symbol = function.at("symbol");
     if (symbol == "EAX") {
       EXPECT_EQ(function.at("state"), "off");
@@ -87,8 +87,8 @@ TEST_F(ReportTest, ShowsAllEighteenFunctionsWithTheirState) {
 }
 
 TEST_F(ReportTest, FunctionValuesAreThoseOfTheBasisInMicrometres) {
-  const json functions = page_data(*document_, "functions").at("functions");
-  const json& eyx = functions.at(1);
+  const Json functions = page_data(*document_, "functions").at("functions");
+  const Json& eyx = functions.at(1);
   ASSERT_EQ(eyx.at("symbol"), "EYX");
   const FitResult& result = fit_->result;
   const ErrorSymbol symbol{Component::Y, AxisName::X};
@@ -104,17 +104,17 @@ TEST_F(ReportTest, FunctionValuesAreThoseOfTheBasisInMicrometres) {
 }
 
 TEST_F(ReportTest, MarksExtrapolatedPositions) {
-  const json page = page_data(*document_, "functions");
-  for (const json& function : page.at("functions")) {
+  const Json page = page_data(*document_, "functions");
+  for (const Json& function : page.at("functions")) {
     if (function.at("state") != "identified") continue;
     const bool any =
-        std::ranges::any_of(function.at("extrapolated"), [](const json& flag) { return flag == 1; });
+        std::ranges::any_of(function.at("extrapolated"), [](const Json& flag) { return flag == 1; });
     EXPECT_EQ(any, function.at("axis") == "Y") << function.at("symbol");
   }
 }
 
 TEST_F(ReportTest, SquarenessIsInMicroradianWithItsEffectOverTheTravel) {
-  const json rows = page_data(*document_, "locations").at("rows");
+  const Json rows = page_data(*document_, "locations").at("rows");
   ASSERT_EQ(rows.size(), 4u);  // three identified, one switched off
   EXPECT_EQ(rows.at(0).at("symbol"), "EC0Y");
   EXPECT_EQ(rows.at(0).at("meaning"), "squareness of Y to X");
@@ -127,7 +127,7 @@ TEST_F(ReportTest, SquarenessIsInMicroradianWithItsEffectOverTheTravel) {
 }
 
 TEST_F(ReportTest, SummarySaysInWordsWhatIsNotVisible) {
-  const json data = page_data(*document_, "summary");
+  const Json data = page_data(*document_, "summary");
   EXPECT_EQ(data.at("level"), "bad");
   ASSERT_EQ(data.at("invisible").size(), 1u);
   EXPECT_EQ(data.at("invisible").at(0).at("symbol"), "ECZ");
@@ -136,9 +136,9 @@ TEST_F(ReportTest, SummarySaysInWordsWhatIsNotVisible) {
 }
 
 TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
-  const json data = page_data(*document_, "volume");
+  const Json data = page_data(*document_, "volume");
   ASSERT_EQ(data.at("tools").size(), 2u);
-  for (const json& tool : data.at("tools")) {
+  for (const Json& tool : data.at("tools")) {
     EXPECT_EQ(tool.at("point_mm").size(), 125u);
     EXPECT_EQ(tool.at("error_um").size(), 125u);
     EXPECT_EQ(tool.at("u_um").size(), 125u);
@@ -151,9 +151,9 @@ TEST_F(ReportTest, EveryWorkVolumeHasVectorsAndUncertaintyPerTool) {
 }
 
 TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
-  const json data = page_data(*document_, "outliers");
+  const Json data = page_data(*document_, "outliers");
   EXPECT_EQ(data.at("removed"), 1);
-  const json& rows = data.at("rows");
+  const Json& rows = data.at("rows");
   ASSERT_GE(rows.size(), 6u);
   EXPECT_EQ(rows.size(), data.at("suspect").get<std::size_t>());
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -163,7 +163,7 @@ TEST_F(ReportTest, SuspectReadingsAreListedWorstFirst) {
 
 /// |w| > 3.29 has a chance of 0.0010019 for one reading; 1 - (1 - 0.0010019)^1402 for any of 1,402.
 TEST_F(ReportTest, ChanceOfAnySuspectIsThatOfAllReadings) {
-  const json data = page_data(*document_, "outliers");
+  const Json data = page_data(*document_, "outliers");
   ASSERT_EQ(data.at("observations"), 1402);
   EXPECT_NEAR(data.at("chance").get<double>(), 0.755, 1e-9);
 }
@@ -173,7 +173,7 @@ TEST(ReportSummary, CountsRemovedReadingsAmongTheSuspect) {
   for (ResidualRecord& record : fit.result.residuals) record.flagged = record.removed = false;
   fit.result.residuals[3].removed = true;
   fit.result.residuals[5].flagged = true;
-  const json document = json::parse(report_json(fit.result, fit.campaign));
+  const Json document = Json::parse(report_json(fit.result, fit.campaign));
   EXPECT_EQ(page_data(document, "outliers").at("suspect"), 2);
   EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("label"), "Suspect readings");
   EXPECT_EQ(page_data(document, "summary").at("figures").at(5).at("value"), "2");
@@ -199,14 +199,14 @@ TEST(ReportSummary, ErrorAndUncertaintyAreOfOneTool) {
 }
 
 TEST_F(ReportTest, HistogramHoldsEveryReading) {
-  const json histogram = page_data(*document_, "residuals").at("histogram");
+  const Json histogram = page_data(*document_, "residuals").at("histogram");
   std::size_t sum = 0;
-  for (const json& count : histogram.at("count")) sum += count.get<std::size_t>();
+  for (const Json& count : histogram.at("count")) sum += count.get<std::size_t>();
   EXPECT_EQ(sum, fit_->result.residuals.size());
 }
 
 TEST_F(ReportTest, NuisanceParametersAreInTheirEdgeUnit) {
-  const json rows = page_data(*document_, "nuisance").at("rows");
+  const Json rows = page_data(*document_, "nuisance").at("rows");
   ASSERT_EQ(rows.size(), 10u);
   EXPECT_EQ(rows.at(0).at("name"), "station P1");
   EXPECT_NEAR(rows.at(0).at("guess").get<double>(), -600.0, 1e-9);
@@ -225,7 +225,7 @@ TEST_F(ReportTest, PageHasNoUnfilledSlotAndNothingClosesTheScriptEarly) {
   ASSERT_NE(start, std::string::npos);
   const std::size_t from = start + opening.size();
   const std::string data = page.substr(from, page.find("</script", from) - from);
-  EXPECT_EQ(json::parse(data), *document_);
+  EXPECT_EQ(Json::parse(data), *document_);
   EXPECT_EQ(data.find('<'), std::string::npos);
 }
 
@@ -257,7 +257,7 @@ TEST_F(ReportTest, NamesOfSlotsAreText) {
     const std::string page = report_html(result, fit_->campaign);
     EXPECT_NE(page.find("<title>" + name + " \u2013 volcal report</title>"), std::string::npos);
     const std::size_t from = page.find(opening) + opening.size();
-    const json data = json::parse(page.substr(from, page.find("</script", from) - from));
+    const Json data = Json::parse(page.substr(from, page.find("</script", from) - from));
     EXPECT_EQ(data.at("title"), name);
   }
 }
@@ -288,13 +288,13 @@ TEST_F(ReportTest, ItsHeadSaysWhatMadeIt) {
   const Provenance provenance{"9.8.7", "2024-05-17T10:00:00Z", "volcal fit c.toml -o r"};
   FitResult result = fit_->result;
   result.provenance = provenance;
-  const json page =
-      json::parse(report_json(result, fit_->campaign, {.date = "2024-05-17", .provenance = provenance}));
+  const Json page =
+      Json::parse(report_json(result, fit_->campaign, {.date = "2024-05-17", .provenance = provenance}));
   EXPECT_EQ(page.at("version"), "9.8.7");
   EXPECT_EQ(page.at("command"), "volcal fit c.toml -o r");
-  const json facts = page_data(page, "summary").at("facts");
-  EXPECT_THAT(facts, ::testing::Contains(json({"Identified by", "volcal 9.8.7, 2024-05-17T10:00:00Z"})));
-  EXPECT_THAT(facts, ::testing::Contains(json({"Command", "volcal fit c.toml -o r"})));
+  const Json facts = page_data(page, "summary").at("facts");
+  EXPECT_THAT(facts, ::testing::Contains(Json({"Identified by", "volcal 9.8.7, 2024-05-17T10:00:00Z"})));
+  EXPECT_THAT(facts, ::testing::Contains(Json({"Command", "volcal fit c.toml -o r"})));
 }
 
 /// EAX has no function, but a reversal of 8 urad: half of it either way.
@@ -317,8 +317,8 @@ TEST(ReportOfAReversal, AnErrorWithoutAFunctionIsNotLeftOut) {
   result.parameters.conservativeResize(result.layout.size);
   result.parameters[reversal.offset] = 8e-6;
   result.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(result.layout.size, result.layout.size));
-  const json function =
-      page_data(json::parse(report_json(result, fit.campaign)), "functions").at("functions").at(3);
+  const Json function =
+      page_data(Json::parse(report_json(result, fit.campaign)), "functions").at("functions").at(3);
   ASSERT_EQ(function.at("symbol"), "EAX");
   EXPECT_EQ(function.at("state"), "identified");
   EXPECT_TRUE(function.at("knots").empty());
@@ -354,8 +354,8 @@ TEST(ReportOfATracker, ReadingsHaveTheUnitOfTheirChannel) {
     record.w = 9.0 - channel;
     record.flagged = true;
   }
-  const json document = json::parse(report_json(fit.result, fit.campaign));
-  const json rows = page_data(document, "outliers").at("rows");
+  const Json document = Json::parse(report_json(fit.result, fit.campaign));
+  const Json rows = page_data(document, "outliers").at("rows");
   const std::string summary = fit_summary_text(fit.result, fit.campaign);
   for (const int channel : {0, 1, 2}) {
     const auto k = static_cast<std::size_t>(channel);

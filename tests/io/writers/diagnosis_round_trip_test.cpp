@@ -15,15 +15,15 @@
 namespace volcal {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 using ::testing::HasSubstr;
 
-json written() { return json::parse(diagnosis_json(testing::hand_made_diagnosis())); }
+Json written() { return Json::parse(diagnosis_json(testing::hand_made_diagnosis())); }
 
 TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
-  const json document = written();
+  const Json document = written();
   EXPECT_EQ(document.at("verdict"), "NAMED_MORE_REMAINS");
-  const json& effect = document.at("effects").at(0);
+  const Json& effect = document.at("effects").at(0);
   EXPECT_EQ(effect.at("kind"), "reversal");
   EXPECT_EQ(effect.at("target"), "EXX");
   EXPECT_EQ(effect.at("driver"), "dir_x");
@@ -37,22 +37,22 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(document.at("one_of").at(0).at("target"), "EYY");
   EXPECT_EQ(document.at("further_one_of").at(0).at(0).at("target"), "EZZ");
   EXPECT_EQ(document.at("further_one_of").at(0).at(1).at("target"), "EYY");
-  const json& unknown = document.at("unknown").at(0);
-  EXPECT_EQ(unknown.at("variables"), (json{"x", "time"}));
+  const Json& unknown = document.at("unknown").at(0);
+  EXPECT_EQ(unknown.at("variables"), (Json{"x", "time"}));
   EXPECT_EQ(unknown.at("direction"), "Z");
   EXPECT_EQ(unknown.at("rotation"), "EBX");
   EXPECT_NEAR(unknown.at("rms_um").get<double>(), 0.3, 1e-12);
   EXPECT_TRUE(unknown.at("period_mm").is_null());
   EXPECT_TRUE(unknown.at("with_one_of").empty());
-  EXPECT_EQ(document.at("unknown").at(1).at("with_one_of"), (json{"T_air", "T_column"}));
+  EXPECT_EQ(document.at("unknown").at(1).at("with_one_of"), (Json{"T_air", "T_column"}));
   EXPECT_NEAR(document.at("unknown").at(2).at("period_mm").get<double>(), 10.02, 1e-12);
   EXPECT_TRUE(document.at("not_visible").at(0).at("mdb").is_null());
   EXPECT_EQ(document.at("next_measurement").size(), 1U);
   EXPECT_EQ(document.at("next_measurement").at(0).at("separation_reached"), 7.5);
   EXPECT_EQ(document.at("next_measurement").at(0).at("separation_plain"), 3.125);
   EXPECT_EQ(document.at("confounding").at("effects").at(1), "reversal:EYY:dir_y:step");
-  EXPECT_EQ(document.at("confounding").at("cosine").at(0), (json{1.0, 0.96, nullptr}));
-  const json& step = document.at("ladder").at(1);
+  EXPECT_EQ(document.at("confounding").at("cosine").at(0), (Json{1.0, 0.96, nullptr}));
+  const Json& step = document.at("ladder").at(1);
   EXPECT_EQ(step.at("model"), "1");
   EXPECT_EQ(step.at("added"), "reversal EXX");
   for (const auto& [key, value] : std::map<std::string, double>{{"rms_fit_um", 2.0},
@@ -64,7 +64,7 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
                                                                 {"heldout_loglik_gain", 33.5}}) {
     EXPECT_NEAR(step.at(key).get<double>(), value, 1e-12) << key;
   }
-  EXPECT_EQ(document.at("model_changes"), json::array());
+  EXPECT_EQ(document.at("model_changes"), Json::array());
   EXPECT_EQ(document.at("noise").at(1).at("instrument"), "laser-tracer");
   ASSERT_EQ(document.at("removed_readings").size(), 3U);
   EXPECT_EQ(document.at("removed_readings").at(1).at("setup"), "S1");
@@ -75,7 +75,7 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
 }
 
 /// Same document again, numbers to rounding.
-void expect_same(const json& a, const json& b, const std::string& place) {
+void expect_same(const Json& a, const Json& b, const std::string& place) {
   if (a.is_number_float() && b.is_number()) {
     EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-14 * (1.0 + std::abs(a.get<double>()))) << place;
     return;
@@ -87,7 +87,7 @@ void expect_same(const json& a, const json& b, const std::string& place) {
   }
   ASSERT_EQ(a.size(), b.size()) << place;
   for (const auto& [key, value] : a.items()) {
-    const json& other = b.is_array() ? b.at(std::stoul(key)) : b.at(key);
+    const Json& other = b.is_array() ? b.at(std::stoul(key)) : b.at(key);
     expect_same(value, other, place + "/" + key);
   }
 }
@@ -95,7 +95,7 @@ void expect_same(const json& a, const json& b, const std::string& place) {
 TEST(DiagnosisJson, RoundTrips) {
   const std::string text = diagnosis_json(testing::hand_made_diagnosis());
   const Diagnosis again = diagnosis_from_json(text, "diagnosis.json");
-  expect_same(json::parse(text), json::parse(diagnosis_json(again)), "");
+  expect_same(Json::parse(text), Json::parse(diagnosis_json(again)), "");
   EXPECT_EQ(again.effects[0].spec.options.number("amplitude"), 4e-6);
   EXPECT_EQ(again.effects[0].spec.options.text("symbol"), "EXX");
   EXPECT_TRUE(again.ranking[1].resolution);
@@ -105,7 +105,7 @@ TEST(DiagnosisJson, RoundTrips) {
 
 /// Diagnoses that were written before scans saw rotations.
 TEST(DiagnosisJson, WhatOlderFilesLackMayBeMissing) {
-  json document = written();
+  Json document = written();
   for (const char* key : {"rotation", "with_one_of", "period_mm"}) document.at("unknown").at(0).erase(key);
   const Diagnosis again = diagnosis_from_json(document.dump(), "old.json");
   EXPECT_EQ(again.unknown.at(0).rotation, "");
@@ -144,7 +144,7 @@ TEST(DiagnosisJson, SaysWhatIsWrongWithAFile) {
   };
   EXPECT_THAT(message("{\"format\": "), HasSubstr("no complete JSON"));
   EXPECT_THAT(message("{\"format\": \"volcal-result-1\"}"), HasSubstr("volcal-result-1"));
-  json document = written();
+  Json document = written();
   document["verdict"] = "PERHAPS";
   EXPECT_THAT(message(document.dump()), HasSubstr("PERHAPS"));
   const testing::ScratchFolder folder;

@@ -102,7 +102,7 @@ const Command& simulate_command() {
   static const Command command = {"simulate", "make a campaign from a machine with known errors",
                                   "  volcal simulate datasets/demo/study.toml -o campaign\n"
                                   "  volcal simulate study.toml --seed 7 -o campaign-7\n"
-                                  "  volcal simulate study.toml --errors identified.toml -o again\n"
+                                  "  volcal simulate study.toml --errors result/identified.toml -o again\n"
                                   "  volcal simulate other-setups.toml --compensation tables -o after\n",
                                   define_simulate};
   return command;

@@ -163,7 +163,7 @@ const Command& diagnose_command() {
       "diagnose", "show where the model fails, and name the effect that is missing",
       "  volcal diagnose campaign.toml -o diagnosis\n"
       "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
-      "  volcal diagnose campaign.toml --separate station-drift:\"station P1\",dead-path:\"readings of S1\"\n"
+      "  volcal diagnose campaign.toml --separate station-drift:\"station P1\",dead-path:\"readings of P1_short\"\n"
       "  volcal diagnose --show diagnosis\n"
       "  volcal diagnose --list\n"
       "  volcal diagnose campaign.toml --list\n",

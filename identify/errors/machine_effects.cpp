@@ -173,7 +173,7 @@ class ReachProbe {
       : machine_(machine), tool_(tool), conditions_(conditions), clock_start_(clock_start) {
     probe_poses(machine, positions_, directions_);
     shifted_ = positions_;
-    std::ranges::rotate(shifted_, shifted_.begin() + 1);
+    std::rotate(shifted_.begin(), shifted_.begin() + 1, shifted_.end());
   }
 
   EffectReach reach_of(const Effect& effect) {

@@ -15,7 +15,7 @@ double at_the_edge(const Axis& axis, const AxisPosition& position) {
   return position[index_of(axis.name)] / (is_rotary(axis.name) ? kRadianPerDegree : kMetrePerMillimetre);
 }
 
-std::vector<double> micro(const Eigen::Vector3d& si) {
+std::vector<double> micro_of(const Eigen::Vector3d& si) {
   return {si.x() / kMicro, si.y() / kMicro, si.z() / kMicro};
 }
 
@@ -53,10 +53,10 @@ nlohmann::ordered_json volumetric_json(const FitResult& result, const std::vecto
       position[std::string(1, letter_of(axis.name))] = at_the_edge(axis, error.position);
     list.push_back({{"position", position},
                     {"tool", error.tool},
-                    {"error_um", micro(error.value.head<3>())},
-                    {"u_um", micro(error.u.head<3>())},
-                    {"rotation_urad", micro(error.value.tail<3>())},
-                    {"u_rotation_urad", micro(error.u.tail<3>())},
+                    {"error_um", micro_of(error.value.head<3>())},
+                    {"u_um", micro_of(error.u.head<3>())},
+                    {"rotation_urad", micro_of(error.value.tail<3>())},
+                    {"u_rotation_urad", micro_of(error.u.tail<3>())},
                     {"extrapolated", error.extrapolated}});
   }
   return list;

@@ -36,7 +36,7 @@ std::unique_ptr<ceres::LossFunction> make_loss(const MinimiseOptions& options) {
 }
 
 constexpr double kContraction = 1e-3;
-constexpr double kFar = 100.0;
+constexpr double kFarFromPromise = 100.0;
 constexpr double kNegligible = 1e-13;  // of the cost
 
 /// Root R and vector v with R^T R = matrix and R^T v = gradient; true for a triangular R, false when it had
@@ -113,7 +113,7 @@ class CompressedCost final : public ceres::CostFunction {
   /// The step that leads away from here is so large that the matrix will have to be renewed.
   bool is_far_from_minimum() const {
     const double promise = 0.5 * newton_.squaredNorm();
-    return promise > kFar * (cost_ - promise);
+    return promise > kFarFromPromise * (cost_ - promise);
   }
 
   /// Whether the root of an earlier point still makes good steps (chord method): the step that it promises

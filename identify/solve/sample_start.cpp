@@ -14,7 +14,7 @@ constexpr std::size_t kLargeSample = 16384;
 constexpr int kMostSteps = 5;
 /// Far from the minimum a step promises to leave less than this part of the cost; near it the linear model
 /// holds, and the step ends at the sample's minimum.
-constexpr double kFar = 0.01;
+constexpr double kFarFromMinimum = 0.01;
 
 /// Cost and its Gauss-Newton step at one place.
 struct NewtonStep {
@@ -22,7 +22,7 @@ struct NewtonStep {
   double promise;  ///< what the step promises to take off the cost
   Eigen::VectorXd step;
 
-  bool is_far() const { return cost - promise < kFar * cost; }
+  bool is_far() const { return cost - promise < kFarFromMinimum * cost; }
 };
 
 class Sample {

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kTool = "side_x";
 constexpr const char* kChannel = "column";
 constexpr double kTemperature_degC = 23.0;
-constexpr double kReversal = 4e-6;  // m, largest
+constexpr double kLargestReversal = 4e-6;  // m, largest
 
 /// What is hidden in the machine, and what the extended model has of it.
 struct EffectCase {
@@ -74,7 +74,7 @@ sim::Study study_of(const EffectTablesOptions& options, int structure, const Eff
   sim::Study study;
   study.machine = sim::reference_machines()[static_cast<std::size_t>(structure)];
   study.seed = options.seed + static_cast<std::uint64_t>(structure);
-  study.truth.random.reversal_max = kReversal;
+  study.truth.random.reversal_max = kLargestReversal;
   sim::TemperatureChannel channel;
   channel.name = kChannel;
   channel.start = 21.0;

@@ -102,7 +102,7 @@ nlohmann::ordered_json run_program_bench(const Arguments& arguments) {
   const Timing read = timed(arguments, [&](const std::string& line) { interpreter.execute(line); });
   FunctionalPoint point;
   point.without_length = truth.machine().tools[0].offset;
-  NcRewriter rewriter(program_errors(result), setup, point, {}, "pass.ngc");
+  NcRewriter rewriter(program_errors(result, "", default_conditions(result)), setup, point, {}, "pass.ngc");
   double written = 0.0;
   const NcRewriter::Sink sink = [&](std::string_view, std::span<const NcWrittenLine> lines) {
     for (const NcWrittenLine& line : lines) written += static_cast<double>(line.text.size());

@@ -285,7 +285,7 @@ const Command& try_command() {
   static const Command command = {
       "try", "try an effect of your own: its size, whether it predicts better, what remains",
       "  volcal try campaign.toml \"EZX: abs(x) / 400 * dir_x\"\n"
-      "  volcal try campaign.toml \"EXX += dir_x * (T_column - 20)\" --model model.toml\n"
+      "  volcal try campaign.toml \"EXX += dir_x * (T_air - 20)\" --model model.toml\n"
       "  volcal try campaign.toml \"EYZ: 1 - exp(-t / p)\" --parameter p=1800+-600\n"
       "  volcal extend model.toml --custom \"EZX: abs(x) / 400 * dir_x\" -o model-1.toml   keep it\n",
       define_try};

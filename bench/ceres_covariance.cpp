@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/solve/minimise.h"
+#include "volcal/identify/solve/normals/minimise.h"
 
 namespace volcal::bench {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <numbers>
 
-#include "volcal/sim/random.h"
+#include "volcal/sim/machine/random.h"
 
 namespace volcal::bench {
 namespace {

@@ -23,7 +23,7 @@
 #include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal::bench {
@@ -75,7 +75,7 @@ Campaign reference_campaign(const Eigen::Vector3i& grid) {
 struct Step {
   explicit Step(const Campaign& campaign)
       : result(fit(campaign, ModelSpec{})), model(campaign, result), all(families(model)) {
-    noise = {NoiseParameters{.white = 1.0, .wander = 0.3e-6, .tau = 600.0, .line = 0.3e-6, .per_metre = 0.0}};
+    noise = {NoiseParameters{.white = 1.0, .drift = 0.3e-6, .tau = 600.0, .line = 0.3e-6, .per_metre = 0.0}};
     for (const Family& family : all) {
       for (std::size_t i = 0; i < family.scan.size(); ++i) widths.push_back(family.amplitudes());
     }
@@ -141,8 +141,7 @@ void write_step(const Step& step, const std::vector<double>& lm, const std::stri
             {"lm", lm},
             {"sigma", problem.data.sigma}};
   const NoiseParameters& noise = step.noise.front();
-  json["noise"] = {
-      {"white", noise.white}, {"wander", noise.wander}, {"tau", noise.tau}, {"line", noise.line}};
+  json["noise"] = {{"white", noise.white}, {"wander", noise.drift}, {"tau", noise.tau}, {"line", noise.line}};
   for (const NoiseSequence& sequence : problem.data.sequences) {
     json["sequences"].push_back(
         {{"observation", sequence.observation}, {"time", sequence.time}, {"line", sequence.line}});

@@ -30,13 +30,13 @@
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/linear_axis_errors.h"
-#include "volcal/identify/io/plain_number.h"
-#include "volcal/identify/io/readings_reader.h"
-#include "volcal/identify/io/text_file.h"
+#include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/text/plain_number.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/instruments/registry.h"
-#include "volcal/sim/random.h"
+#include "volcal/sim/machine/random.h"
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif

@@ -17,8 +17,8 @@
 
 #include "measure.h"
 #include "reference_problem.h"
-#include "volcal/identify/solve/minimise.h"
-#include "volcal/identify/solve/stated_sigma.h"
+#include "volcal/identify/solve/normals/minimise.h"
+#include "volcal/identify/solve/normals/stated_sigma.h"
 
 namespace volcal::bench {
 namespace {

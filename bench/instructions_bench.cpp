@@ -18,7 +18,7 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/criticism/projection/projector.h"
 #include "volcal/identify/errors/error_grid.h"
-#include "volcal/identify/io/readings_reader.h"
+#include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/montecarlo/draw_projection.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"

@@ -18,8 +18,8 @@
 #include "volcal/identify/montecarlo/path_solvers.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/stats/threads.h"
 
 namespace volcal::bench {
 namespace {

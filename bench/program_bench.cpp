@@ -14,8 +14,8 @@
 #include "measure.h"
 #include "tests/support/identified_machines.h"
 #include "volcal/identify/program/nc_rewriter.h"
-#include "volcal/sim/random_truth.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/random_truth.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal::bench {
 namespace {

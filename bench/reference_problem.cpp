@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/solve/datum.h"
+#include "volcal/identify/solve/normals/datum.h"
 #include "volcal/model/observation/measurement_model.h"
-#include "volcal/sim/random.h"
+#include "volcal/sim/machine/random.h"
 
 namespace volcal::bench {
 namespace {

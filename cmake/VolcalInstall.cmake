@@ -6,12 +6,13 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/volcal)
 
-install(TARGETS volcal_description volcal_model volcal_identify volcal_sim volcal_io volcal_volcal
+get_property(layers GLOBAL PROPERTY VOLCAL_LAYERS)
+install(TARGETS ${layers} volcal_volcal
         EXPORT volcal_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT volcal_targets NAMESPACE volcal:: FILE volcal-targets.cmake DESTINATION ${package_dir})
-if(TARGET volcal_program)
-  install(TARGETS volcal_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET volcal_cli)
+  install(TARGETS volcal_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
 # Which headers the public ones need is found when they are installed, so that the list alone is kept by hand.
@@ -26,4 +27,4 @@ configure_package_config_file(cmake/volcal-config.cmake.in ${PROJECT_BINARY_DIR}
                               INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/volcal-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/volcal-config.cmake ${PROJECT_BINARY_DIR}/volcal-config-version.cmake
-        DESTINATION ${package_dir})
+        cmake/VolcalBlas.cmake DESTINATION ${package_dir})

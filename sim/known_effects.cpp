@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "volcal/sim/hidden_settings.h"
+#include "volcal/sim/hidden/hidden_settings.h"
 #include "volcal/sim/known_errors.h"
 
 namespace volcal::sim {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "volcal/model/description/model_spec.h"
-#include "volcal/sim/hidden_effects.h"
-#include "volcal/sim/truth_machine.h"
+#include "volcal/sim/hidden/hidden_effects.h"
+#include "volcal/sim/machine/truth_machine.h"
 
 namespace volcal::sim {
 

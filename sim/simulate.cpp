@@ -3,10 +3,10 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/instruments.h"
 #include "volcal/sim/known_errors.h"
-#include "volcal/sim/paths.h"
-#include "volcal/sim/random.h"
+#include "volcal/sim/machine/random.h"
+#include "volcal/sim/measurement/instruments.h"
+#include "volcal/sim/measurement/paths.h"
 #include "volcal/sim/study.h"
 
 namespace volcal::sim {

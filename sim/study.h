@@ -11,13 +11,13 @@
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
-#include "volcal/sim/control.h"
-#include "volcal/sim/environment.h"
-#include "volcal/sim/hidden_answer.h"
-#include "volcal/sim/hidden_effects.h"
-#include "volcal/sim/measurements.h"
-#include "volcal/sim/random_truth.h"
-#include "volcal/sim/truth_machine.h"
+#include "volcal/sim/hidden/hidden_answer.h"
+#include "volcal/sim/hidden/hidden_effects.h"
+#include "volcal/sim/machine/control.h"
+#include "volcal/sim/machine/random_truth.h"
+#include "volcal/sim/machine/truth_machine.h"
+#include "volcal/sim/measurement/environment.h"
+#include "volcal/sim/measurement/measurements.h"
 
 namespace volcal::sim {
 

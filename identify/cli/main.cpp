@@ -14,7 +14,7 @@
 #include "volcal/identify/cli/process.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/cli/today.h"
-#include "volcal/identify/io/nearest_name.h"
+#include "volcal/identify/text/nearest_name.h"
 
 namespace {
 

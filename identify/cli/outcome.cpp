@@ -12,7 +12,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/process.h"
-#include "volcal/identify/io/text_encoding.h"
+#include "volcal/identify/text/text_encoding.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal::cli {

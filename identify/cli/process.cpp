@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/io/temporary_paths.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/text/temporary_paths.h"
 
 namespace volcal::cli {
 namespace {

@@ -2,7 +2,7 @@
 /// What this run of the program writes about itself.
 
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal::cli {
 

@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "volcal/identify/compensation/csv_cell.h"
-#include "volcal/identify/compensation/decimal_text.h"
+#include "volcal/identify/text/csv_cell.h"
+#include "volcal/identify/text/decimal_text.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 

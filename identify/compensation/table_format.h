@@ -14,8 +14,8 @@
 
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/compensation_tables.h"
-#include "volcal/identify/compensation/table_text.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/text/table_text.h"
 
 namespace volcal {
 

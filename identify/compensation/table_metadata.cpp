@@ -3,8 +3,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "volcal/identify/compensation/csv_cell.h"
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/text/csv_cell.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 

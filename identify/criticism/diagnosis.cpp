@@ -12,8 +12,8 @@
 #include "volcal/identify/criticism/search/search.h"
 #include "volcal/identify/criticism/unknown_findings.h"
 #include "volcal/identify/criticism/verdict.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
@@ -48,7 +48,7 @@ Remarks remarks(const Search& search) {
   return remarks;
 }
 
-/// What the readings can tell apart, and what would have to be measured for the rest.
+/// What the readings can separate, and what would have to be measured for the rest.
 void compare_hypotheses(const ModelState& reached, const FitResult& result, const PlanningOptions& planning,
                         Diagnosis& diagnosis) {
   const SearchSetting& setting = reached.setting();

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 

@@ -11,8 +11,8 @@
 
 #include "volcal/identify/criticism/catalogue/detectable.h"
 #include "volcal/identify/criticism/data/thresholds.h"
-#include "volcal/identify/solve/result.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

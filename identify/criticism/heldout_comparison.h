@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
 

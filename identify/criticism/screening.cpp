@@ -10,7 +10,7 @@
 #include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/numeric/threads.h"
 
 namespace volcal {
 namespace {

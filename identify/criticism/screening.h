@@ -4,7 +4,7 @@
 /// fifth of the fit or less, names nothing, and says whether a diagnosis pays.
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "volcal/identify/criticism/search/ladder.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

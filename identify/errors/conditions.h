@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 

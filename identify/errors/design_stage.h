@@ -12,7 +12,7 @@
 /// slope, which is squareness: its sines are taken less their least-squares slope, and the waves have 2/3 and
 /// 1/3 of the variance.
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/tolerances.h"
 
 namespace volcal {

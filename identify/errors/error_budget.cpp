@@ -7,9 +7,9 @@
 
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/volume_moments.h"
+#include "volcal/identify/errors/volumetric.h"
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/stats/quadratic_form.h"
-#include "volcal/identify/stats/volumetric.h"
+#include "volcal/identify/statistics/quadratic_form.h"
 
 namespace volcal {
 namespace {

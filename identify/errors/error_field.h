@@ -21,7 +21,7 @@
 #include "volcal/identify/errors/conditions.h"
 #include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {

@@ -178,14 +178,28 @@ struct ParametersOfAxis {
 };
 
 /// Derivatives of the errors of functions, locations and the tool.
-PoseErrorRows rigid_rows(const FitResult& result, const AxisPosition& position, const Tool& tool) {
-  const KinematicChain chain(result.machine);
-  PoseErrorRows rows =
-      pose_error_rows(chain, result.layout, position, tool.offset, MeasuredTravel(result).held(position));
-  if (const ParameterBlock* offset = result.layout.find_block("tool " + tool.name))
-    rows.block<3, 3>(0, offset->offset) = chain.nominal_rotation_wt(position);
-  return rows;
-}
+class RigidRows {
+ public:
+  RigidRows(const FitResult& result, const Tool& tool)
+      : layout_(result.layout),
+        tool_(tool),
+        chain_(result.machine),
+        travel_(result),
+        offset_(layout_.find_block("tool " + tool.name)) {}
+
+  PoseErrorRows at(const AxisPosition& position) const {
+    PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, travel_.held(position));
+    if (offset_ != nullptr) rows.block<3, 3>(0, offset_->offset) = chain_.nominal_rotation_wt(position);
+    return rows;
+  }
+
+ private:
+  const ParameterLayout& layout_;
+  const Tool& tool_;
+  KinematicChain chain_;
+  MeasuredTravel travel_;
+  const ParameterBlock* offset_;  ///< of the tool's estimated offset; null where it is none
+};
 
 ParametersOfAxis parameters_of(const FitResult& result, AxisName name, bool is_first,
                                const Eigen::Matrix<double, 6, Eigen::Dynamic>& at_zero) {
@@ -254,7 +268,8 @@ ErrorGrid::ErrorGrid(const FitResult& result, const Tool& tool, AxisGrid grid, c
 ErrorGrid::AxisErrors ErrorGrid::errors_of(std::size_t axis, const Tool& tool) const {
   const AxisName name = grid_.axes[axis];
   const std::vector<double>& nodes = grid_.nodes[axis];
-  const auto at_zero = rigid_rows(result_, {}, tool);
+  const RigidRows rigid(result_, tool);
+  const auto at_zero = rigid.at({});
   const auto [own, turning, constant] = parameters_of(result_, name, axis == 0, at_zero);
   AxisErrors all;
   for (const auto& part : {own, turning, constant})
@@ -266,7 +281,7 @@ ErrorGrid::AxisErrors ErrorGrid::errors_of(std::size_t axis, const Tool& tool) c
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     AxisPosition position{};
     position[index_of(name)] = nodes[node];
-    const auto rows = rigid_rows(result_, position, tool);
+    const auto rows = rigid.at(position);
     auto errors = all.errors.middleCols<6>(index_at(node, kErrorsOfNode));
     auto rotations = all.rotations.middleCols<3>(index_at(node, kRotationsOfNode));
     Eigen::Index row = 0;

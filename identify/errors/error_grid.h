@@ -20,7 +20,7 @@
 
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/errors/plane_tables.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {

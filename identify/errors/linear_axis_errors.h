@@ -16,7 +16,7 @@
 
 #include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 

@@ -2,7 +2,7 @@
 /// Errors that are stated and not identified: the values of a model file as a result without uncertainty, so
 /// that tables, compensations and budgets can be had of them (ISO/TR 16907:2015, 9.2.4 g).
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 

@@ -10,19 +10,16 @@
 #include <set>
 #include <stdexcept>
 
-#include "volcal/identify/io/campaign_reader.h"
-#include "volcal/identify/io/hidden_answer_writer.h"
-#include "volcal/identify/io/readings_reader.h"
-#include "volcal/identify/io/toml_writer.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/readings_reader.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
-#include "volcal/sim/datum.h"
 
 namespace volcal {
 namespace {
-
-constexpr int kTruthPositions = 41;
 
 const InstrumentSchema& schema_of(const Setup& setup) {
   const Instrument* instrument = find_instrument(setup.instrument);
@@ -169,36 +166,6 @@ std::string setup_toml(const Setup& setup, const Machine& machine) {
   return text + "repeatability_um = " + edge_number(setup.repeatability, kMetrePerMicrometre) + "\n";
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  if (!file.flush()) {
-    throw InputError({path, 0}, "cannot be written", "check permissions and free space");
-  }
-}
-
-std::string truth_csv(const sim::TruthMachine& truth) {
-  const sim::TruthInDatum tables(truth);
-  std::string text = "symbol,axis,position,position_unit,value,unit\n";
-  for (const Axis& axis : truth.machine().axes) {
-    if (is_rotary(axis.name)) continue;
-    for (const Component component : kAllComponents) {
-      const ErrorSymbol symbol{component, axis.name};
-      for (int i = 0; i < kTruthPositions; ++i) {
-        const double q = axis.travel_min + axis.travel() * i / (kTruthPositions - 1);
-        text += fmt::format("{},{},{},mm,{:.6f},{}\n", symbol.name(), letter_of(axis.name),
-                            edge_number(q, kMetrePerMillimetre), 1e6 * tables.value(symbol, q),
-                            edge_unit(component));
-      }
-    }
-  }
-  const auto symbols = tables.datum().squareness();
-  for (std::size_t i = 0; i < symbols.size(); ++i) {
-    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), 1e6 * tables.squareness()[i]);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string readings_file_name(const Setup& setup) {
@@ -241,27 +208,9 @@ std::string readings_csv(const Setup& setup, const Machine& machine) {
 }
 
 void write_campaign(const Campaign& campaign, const std::string& folder, const std::string& machine_path) {
-  write_text(folder + "/campaign.toml", campaign_toml(campaign, machine_path));
+  write_text_file(folder + "/campaign.toml", campaign_toml(campaign, machine_path));
   for (const Setup& setup : campaign.setups) {
-    write_text(folder + "/" + readings_file_name(setup), readings_csv(setup, campaign.machine));
-  }
-}
-
-void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolder& folder) {
-  folder.write("machine.toml", machine_toml(simulated.campaign.machine));
-  folder.write("model.toml", model_toml(ModelSpec{}, "machine.toml"));
-  write_campaign(simulated.campaign, folder.path(), "machine.toml");
-  const std::string truth = folder.path("truth");
-  std::filesystem::create_directories(truth);
-  write_campaign(simulated.validation, truth, "../machine.toml");
-  write_text(truth + "/error_functions.csv", truth_csv(simulated.truth));
-  if (simulated.unseen.setups.empty()) return;
-  write_text(truth + "/hidden.json", hidden_answer_json(simulated));
-  for (const auto& [name, campaign] :
-       {std::pair("/unseen", &simulated.unseen),
-        std::pair("/unseen_without_hidden", &simulated.unseen_without_hidden)}) {
-    std::filesystem::create_directories(truth + name);
-    write_campaign(*campaign, truth + name, "../../machine.toml");
+    write_text_file(folder + "/" + readings_file_name(setup), readings_csv(setup, campaign.machine));
   }
 }
 

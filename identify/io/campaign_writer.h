@@ -5,9 +5,7 @@
 
 #include <string>
 
-#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/model/description/campaign.h"
-#include "volcal/sim/study.h"
 
 namespace volcal {
 
@@ -23,12 +21,5 @@ std::string readings_csv(const Setup& setup, const Machine& machine);
 
 /// Writes campaign.toml and the CSV files into a folder that exists.
 void write_campaign(const Campaign& campaign, const std::string& folder, const std::string& machine_path);
-
-/// machine.toml, the campaign, model.toml (cubic splines, automatic knots), and truth/: the validation
-/// campaign and error_functions.csv (symbol,axis,position,position_unit,value,unit in the datum; squareness
-/// last with neither axis nor position); of a study that hides something also hidden.json
-/// (hidden_answer_writer.h) and the noise-free campaigns unseen/ and unseen_without_hidden/. The caller
-/// commits the folder.
-void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolder& folder);
 
 }  // namespace volcal

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "volcal/identify/io/temporary_paths.h"
-#include "volcal/identify/io/text_file.h"
+#include "volcal/identify/text/temporary_paths.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

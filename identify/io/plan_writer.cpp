@@ -13,10 +13,10 @@
 #include <string_view>
 #include <utility>
 
+#include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/campaign_writer.h"
-#include "volcal/identify/io/json_text.h"
-#include "volcal/identify/io/toml_writer.h"
-#include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/planning/registry.h"
+#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "volcal/identify/io/atomic_folder.h"
 #include "volcal/identify/planning/campaign_plan.h"
+#include "volcal/identify/text/atomic_folder.h"
 
 namespace volcal {
 

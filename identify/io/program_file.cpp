@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "volcal/identify/io/text_file.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "volcal/identify/io/temporary_paths.h"
+#include "volcal/identify/text/temporary_paths.h"
 
 namespace volcal {
 

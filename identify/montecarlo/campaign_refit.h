@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 
 #include "volcal/identify/montecarlo/repeated_campaign.h"
-#include "volcal/identify/solve/minimise.h"
+#include "volcal/identify/solve/normals/minimise.h"
 
 namespace volcal {
 

@@ -12,7 +12,7 @@ namespace volcal {
 enum class RandomSource : std::uint32_t {
   Parameters = 0,
   Readings = 1,
-  Wander = 2,
+  Drift = 2,
   Lines = 3,
   Statements = 4,
   Roughness = 5,

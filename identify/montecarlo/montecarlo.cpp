@@ -11,10 +11,10 @@
 #include "volcal/identify/montecarlo/idle_pool.h"
 #include "volcal/identify/montecarlo/path_solvers.h"
 #include "volcal/identify/montecarlo/state_bytes.h"
+#include "volcal/identify/numeric/content_hash.h"
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/stats/content_hash.h"
-#include "volcal/identify/stats/normal.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/statistics/normal.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

@@ -18,13 +18,13 @@ NoiseSampler::NoiseSampler(const NoiseData& data, std::span<const NoiseParameter
       const double length = data.length.empty() ? 0.0 : data.length[i];
       independent_[i] = std::hypot(own.white * data.sigma[i], own.per_metre * length);
     }
-    if (own.wander > 0.0 && !sequence.time.empty()) add_wander(data, sequence, own);
+    if (own.drift > 0.0 && !sequence.time.empty()) add_drift(data, sequence, own);
     if (own.line > 0.0 && !sequence.line.empty()) add_lines(data, sequence, own);
   }
 }
 
-void NoiseSampler::add_wander(const NoiseData& data, const NoiseSequence& sequence,
-                              const NoiseParameters& own) {
+void NoiseSampler::add_drift(const NoiseData& data, const NoiseSequence& sequence,
+                             const NoiseParameters& own) {
   std::vector<std::size_t> order(sequence.observation.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return sequence.time[k]; });
@@ -36,7 +36,7 @@ void NoiseSampler::add_wander(const NoiseData& data, const NoiseSequence& sequen
     before = sequence.time[k];
     walk.observation.push_back(sequence.observation[k]);
     walk.decay.push_back(decay);
-    walk.fresh.push_back(own.wander * std::sqrt(1.0 - decay * decay));
+    walk.fresh.push_back(own.drift * std::sqrt(1.0 - decay * decay));
   }
   walks_.push_back(std::move(walk));
 }
@@ -59,7 +59,7 @@ void NoiseSampler::draw(std::uint64_t seed, std::uint64_t number, std::span<doub
     std::size_t steps = 0;
     for (const Walk& walk : walks_) steps += walk.observation.size();
     std::vector<double> normal(steps);
-    CounterRandom(seed, number, RandomSource::Wander).normals(normal);
+    CounterRandom(seed, number, RandomSource::Drift).normals(normal);
     const double* next = normal.data();
     for (const Walk& walk : walks_) {
       double state = 0.0;

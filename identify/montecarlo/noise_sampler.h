@@ -1,6 +1,6 @@
 #pragma once
 /// Errors of readings as the noise model (identify/noise/noise_model.h) has them:
-/// independent parts, a wander that forgets itself with exp(-|dt| / tau) (exact recursion of the
+/// independent parts, correlated drift that forgets itself with exp(-|dt| / tau) (exact recursion of the
 /// Ornstein-Uhlenbeck process from time to time), offsets that the readings of a line share. It is the model
 /// read forwards; the Whitener reads it backwards, and shares no code with it.
 
@@ -32,7 +32,7 @@ class NoiseSampler {
     std::size_t line;  ///< number among all lines
   };
 
-  void add_wander(const NoiseData& data, const NoiseSequence& sequence, const NoiseParameters& own);
+  void add_drift(const NoiseData& data, const NoiseSequence& sequence, const NoiseParameters& own);
   void add_lines(const NoiseData& data, const NoiseSequence& sequence, const NoiseParameters& own);
 
   std::vector<double> independent_;  ///< standard deviation per observation

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {

@@ -3,8 +3,8 @@
 ///
 /// Truth is the identified machine z^, the readings are y = f(z^) + e + G a: f the measurement model with the
 /// exact transforms' remainder, e from the noise model of the fit (instrument noise, repeatability, and
-/// wander, offsets of lines and a part in proportion to length where it has them), G a effects that the
-/// adjustment knows nothing of, with amplitudes a from their distributions. What the adjustment is told
+/// correlated drift, offsets of lines and a part in proportion to length where it has them), G a effects that
+/// the adjustment knows nothing of, with amplitudes a from their distributions. What the adjustment is told
 /// beforehand - a station, a tool's offset, a scale's expansion, an instrument's length scale with their
 /// standard uncertainties, and how large and rough an error function is - is a statement s about z with
 /// covariance P^-1, drawn about the truth: only the difference of statement and truth matters to first order,
@@ -41,8 +41,8 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/montecarlo/noise_sampler.h"
 #include "volcal/identify/noise/noise_model.h"
-#include "volcal/identify/solve/datum.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/datum.h"
 
 namespace volcal {
 

@@ -5,45 +5,45 @@
 namespace volcal {
 
 VOLCAL_VECTOR_LOOPS void filter_row(const FilterStep& step, Eigen::Index width, double* __restrict values,
-                                    double* __restrict wander) {
-  const double decay = step.decay, scale = step.scale, gain = step.wander_gain;
+                                    double* __restrict drift) {
+  const double decay = step.decay, scale = step.scale, gain = step.drift_gain;
   for (Eigen::Index c = 0; c < width; ++c) {
-    const double predicted = decay * wander[c];
+    const double predicted = decay * drift[c];
     const double innovation = values[c] - predicted;
-    wander[c] = predicted + gain * innovation;
+    drift[c] = predicted + gain * innovation;
     values[c] = scale * innovation;
   }
 }
 
 VOLCAL_VECTOR_LOOPS void filter_row(const FilterStep& step, Eigen::Index width, double* __restrict values,
-                                    double* __restrict wander, double* __restrict offset) {
-  const double decay = step.decay, scale = step.scale, gain = step.wander_gain, own_gain = step.offset_gain;
+                                    double* __restrict drift, double* __restrict offset) {
+  const double decay = step.decay, scale = step.scale, gain = step.drift_gain, own_gain = step.offset_gain;
   for (Eigen::Index c = 0; c < width; ++c) {
-    const double predicted = decay * wander[c];
+    const double predicted = decay * drift[c];
     const double innovation = values[c] - predicted - offset[c];
-    wander[c] = predicted + gain * innovation;
+    drift[c] = predicted + gain * innovation;
     offset[c] += own_gain * innovation;
     values[c] = scale * innovation;
   }
 }
 
 VOLCAL_VECTOR_LOOPS void filter_row_adjoint(const FilterStep& step, Eigen::Index width,
-                                            double* __restrict values, double* __restrict wander) {
-  const double decay = step.decay, scale = step.scale, gain = step.wander_gain;
+                                            double* __restrict values, double* __restrict drift) {
+  const double decay = step.decay, scale = step.scale, gain = step.drift_gain;
   for (Eigen::Index c = 0; c < width; ++c) {
-    const double value = scale * values[c] + gain * wander[c];
-    wander[c] = decay * (wander[c] - value);
+    const double value = scale * values[c] + gain * drift[c];
+    drift[c] = decay * (drift[c] - value);
     values[c] = value;
   }
 }
 
 VOLCAL_VECTOR_LOOPS void filter_row_adjoint(const FilterStep& step, Eigen::Index width,
-                                            double* __restrict values, double* __restrict wander,
+                                            double* __restrict values, double* __restrict drift,
                                             double* __restrict offset) {
-  const double decay = step.decay, scale = step.scale, gain = step.wander_gain, own_gain = step.offset_gain;
+  const double decay = step.decay, scale = step.scale, gain = step.drift_gain, own_gain = step.offset_gain;
   for (Eigen::Index c = 0; c < width; ++c) {
-    const double value = scale * values[c] + gain * wander[c] + own_gain * offset[c];
-    wander[c] = decay * (wander[c] - value);
+    const double value = scale * values[c] + gain * drift[c] + own_gain * offset[c];
+    drift[c] = decay * (drift[c] - value);
     offset[c] -= value;
     values[c] = value;
   }

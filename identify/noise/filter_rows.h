@@ -8,18 +8,18 @@ namespace volcal {
 
 /// Factors of one step, the same for every column.
 struct FilterStep {
-  double decay;        ///< of the wander since the step before
+  double decay;        ///< of the correlated drift since the step before
   double scale;        ///< 1 / sqrt(F)
-  double wander_gain;  ///< of the wander's state
+  double drift_gain;   ///< of the correlated drift's state
   double offset_gain;  ///< of the state that holds the offset of the step's line
 };
 
 /// values := innovation / sqrt(F); states move on.
-void filter_row(const FilterStep& step, Eigen::Index width, double* values, double* wander);
-void filter_row(const FilterStep& step, Eigen::Index width, double* values, double* wander, double* offset);
-/// The same backwards: values := L^-T values; `wander` and `offset` hold the adjoint states.
-void filter_row_adjoint(const FilterStep& step, Eigen::Index width, double* values, double* wander);
-void filter_row_adjoint(const FilterStep& step, Eigen::Index width, double* values, double* wander,
+void filter_row(const FilterStep& step, Eigen::Index width, double* values, double* drift);
+void filter_row(const FilterStep& step, Eigen::Index width, double* values, double* drift, double* offset);
+/// The same backwards: values := L^-T values; `drift` and `offset` hold the adjoint states.
+void filter_row_adjoint(const FilterStep& step, Eigen::Index width, double* values, double* drift);
+void filter_row_adjoint(const FilterStep& step, Eigen::Index width, double* values, double* drift,
                         double* offset);
 /// values *= factor
 void scale_row(double factor, Eigen::Index width, double* values);

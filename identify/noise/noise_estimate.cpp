@@ -150,10 +150,10 @@ std::vector<NoiseRow> noise_table(const NoiseEstimate& estimate) {
     const NoiseParameters& u = own.log_uncertainty;
     rows.push_back(row(g, "white", "1", value.white, u.white, kNone,
                        own.estimated ? "" : "stated: too few redundant readings"));
-    const std::string wander = remark(own.wander, "no times, or too few readings");
-    rows.push_back(row(g, "wander", "m or rad", value.wander, u.wander, own.wander.likelihood_ratio, wander));
+    const std::string drift = remark(own.drift, "no times, or too few readings");
+    rows.push_back(row(g, "wander", "m or rad", value.drift, u.drift, own.drift.likelihood_ratio, drift));
     rows.push_back(
-        row(g, "tau", "s", own.wander.on ? value.tau : 0.0, u.tau, own.wander.likelihood_ratio, wander));
+        row(g, "tau", "s", own.drift.on ? value.tau : 0.0, u.tau, own.drift.likelihood_ratio, drift));
     rows.push_back(row(g, "line", "m or rad", value.line, u.line, own.line.likelihood_ratio,
                        remark(own.line, "no lines of several readings")));
     rows.push_back(row(g, "per_metre", "m/m", value.per_metre, u.per_metre, own.per_metre.likelihood_ratio,

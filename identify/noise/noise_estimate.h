@@ -1,7 +1,7 @@
 #pragma once
 /// Noise model of a campaign by restricted maximum likelihood (restricted_likelihood.h).
 ///
-/// Per instrument: white, wander, tau, line and per_metre. Starts come from the variance and
+/// Per instrument: white, correlated drift, tau, line and per_metre. Starts come from the variance and
 /// the half squared differences of successive readings (or of returns to the same point) and a grid of tau;
 /// the search then alternates between a function that costs one whitened column, -2 l with the correction x
 /// held and log|J^T Sigma^-1 J + P| linear, and the exact value. Terms are dropped one by
@@ -17,14 +17,14 @@
 namespace volcal {
 
 struct NoiseOptions {
-  bool wander = true;
+  bool drift = true;
   bool line = true;
   bool per_metre = true;
   /// 2 (l - l without) that a term must reach. A variance at its bound 0 follows 1/2 chi2_0 + 1/2 chi2_1
-  /// (Self and Liang 1987, JASA 82, 605): 4 keeps 2.3 % of terms that are not there. The wander has a tau
-  /// that is free without it (Davies 1987, Biometrika 74, 33) and needs more.
+  /// (Self and Liang 1987, JASA 82, 605): 4 keeps 2.3 % of terms that are not there. The correlated drift has
+  /// a tau that is free without it (Davies 1987, Biometrika 74, 33) and needs more.
   double threshold = 4.0;
-  double wander_threshold = 7.0;
+  double drift_threshold = 7.0;
   bool uncertainty = true;  ///< of the parameters; costs as much as a search that starts near its end
   int threads = 1;
 };
@@ -53,9 +53,10 @@ struct InstrumentNoise {
   /// Standard uncertainties of the logarithms from the second derivatives of l, 3 where it says nothing; NaN:
   /// off.
   NoiseParameters log_uncertainty;
-  /// Covariance of the same logarithms, in the order white, wander, tau, line, per_metre; 0 where off.
+  /// Covariance of the same logarithms, in the order white, correlated drift, tau, line, per_metre; 0 where
+  /// off.
   Eigen::Matrix<double, 5, 5> log_covariance = Eigen::Matrix<double, 5, 5>::Zero();
-  TermEvidence wander;
+  TermEvidence drift;
   TermEvidence line;
   TermEvidence per_metre;
   std::size_t observations = 0;
@@ -88,7 +89,7 @@ struct NoiseRow {
   double value = 0.0;  ///< 0 = off
   double low = 0.0;    ///< 95 % interval, value exp(-+1.96 u); NaN without uncertainty
   double high = 0.0;
-  double likelihood_ratio = 0.0;  ///< NaN for white; tau has that of the wander
+  double likelihood_ratio = 0.0;  ///< NaN for white; tau has that of the correlated drift
   std::string remark;             ///< "", "off: not supported", "off: no times", ...
 };
 std::vector<NoiseRow> noise_table(const NoiseEstimate& estimate);

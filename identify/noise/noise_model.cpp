@@ -47,9 +47,9 @@ void check(const NoiseData& data) {
 
 void check(const NoiseParameters& noise) {
   const auto valid = [](double value) { return value >= 0.0 && std::isfinite(value); };
-  require(valid(noise.white) && valid(noise.wander) && valid(noise.line) && valid(noise.per_metre),
+  require(valid(noise.white) && valid(noise.drift) && valid(noise.line) && valid(noise.per_metre),
           "parameters must be finite and not negative");
-  require(noise.wander == 0.0 || noise.tau > 0.0, "tau must be positive");
+  require(noise.drift == 0.0 || noise.tau > 0.0, "tau must be positive");
 }
 
 }  // namespace
@@ -131,8 +131,8 @@ void Whitener::set_parameters(std::span<const NoiseParameters> parameters) {
   log_determinant_ = 0.0;
   for (Track& track : tracks_) {
     NoiseParameters noise = parameters[track.group];
-    if (!track.timed) noise.wander = 0.0;
-    track.independent = noise.wander == 0.0 && (noise.line == 0.0 || track.states == 1);
+    if (!track.timed) noise.drift = 0.0;
+    track.independent = noise.drift == 0.0 && (noise.line == 0.0 || track.states == 1);
     log_determinant_ +=
         track.states == 2 ? compute_gains<2>(noise, track) : compute_gains<Eigen::Dynamic>(noise, track);
   }
@@ -142,7 +142,7 @@ template <int kStates>
 double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
   using Vector = Eigen::Matrix<double, kStates, 1>;
-  const double wander2 = noise.wander * noise.wander;
+  const double drift2 = noise.drift * noise.drift;
   Matrix covariance = Matrix::Zero(track.states, track.states);
   Vector towards(track.states);  // covariance of the states with the observation
   double log_determinant = 0.0, product = 1.0, gap = -1.0, decay = 0.0;
@@ -150,12 +150,12 @@ double Whitener::compute_gains(const NoiseParameters& noise, Track& track) {
     const Step& step = track.steps[i];
     if (step.gap != gap) {
       gap = step.gap;
-      decay = wander2 > 0.0 ? std::exp(-gap / noise.tau) : 0.0;
+      decay = drift2 > 0.0 ? std::exp(-gap / noise.tau) : 0.0;
     }
     track.decay[i] = decay;
     covariance.row(0) *= decay;
     covariance.col(0) *= decay;
-    covariance(0, 0) += (1.0 - decay * decay) * wander2;
+    covariance(0, 0) += (1.0 - decay * decay) * drift2;
     towards = covariance.col(0);
     if (step.slot > 0) {
       if (step.opens) {

@@ -4,7 +4,7 @@
 /// A sequence holds the observations of one setup, run and channel in time order; different sequences are
 /// independent. Within a sequence
 ///
-///   Sigma_ij = delta_ij (white^2 sigma_i^2 + per_metre^2 L_i^2) + wander^2 exp(-|t_i - t_j| / tau)
+///   Sigma_ij = delta_ij (white^2 sigma_i^2 + per_metre^2 L_i^2) + drift^2 exp(-|t_i - t_j| / tau)
 ///            + line^2 [i and j belong to the same line]
 ///
 /// The exponential is an Ornstein-Uhlenbeck process, hence Markovian (Rasmussen and Williams 2006, Gaussian
@@ -15,8 +15,8 @@
 ///
 /// Two states suffice while lines follow one another. A line that is resumed after another began keeps its
 /// state until its last observation: exact as well, with cost growing with the number m of lines open at
-/// once, O(N m^2) for the gains and O(N m) per column. A sequence without times has no wander and is taken
-/// line by line.
+/// once, O(N m^2) for the gains and O(N m) per column. A sequence without times has no correlated drift and
+/// is taken line by line.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -33,8 +33,8 @@ namespace volcal {
 /// Of one instrument. SI: lengths in m (angles in rad), tau in s.
 struct NoiseParameters {
   double white = 1.0;      ///< factor on the stated sigma
-  double wander = 0.0;     ///< standard deviation; 0 = off
-  double tau = 600.0;      ///< correlation time of the wander, s
+  double drift = 0.0;      ///< standard deviation; 0 = off
+  double tau = 600.0;      ///< correlation time of the drift, s
   double line = 0.0;       ///< standard deviation of the offset that the readings of a line share; 0 = off
   double per_metre = 0.0;  ///< m/m, independent per reading
 };
@@ -42,7 +42,7 @@ struct NoiseParameters {
 /// Observations of one setup, run and channel. Need not be sorted.
 struct NoiseSequence {
   std::vector<std::size_t> observation;  ///< rows of the columns to whiten
-  std::vector<double> time;              ///< s, per observation; empty = not known: no wander
+  std::vector<double> time;              ///< s, per observation; empty = not known: no correlated drift
   std::vector<std::int32_t> line;        ///< per observation; empty = not known: no line offsets
   std::size_t group = 0;                 ///< instrument: index of its parameters
 };
@@ -58,7 +58,7 @@ struct NoiseData {
 inline constexpr Eigen::Index kColumnBlock = 64;
 
 /// L^-1 of a noise model. Errors: std::invalid_argument for sizes that do not agree, an observation in no or
-/// in two sequences, a sigma that is not positive, negative parameters, tau <= 0 with wander.
+/// in two sequences, a sigma that is not positive, negative parameters, tau <= 0 with correlated drift.
 class Whitener {
  public:
   Whitener(const NoiseData& data, std::span<const NoiseParameters> parameters);
@@ -115,16 +115,17 @@ class Whitener {
     double sigma;   ///< stated
     double length;  ///< m
   };
-  /// A sequence in the order of its filter; state 0 is the wander, the others offsets of open lines.
+  /// A sequence in the order of its filter; state 0 is the correlated drift, the others offsets of open
+  /// lines.
   struct Track {
     std::vector<Step> steps;
     std::size_t group = 0;
     int states = 1;
     bool timed = false;
-    bool independent = false;  ///< neither wander nor line offsets: whitening only divides
+    bool independent = false;  ///< neither correlated drift nor line offsets: whitening only divides
     std::size_t first = std::numeric_limits<std::size_t>::max();  ///< lowest and highest observation
     std::size_t last = 0;
-    std::vector<double> decay;  ///< of the wander since the step before
+    std::vector<double> decay;  ///< of the correlated drift since the step before
     std::vector<double> scale;  ///< 1 / sqrt(F)
     std::vector<double> gain;   ///< states x steps
   };

@@ -12,7 +12,7 @@
 namespace volcal {
 namespace {
 
-constexpr Eigen::Index kWhite = 0, kWander = 1, kTau = 2, kLine = 3, kPerMetre = 4, kParameters = 5;
+constexpr Eigen::Index kWhite = 0, kDrift = 1, kTau = 2, kLine = 3, kPerMetre = 4, kParameters = 5;
 
 constexpr std::size_t kLeastObservations = 30;  // fewer: white alone
 constexpr std::size_t kLeastLines = 4;
@@ -38,7 +38,7 @@ constexpr double kChanged = 0.02;      // of the residuals' standard deviation: 
 constexpr double kSurrogateTolerance = 1e-3;
 constexpr double kSpread = 3.0;  // of a logarithm before any reading: where the likelihood is flat
 
-constexpr Eigen::Index parameter_of(int term) { return term == 0 ? kWander : term == 1 ? kLine : kPerMetre; }
+constexpr Eigen::Index parameter_of(int term) { return term == 0 ? kDrift : term == 1 ? kLine : kPerMetre; }
 
 struct TimeScale {
   double usual_gap = 0.0;
@@ -137,7 +137,7 @@ void NoiseSearch::set_limits(double white, const Eigen::VectorXd& residual) {
   }
   mean_length_ = std::sqrt(squares / n);
   const bool enough = data.sigma.size() >= kLeastObservations;
-  possible_[0] = options_.wander && enough && time.longest > 2.0 * time.usual_gap;
+  possible_[0] = options_.drift && enough && time.longest > 2.0 * time.usual_gap;
   possible_[1] = options_.line && enough && has_lines(data);
   possible_[2] = options_.per_metre && enough && longest > kLeastSpreadOfLength * shortest;
 
@@ -170,7 +170,7 @@ NoiseParameters NoiseSearch::parameters(const Eigen::VectorXd& at, const Active&
   NoiseParameters noise;
   noise.white = std::exp(at(kWhite));
   if (active[0]) {
-    noise.wander = deviation(at(kWander));
+    noise.drift = deviation(at(kDrift));
     noise.tau = std::exp(at(kTau));
   }
   if (active[1]) noise.line = deviation(at(kLine));
@@ -226,18 +226,19 @@ double NoiseSearch::surrogate(const Point& from, const Eigen::VectorXd& at, cons
 std::vector<Eigen::VectorXd> NoiseSearch::starts(const Active& active) const {
   std::vector<Eigen::VectorXd> result;
   const int taus = active[0] ? kTauStarts : 1;
-  const std::vector<double> shares = active[0] && active[1] ? std::vector<double>{0.1, 0.5, 0.9}
-                                                            : std::vector<double>{1.0};  // of the wander
+  const std::vector<double> shares = active[0] && active[1]
+                                         ? std::vector<double>{0.1, 0.5, 0.9}
+                                         : std::vector<double>{1.0};  // of the correlated drift
   for (const double correlated : {correlated_, 0.2 * correlated_}) {
     for (const double share : shares) {
       for (int k = 0; k < taus; ++k) {
         Eigen::VectorXd at = white_.at;
         const double independent = active[2] ? 0.5 * (1.0 - correlated) : 1.0 - correlated;
-        const double of_wander = active[0] ? correlated * share : 0.0;
+        const double of_drift = active[0] ? correlated * share : 0.0;
         at(kWhite) += 0.5 * std::log(independent);
         at(kTau) = lower_(kTau) + (upper_(kTau) - lower_(kTau)) * (k + 0.5) / taus;
-        at(kWander) = coordinate(total_ * std::sqrt(of_wander));
-        at(kLine) = coordinate(total_ * std::sqrt(correlated - of_wander));
+        at(kDrift) = coordinate(total_ * std::sqrt(of_drift));
+        at(kLine) = coordinate(total_ * std::sqrt(correlated - of_drift));
         at(kPerMetre) = coordinate(total_ * std::sqrt(independent));
         result.push_back(at);
       }
@@ -342,7 +343,7 @@ NoiseSearch::Point NoiseSearch::with(const Point& point, int term) {
 }
 
 NoiseSearch::Point NoiseSearch::search(InstrumentNoise& result) {
-  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
+  const std::array<TermEvidence*, kTerms> evidence{&result.drift, &result.line, &result.per_metre};
   Point best = best_start(white_, possible_);
   settle(best);
   bool settled = true;
@@ -375,8 +376,8 @@ NoiseSearch::Point NoiseSearch::search(InstrumentNoise& result) {
 /// From the end of an earlier search of nearly the same residuals; nothing when a term should come or go.
 std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
                                                       const InstrumentNoise& previous) {
-  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
-  const std::array<const TermEvidence*, kTerms> before{&previous.wander, &previous.line, &previous.per_metre};
+  const std::array<TermEvidence*, kTerms> evidence{&result.drift, &result.line, &result.per_metre};
+  const std::array<const TermEvidence*, kTerms> before{&previous.drift, &previous.line, &previous.per_metre};
   total_ = previous.start.scale;  // its variables
   Point best;
   best.active = previous.start.active;
@@ -401,10 +402,10 @@ std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
 }
 
 void NoiseSearch::run(InstrumentNoise& result, const InstrumentNoise& previous) {
-  const std::array<TermEvidence*, kTerms> evidence{&result.wander, &result.line, &result.per_metre};
+  const std::array<TermEvidence*, kTerms> evidence{&result.drift, &result.line, &result.per_metre};
   for (std::size_t term = 0; term < kTerms; ++term) {
     *evidence[term] = {possible_[term], false, 0.0,
-                       term == 0 ? options_.wander_threshold : options_.threshold};
+                       term == 0 ? options_.drift_threshold : options_.threshold};
   }
   const double scale = total_;
   std::optional<Point> found;
@@ -434,7 +435,7 @@ void NoiseSearch::find_uncertainty(const Point& point, InstrumentNoise& result) 
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   NoiseParameters& log_uncertainty = result.log_uncertainty;
   log_uncertainty = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
-  const std::array<double*, kParameters> targets{&log_uncertainty.white, &log_uncertainty.wander,
+  const std::array<double*, kParameters> targets{&log_uncertainty.white, &log_uncertainty.drift,
                                                  &log_uncertainty.tau, &log_uncertainty.line,
                                                  &log_uncertainty.per_metre};
   const Box limits = box(point.active);

@@ -23,7 +23,7 @@ class NoiseSearch {
   int evaluations() const { return evaluations_; }
 
  private:
-  static constexpr int kTerms = 3;  ///< wander, line, per_metre
+  static constexpr int kTerms = 3;  ///< correlated drift, line, per_metre
   using Active = std::array<bool, kTerms>;
 
   /// A point of the search with what the next step needs.

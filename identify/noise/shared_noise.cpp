@@ -9,7 +9,7 @@ namespace volcal {
 
 SharedNoise::SharedNoise(const NoiseSequence& sequence, const NoiseParameters& noise)
     : sequence_(sequence),
-      wander_(sequence.time.empty() ? 0.0 : noise.wander * noise.wander),
+      drift_(sequence.time.empty() ? 0.0 : noise.drift * noise.drift),
       offset_(sequence.line.empty() ? 0.0 : noise.line * noise.line),
       tau_(noise.tau),
       order_(sequence.observation.size()) {
@@ -25,12 +25,12 @@ SharedNoise::SharedNoise(const NoiseSequence& sequence, const NoiseParameters& n
 
 double SharedNoise::covariance(std::size_t i, std::size_t j) const {
   double value = 0.0;
-  if (wander_ > 0.0) value += wander_ * std::exp(-std::abs(sequence_.time[i] - sequence_.time[j]) / tau_);
+  if (drift_ > 0.0) value += drift_ * std::exp(-std::abs(sequence_.time[i] - sequence_.time[j]) / tau_);
   if (offset_ > 0.0 && line_[i] == line_[j]) value += offset_;
   return value;
 }
 
-/// The wander by two sums that decay with time, one from either end.
+/// The correlated drift by two sums that decay with time, one from either end.
 Eigen::VectorXd SharedNoise::times(const Eigen::VectorXd& weights) const {
   const auto& observation = sequence_.observation;
   const auto weight = [&](std::size_t i) { return weights[static_cast<Eigen::Index>(observation[i])]; };
@@ -40,11 +40,11 @@ Eigen::VectorXd SharedNoise::times(const Eigen::VectorXd& weights) const {
     for (const std::size_t i : order) {
       sum *= std::exp(-std::abs(sequence_.time[i] - last) / tau_);
       last = sequence_.time[i];
-      product[static_cast<Eigen::Index>(i)] += wander_ * (own ? sum + weight(i) : sum);
+      product[static_cast<Eigen::Index>(i)] += drift_ * (own ? sum + weight(i) : sum);
       sum += weight(i);
     }
   };
-  if (wander_ > 0.0) {
+  if (drift_ > 0.0) {
     pass(order_, true);
     pass({order_.rbegin(), order_.rend()}, false);
   }

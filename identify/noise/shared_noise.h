@@ -1,6 +1,6 @@
 #pragma once
-/// What the observations of a sequence share: the wander and the offsets of lines (noise_model.h), that is
-/// Sigma without what each reading has on its own.
+/// What the observations of a sequence share: the correlated drift and the offsets of lines (noise_model.h),
+/// that is Sigma without what each reading has on its own.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -14,8 +14,8 @@ class SharedNoise {
  public:
   SharedNoise(const NoiseSequence& sequence, const NoiseParameters& noise);
 
-  /// Nothing is shared: neither wander nor offsets, or times and lines are not known.
-  bool none() const { return wander_ == 0.0 && offset_ == 0.0; }
+  /// Nothing is shared: neither correlated drift nor offsets, or times and lines are not known.
+  bool none() const { return drift_ == 0.0 && offset_ == 0.0; }
   /// Covariance of two observations of the sequence by what they share, and of one with itself.
   double covariance(std::size_t i, std::size_t j) const;
   /// Row i: sum over j of covariance(i, j) weights[observation of j], i in the order of the sequence. O(n).
@@ -24,7 +24,7 @@ class SharedNoise {
 
  private:
   const NoiseSequence& sequence_;
-  double wander_;  ///< variances
+  double drift_;  ///< variances
   double offset_;
   double tau_;
   std::vector<std::size_t> order_;  ///< by time

@@ -8,8 +8,8 @@
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/stats/chi_squared.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {

@@ -8,15 +8,15 @@
 
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/planning/plan_problem.h"
 #include "volcal/identify/solve/adjustment.h"
-#include "volcal/identify/solve/normal_equations.h"
+#include "volcal/identify/solve/normals/normal_equations.h"
+#include "volcal/identify/solve/normals/stated_sigma.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/rank.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/solve/stated_sigma.h"
 #include "volcal/identify/solve/summaries.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "volcal/identify/planning/plan_settings.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 

@@ -1,6 +1,6 @@
 #include "volcal/identify/planning/line_of_sight.h"
 
-#include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/planning/registry.h"
 
 namespace volcal {
 

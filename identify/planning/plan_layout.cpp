@@ -5,7 +5,7 @@
 #include <random>
 #include <tuple>
 
-#include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/planning/registry.h"
 
 namespace volcal {
 namespace {

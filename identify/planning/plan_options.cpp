@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/planning/instruments/registry.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 

@@ -8,9 +8,9 @@
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/solve/campaign_noise.h"
+#include "volcal/identify/solve/normals/stated_sigma.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/rank.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/solve/stated_sigma.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/functions/registry.h"
 

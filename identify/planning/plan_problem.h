@@ -18,8 +18,8 @@
 #include "volcal/identify/planning/exchange_design.h"
 #include "volcal/identify/planning/plan_layout.h"
 #include "volcal/identify/planning/plan_settings.h"
-#include "volcal/identify/solve/minimise.h"
-#include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/solve/normals/minimise.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 
 namespace volcal {
 

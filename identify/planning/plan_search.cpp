@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/planning/path_choice.h"
-#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

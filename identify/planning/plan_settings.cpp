@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include "volcal/identify/planning/instruments/registry.h"
+#include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

@@ -1,7 +1,7 @@
 #include "volcal/identify/report/finding_json.h"
 
 #include "volcal/identify/report/numbers.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal::report {
 namespace {}  // namespace

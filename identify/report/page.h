@@ -13,7 +13,7 @@
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/volume_error.h"
+#include "volcal/identify/report/values/volume_error.h"
 
 namespace volcal::report {
 

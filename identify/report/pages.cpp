@@ -24,7 +24,7 @@ constexpr std::array kPages = {
 constexpr std::array kDiagnosisPages = {
     DiagnosisPage{"story", "What was missing", story_page},
     DiagnosisPage{"evidence", "Ranked evidence", evidence_page},
-    DiagnosisPage{"confounding", "What is told apart, and what to measure", confounding_page},
+    DiagnosisPage{"confounding", "What the readings separate, and what to measure", confounding_page},
     DiagnosisPage{"added_variable", "The leading effect", added_variable_page},
     DiagnosisPage{"residual_variables", "Residuals against what was recorded", residual_variables_page},
     DiagnosisPage{"residual_vectors", "Residuals in the work volume", residual_vectors_page},

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "volcal/identify/io/json_text.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/template_data.h"
+#include "volcal/identify/text/json_text.h"
 
 namespace volcal {
 namespace {

@@ -12,7 +12,7 @@
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/model/description/model_spec.h"
 
 namespace volcal {

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/even_sample.h"
+#include "volcal/identify/statistics/even_sample.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
@@ -144,7 +144,7 @@ std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::ve
     const auto group = std::ranges::find(groups, result.noise.groups.at(row.instrument));
     if (group == groups.end()) continue;
     NoiseParameters& own = noise.at(static_cast<std::size_t>(group - groups.begin()));
-    if (row.term == "wander") own.wander = row.value;
+    if (row.term == "wander") own.drift = row.value;
     if (row.term == "tau" && row.value > 0.0) own.tau = row.value;
     if (row.term == "line") own.line = row.value;
     if (row.term == "per_metre") own.per_metre = row.value;

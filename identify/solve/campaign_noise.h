@@ -7,8 +7,8 @@
 
 #include "volcal/identify/noise/local_rows.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
-#include "volcal/identify/solve/datum.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/datum.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {

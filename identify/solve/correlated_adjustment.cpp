@@ -42,7 +42,7 @@ NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& da
 
 bool is_more_than_white(const NoiseEstimate& estimate) {
   return std::ranges::any_of(estimate.instruments, [](const InstrumentNoise& instrument) {
-    return instrument.wander.on || instrument.line.on || instrument.per_metre.on;
+    return instrument.drift.on || instrument.line.on || instrument.per_metre.on;
   });
 }
 
@@ -51,12 +51,12 @@ std::vector<double> total_sigma(const NoiseData& noise, const std::vector<double
   std::vector<double> total(stated_sigma.size());
   for (const NoiseSequence& sequence : noise.sequences) {
     const NoiseParameters& own = parameters[sequence.group];
-    const double wander = sequence.time.empty() ? 0.0 : own.wander;
+    const double drift = sequence.time.empty() ? 0.0 : own.drift;
     const double line = sequence.line.empty() ? 0.0 : own.line;
     for (const std::size_t i : sequence.observation) {
       const double white = own.white * stated_sigma[i];
       const double proportional = own.per_metre * noise.length[i];
-      total[i] = std::sqrt(white * white + proportional * proportional + wander * wander + line * line);
+      total[i] = std::sqrt(white * white + proportional * proportional + drift * drift + line * line);
     }
   }
   return total;

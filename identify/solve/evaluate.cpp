@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/solve/adjustment.h"
-#include "volcal/identify/solve/minimise.h"
+#include "volcal/identify/solve/normals/minimise.h"
+#include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/residuals.h"
-#include "volcal/identify/solve/stated_sigma.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/threads.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {

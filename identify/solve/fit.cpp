@@ -7,21 +7,21 @@
 #include <optional>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
-#include "volcal/identify/solve/fitted_readings.h"
+#include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/plausibility.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/solve/smoothing.h"
-#include "volcal/identify/solve/stated_sigma.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/solve/verdict.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/threads.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/driver_check.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
@@ -280,7 +280,7 @@ class Identification {
   }
 
   /// Estimated about the white adjustment and once more about that which follows from it: smoothing chosen
-  /// with white weights takes part of a wander for detail of the functions.
+  /// with white weights takes part of correlated drift for detail of the functions.
   void model_noise() {
     campaign_noise_ = noise_of_campaign();
     NoiseOptions options;
@@ -379,7 +379,8 @@ class Identification {
     result_.conditions = recorded_conditions(campaign_);
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
       result_.messages.emplace_back(
-          "robust loss: readings are taken as independent; wander and offsets of lines were not looked for");
+          "robust loss: readings are taken as independent; correlated drift and offsets of lines were not "
+          "looked for");
     }
     judge(campaign_, model_.binding(), {converged_, rank_.deficient}, result_);
   }

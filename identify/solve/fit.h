@@ -5,7 +5,7 @@
 ///   2. rank analysis: what the readings cannot tell is named before anything is inverted,
 ///   3. all parameters together; smoothing and variance components by evidence; the exact transforms'
 ///      second-order remainder added,
-///   4. the noise by restricted maximum likelihood about that; where it is more than white (slow wander,
+///   4. the noise by restricted maximum likelihood about that; where it is more than white (correlated drift,
 ///   offsets
 ///      of lines, a part in proportion to length) generalised least squares (correlated_adjustment.h),
 ///   5. residuals, redundancy, Baarda's w-test, covariance.
@@ -13,8 +13,8 @@
 #include <functional>
 #include <string>
 
-#include "volcal/identify/solve/minimise.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/minimise.h"
 
 namespace volcal {
 

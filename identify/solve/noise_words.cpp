@@ -1,15 +1,15 @@
 #include "volcal/identify/solve/noise_words.h"
 
-#include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
 
 std::string meaning(const std::string& term) {
   if (term == "white") return "independent, times the stated sigma";
-  if (term == "wander") return "slow wander";
-  if (term == "tau") return "correlation time of the wander";
+  if (term == "wander") return "correlated drift";
+  if (term == "tau") return "correlation time of the drift";
   if (term == "line") return "offset that the readings of a line share";
   return "independent, in proportion to length";
 }

@@ -12,7 +12,7 @@ struct EdgeNoise {
   double low = 0.0;    ///< 95 % interval
   double high = 0.0;
   std::string unit;  ///< "um", "urad", "um or urad" (an instrument that reads both), "um/m", "s"; "" a factor
-  std::string meaning;  ///< "slow wander", "correlation time of the wander", ...
+  std::string meaning;  ///< "correlated drift", "correlation time of the drift", ...
 };
 
 /// `instrument`: name of the kind that the row is of.

@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/rank_words.h"
-#include "volcal/identify/solve/resolution.h"
 
 namespace volcal {
 namespace {

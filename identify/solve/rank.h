@@ -15,10 +15,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "volcal/identify/solve/datum.h"
-#include "volcal/identify/solve/minimise.h"
-#include "volcal/identify/solve/result.h"
-#include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/datum.h"
+#include "volcal/identify/solve/normals/minimise.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/tool_tips.h"
 
 namespace volcal {

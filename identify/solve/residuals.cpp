@@ -5,8 +5,8 @@
 #include <map>
 
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/normal.h"
+#include "volcal/identify/statistics/normal.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {

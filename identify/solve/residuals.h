@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "volcal/identify/solve/normal_equations.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/normal_equations.h"
 
 namespace volcal {
 

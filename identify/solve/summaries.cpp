@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/solve/datum.h"
-#include "volcal/identify/solve/result.h"
-#include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/datum.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 
 namespace volcal {
 

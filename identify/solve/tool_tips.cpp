@@ -6,7 +6,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kDistinctTips = 10e-3;  // m, tips of tools that readings tell apart
+constexpr double kDistinctTips = 10e-3;  // m, tips of tools that readings separate
 
 /// The axis that an error function, or a squareness, belongs to.
 std::optional<AxisName> axis_of_error(const std::string& name) {
@@ -36,7 +36,7 @@ std::optional<char> across_tool_line(const Campaign& campaign) {
   return "XYZ"[least];
 }
 
-/// Rotations of one axis and what goes with them: what a tool off the line of the others tells apart.
+/// Rotations of one axis and what goes with them: what a tool off the line of the others separates.
 bool turns_about_tools(const std::string& error, const std::vector<std::string>& partners) {
   std::set<AxisName> axes;
   bool rotation = false;

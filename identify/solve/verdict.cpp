@@ -11,8 +11,8 @@
 
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/noise_words.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
@@ -64,7 +64,7 @@ std::map<std::string, double> noise_over_stated(const Campaign& campaign, const 
   return estimated;
 }
 
-/// "slow wander of 0.41 um over 580 s", empty for what stands in no sentence of its own.
+/// "correlated drift of 0.41 um over 580 s", empty for what stands in no sentence of its own.
 std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
   const EdgeNoise edge = edge_noise(row, noise.groups[row.instrument]);
   if (row.term == "line") return fmt::format("offsets of lines of {:.2g} {}", edge.value, edge.unit);
@@ -73,7 +73,7 @@ std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
   const auto tau = std::ranges::find_if(noise.rows, [&](const NoiseRow& other) {
     return other.term == "tau" && other.instrument == row.instrument;
   });
-  return fmt::format("slow wander of {:.2g} {}", edge.value, edge.unit) +
+  return fmt::format("correlated drift of {:.2g} {}", edge.value, edge.unit) +
          (tau == noise.rows.end() ? "" : fmt::format(" over {:.0f} s", tau->value));
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 /// What the user is told about a finished adjustment.
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/observation/campaign_binding.h"
 
 namespace volcal {

@@ -58,9 +58,9 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
   EXPECT_GE(strong, testing::short_or_long(1, 2));
 }
 
-/// A servo mismatch twenty times the noise, of which a wander of some seconds on the ball-bar leaves so
-/// little that it is above the noise by chi-squared and not by F.
-TEST(CriticismStudy, NamesWhatAShortWanderHasTakenUp) {
+/// A servo mismatch twenty times the noise, of which correlated drift of some seconds on the ball-bar leaves
+/// so little that it is above the noise by chi-squared and not by F.
+TEST(CriticismStudy, NamesWhatAShortDriftHasTakenUp) {
   const testing::ScratchFolder folder;
   const std::string output = (folder.path() / "kept").string();
   const auto kept = run_program("study criticism --one listed:43 --seed 2001 -o " + output);

@@ -11,7 +11,7 @@
 #include "tests/support/hand_made_diagnosis.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
-#include "volcal/identify/io/diagnosis_json.h"
+#include "volcal/identify/io/results/diagnosis_json.h"
 
 namespace volcal {
 namespace {

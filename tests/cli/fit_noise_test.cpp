@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::run_program;
 
-/// A campaign whose readings wander and whose lines have offsets.
+/// A campaign whose readings drift and whose lines have offsets.
 class FitNoiseProgram : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -40,21 +40,21 @@ TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
   const auto run = fit("");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("Noise by restricted maximum likelihood"));
-  EXPECT_THAT(run.output, ::testing::ContainsRegex("slow wander of [0-9.]+ um over [0-9]+ s"));
+  EXPECT_THAT(run.output, ::testing::ContainsRegex("correlated drift of [0-9.]+ um over [0-9]+ s"));
   EXPECT_THAT(run.output, HasSubstr("its noise is not independent"));
   const auto noise = nlohmann::json::parse(content(path("result/result.json"))).at("noise");
   EXPECT_TRUE(noise.at("more_than_white").get<bool>());
   EXPECT_NEAR(noise.at("whitened_chi2_per_dof").get<double>(), 1.0, 0.1);
-  bool wander = false;
+  bool drift = false;
   for (const auto& row : noise.at("terms")) {
     if (row.at("term") != "wander") continue;
-    wander = true;
+    drift = true;
     EXPECT_EQ(row.at("instrument"), "laser-tracer");
     EXPECT_NEAR(row.at("value").get<double>(), 1.2e-6, 0.4e-6);
     EXPECT_LT(row.at("low").get<double>(), row.at("value").get<double>());
     EXPECT_GT(row.at("high").get<double>(), row.at("value").get<double>());
   }
-  EXPECT_TRUE(wander);
+  EXPECT_TRUE(drift);
   // Other commands read the result.
   EXPECT_EQ(run_program("tables " + path("result") + " --format csv -o " + path("tables")).exit_code, 0);
 }
@@ -63,7 +63,7 @@ TEST_F(FitNoiseProgram, TakesReadingsAsIndependentWhenAsked) {
   const auto run = fit("--noise white");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("readings taken as independent"));
-  EXPECT_THAT(run.output, Not(HasSubstr("slow wander")));
+  EXPECT_THAT(run.output, Not(HasSubstr("correlated drift")));
   const auto noise = nlohmann::json::parse(content(path("result/result.json"))).at("noise");
   EXPECT_FALSE(noise.at("estimated").get<bool>());
   EXPECT_TRUE(noise.at("terms").empty());

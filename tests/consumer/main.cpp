@@ -4,8 +4,8 @@
 #include <exception>
 #include <iostream>
 
-#include "volcal/identify/io/campaign_reader.h"
-#include "volcal/identify/io/result_folder.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 

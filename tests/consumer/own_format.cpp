@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "volcal/identify/compensation/compensation_tables.h"
-#include "volcal/identify/compensation/table_text.h"
+#include "volcal/identify/text/table_text.h"
 #include "volcal/model/description/units.h"
 
 namespace {

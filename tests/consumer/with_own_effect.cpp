@@ -6,8 +6,8 @@
 #include <iostream>
 
 #include "own_effect.h"
-#include "volcal/identify/io/campaign_reader.h"
-#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/registry.h"
 

@@ -8,7 +8,7 @@
 
 #include "own_format.h"
 #include "volcal/identify/compensation/volume_check.h"
-#include "volcal/identify/io/known_errors.h"
+#include "volcal/identify/io/results/known_errors.h"
 
 int main(int count, char** arguments) {
   if (count != 2) {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "tests/support/reader_harness.h"
-#include "volcal/identify/cli/studies/criticism_record.h"
+#include "volcal/studies/criticism/criticism_record.h"
 
 /// A line of the campaigns that a study of criticism has finished.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

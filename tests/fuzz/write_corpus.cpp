@@ -10,8 +10,8 @@
 #include "tests/support/program_harness.h"
 #include "tests/support/reader_harness.h"
 #include "tests/support/table_samples.h"
-#include "volcal/identify/cli/studies/criticism_record.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/studies/criticism/criticism_record.h"
 
 namespace {
 

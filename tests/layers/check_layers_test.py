@@ -49,11 +49,12 @@ class MadeUpTree(unittest.TestCase):
             self.assertIn(word, first)
 
     def test_downward_arrows_are_accepted(self):
-        self.assert_accepted("model/kinematics/a.h", '#include "volcal/model/description/machine.h"',
+        self.assert_accepted("model/observation/a.h", '#include "volcal/model/description/machine.h"',
                              '#include "volcal/model/functions/basis.h"', "#include <ceres/jet.h>")
         self.assert_accepted("identify/solve/a.cpp", '#include "volcal/model/kinematics/chain.h"',
                              "#include <ceres/ceres.h>")
-        self.assert_accepted("identify/io/a.cpp", '#include "volcal/sim/study.h"', "#include <fstream>")
+        self.assert_accepted("identify/io/a.cpp", '#include "volcal/identify/text/csv_table.h"', "#include <fstream>")
+        self.assert_accepted("studies/a.cpp", '#include "volcal/sim/study.h"')
         self.assert_accepted("identify/cli/a.cpp", '#include "volcal/sim/truth.h"', "#include <CLI/CLI.hpp>")
         self.assert_accepted("tests/model/a_test.cpp", '#include "volcal/identify/solve/fit.h"', '#include "near.h"')
 
@@ -71,25 +72,25 @@ class MadeUpTree(unittest.TestCase):
 
     def test_physics_in_sim(self):
         self.assert_rejected("sim/a.cpp", '#include "volcal/model/kinematics/chain.h"', "sim may not include model")
-        self.assert_rejected("sim/a.cpp", '#include "volcal/identify/io/text_file.h"', "sim may not include io")
+        self.assert_rejected("sim/a.cpp", '#include "volcal/identify/text/text_file.h"', "sim may not include text")
         self.assert_rejected("sim/a.cpp", "#include <ceres/jet.h>", "<ceres/jet.h>")
 
-    def test_noise_below_stats_below_solve_below_criticism(self):
+    def test_noise_below_result_below_solve_below_criticism(self):
         self.assert_accepted("identify/criticism/a.h", '#include "volcal/identify/solve/fit.h"',
                              '#include "volcal/identify/noise/noise_model.h"')
-        self.assert_accepted("identify/stats/a.h", '#include "volcal/identify/solve/result.h"')
-        self.assert_rejected("identify/stats/b.h", '#include "volcal/identify/criticism/diagnosis.h"',
-                             "stats may not include criticism")
-        self.assert_rejected("identify/stats/b.h", '#include "volcal/identify/solve/fit.h"',
-                             "stats may not include solve")
+        self.assert_accepted("identify/standards/a.h", '#include "volcal/identify/result/result.h"')
+        self.assert_rejected("identify/standards/b.h", '#include "volcal/identify/criticism/diagnosis.h"',
+                             "standards may not include criticism")
+        self.assert_rejected("identify/result/b.h", '#include "volcal/identify/solve/fit.h"',
+                             "result may not include solve")
 
     def test_criticism_in_solve(self):
         self.assert_rejected("identify/solve/a.h", '#include "volcal/identify/criticism/diagnosis.h"',
                              "solve may not include criticism")
 
     def test_statistics_in_noise(self):
-        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/stats/normal.h"',
-                             "noise may not include stats")
+        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/statistics/normal.h"',
+                             "noise may not include statistics")
 
     def test_noise_in_dense_matrices(self):
         self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',
@@ -122,10 +123,22 @@ class MadeUpTree(unittest.TestCase):
                              "criticism may not include errors")
 
     def test_sim_in_identify(self):
-        self.assert_rejected("identify/stats/a.cpp", '#include "volcal/sim/study.h"', "stats may not include sim")
+        self.assert_rejected("identify/standards/a.cpp", '#include "volcal/sim/study.h"', "may not include sim")
 
-    def test_only_the_study_in_io(self):
-        self.assert_rejected("identify/io/a.cpp", '#include "volcal/sim/truth.h"', "io may not include sim")
+    def test_sim_in_io(self):
+        self.assert_rejected("identify/io/a.cpp", '#include "volcal/sim/study.h"', "io may not include sim")
+
+    def test_folders(self):
+        self.write("identify/solve/elsewhere/a.cpp", "")
+        done = check(self.root)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("identify/solve/elsewhere:1: the folder is in no table", done.stdout)
+        (self.root / "identify/solve/elsewhere/a.cpp").unlink()
+        for number in range(18):
+            self.write(f"identify/noise/a{number}.cpp", "")
+        done = check(self.root)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("identify/noise:1: 18 sources", done.stdout)
 
     def test_files_in_physics(self):
         for header in ("fstream", "filesystem"):

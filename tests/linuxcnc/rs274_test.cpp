@@ -19,8 +19,8 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/nc_programs.h"
 #include "tests/support/scratch_folder.h"
-#include "volcal/sim/random_truth.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/random_truth.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/datum.h"
-#include "volcal/sim/paths.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/datum.h"
+#include "volcal/sim/machine/reference_machines.h"
+#include "volcal/sim/measurement/paths.h"
 
 namespace volcal::sim {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-/// A diagnosis with numbers chosen by hand: a reversal of 4 um found, a second one that is hardly told from
-/// it, one effect that is not visible.
+/// A diagnosis with numbers chosen by hand: a reversal of 4 um found, a second one that is hardly separated
+/// from it, one effect that is not visible.
 
 #include <cmath>
 

@@ -12,7 +12,7 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal::testing_support {

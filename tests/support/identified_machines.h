@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/functions/registry.h"
-#include "volcal/sim/truth_machine.h"
+#include "volcal/sim/machine/truth_machine.h"
 
 namespace volcal::testing {
 

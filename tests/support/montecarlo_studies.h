@@ -8,7 +8,7 @@
 
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal::testing_support {
@@ -30,14 +30,14 @@ inline const QuantityResult& value_of(const MonteCarloResult& result, const std:
 /// Readings of a tracer on a grid; its fit with smoothed functions.
 class TracerStudy : public ::testing::Test {
  protected:
-  static sim::SimulatedCampaign simulated(double wander) {
+  static sim::SimulatedCampaign simulated(double drift) {
     sim::Study study;
     study.machine = sim::reference_machines()[1];
     study.seed = 21;
     sim::Tracking tracking;
     tracking.grid = {5, 4, 4};
-    tracking.noise.wander = wander;
-    tracking.noise.wander_time = 200.0;
+    tracking.noise.drift = drift;
+    tracking.noise.drift_time = 200.0;
     study.measurements.emplace_back().settings = tracking;
     study.validation.points = 5;
     return sim::simulate(study);

@@ -24,9 +24,8 @@ inline Eigen::MatrixXd dense_covariance(const NoiseData& data, const std::vector
         sigma(i, i) += std::pow(own.per_metre * data.length[sequence.observation[a]], 2);
       for (std::size_t b = 0; b < sequence.observation.size(); ++b) {
         double& entry = sigma(i, static_cast<Eigen::Index>(sequence.observation[b]));
-        if (!sequence.time.empty() && own.wander > 0.0)
-          entry +=
-              own.wander * own.wander * std::exp(-std::abs(sequence.time[a] - sequence.time[b]) / own.tau);
+        if (!sequence.time.empty() && own.drift > 0.0)
+          entry += own.drift * own.drift * std::exp(-std::abs(sequence.time[a] - sequence.time[b]) / own.tau);
         if (!sequence.line.empty() && sequence.line[a] == sequence.line[b]) entry += own.line * own.line;
       }
     }
@@ -137,15 +136,15 @@ inline Eigen::VectorXd draw_noise(const NoiseData& data, const std::vector<Noise
   Eigen::VectorXd draw = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.sigma.size()));
   for (const NoiseSequence& sequence : data.sequences) {
     const NoiseParameters& own = noise[sequence.group];
-    double wander = own.wander * normal(generator);
+    double drift = own.drift * normal(generator);
     std::vector<std::pair<std::int32_t, double>> offsets;
     for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
       const std::size_t i = sequence.observation[k];
       if (k > 0 && !sequence.time.empty()) {
         const double decay = std::exp(-(sequence.time[k] - sequence.time[k - 1]) / own.tau);
-        wander = decay * wander + own.wander * std::sqrt(1.0 - decay * decay) * normal(generator);
+        drift = decay * drift + own.drift * std::sqrt(1.0 - decay * decay) * normal(generator);
       }
-      double value = own.white * data.sigma[i] * normal(generator) + wander;
+      double value = own.white * data.sigma[i] * normal(generator) + drift;
       if (!data.length.empty()) value += own.per_metre * data.length[i] * normal(generator);
       if (!sequence.line.empty()) {
         auto found = std::find_if(offsets.begin(), offsets.end(),

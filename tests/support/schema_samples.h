@@ -14,7 +14,7 @@
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/instruments/registry.h"
-#include "volcal/sim/hidden_effects.h"
+#include "volcal/sim/hidden/hidden_effects.h"
 
 namespace volcal::testing {
 

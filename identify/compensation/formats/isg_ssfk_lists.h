@@ -8,7 +8,7 @@
 
 #include "volcal/identify/compensation/compensation_tables.h"
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/compensation/table_text.h"
+#include "volcal/identify/text/table_text.h"
 
 namespace volcal {
 

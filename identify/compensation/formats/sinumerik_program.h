@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "volcal/identify/compensation/table_text.h"
+#include "volcal/identify/text/table_text.h"
 #include "volcal/model/description/symbols.h"
 
 namespace volcal {

@@ -11,8 +11,8 @@
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/legendre_polynomials.h"
 

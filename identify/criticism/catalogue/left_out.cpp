@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
 

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <set>
 
-#include "volcal/identify/solve/resolution.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {

@@ -28,7 +28,7 @@ struct AmplitudeFigure {
   double mdb = 0.0;  ///< smallest amplitude found with 80 % power at the family-wise level; NaN: never
   std::string unit;  ///< edge
   double si_per_unit = 1.0;
-  /// Smallest amplitude that is also told apart from every rival (confounding.h); infinite: never; NaN: not
+  /// Smallest amplitude that is also separated from every rival (confounding.h); infinite: never; NaN: not
   /// computed.
   double mib = std::numeric_limits<double>::quiet_NaN();
   std::string mib_rival = {};  ///< the worst rival; empty: none is near
@@ -51,7 +51,7 @@ struct EffectFinding {
 /// Something moves the readings, and no effect of the catalogue explains it better.
 struct UnknownFinding {
   std::vector<std::string> variables;
-  std::vector<std::string> with_one_of;  ///< and one of these, which the readings do not tell apart; or empty
+  std::vector<std::string> with_one_of;  ///< and one of these, which the readings do not separate; or empty
   std::string direction;                 ///< of kScanDirections
   std::string rotation;  ///< "EBX": with the arms of this error motion; empty: as a displacement
   double rms = 0.0;      ///< SI
@@ -118,7 +118,7 @@ struct MeasurementProposal {
 /// What is asked about the next measurement.
 struct PlanningOptions {
   std::size_t readings = 48;         ///< that a measurement may take, about
-  std::vector<EffectSpec> separate;  ///< hypotheses that the user wants told apart, or seen if it is one
+  std::vector<EffectSpec> separate;  ///< hypotheses that the user wants separated, or seen if it is one
 };
 
 /// A reading that is in none of the tests.
@@ -130,9 +130,9 @@ struct RemovedReading {
 
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
-  std::vector<std::string> words;      ///< the verdict in plain sentences
-  std::vector<EffectFinding> effects;  ///< named, in the order in which they were added
-  std::vector<EffectFinding> one_of;   ///< alternatives that the readings do not tell apart
+  std::vector<std::string> words;                          ///< the verdict in plain sentences
+  std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
+  std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
   std::vector<UnknownFinding> unknown;                     ///< leading first
   std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40

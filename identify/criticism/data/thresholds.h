@@ -133,7 +133,7 @@ struct Thresholds {
   /// Ratio of s^2. Less: no proposal.
   double helpful_gain = 1.05;
   /// s^2 that a measurement must reach: one standard deviation. Less: nothing tells the two apart.
-  double told_apart = 1.0;
+  double separated = 1.0;
   /// Ratio of s^2 by which a measurement for one pair must beat the one for all pairs, to be proposed beside
   /// it.
   double much_better = 1.5;

@@ -9,9 +9,9 @@
 
 #include "volcal/identify/criticism/figures/figure_statistics.h"
 #include "volcal/identify/criticism/search/ladder.h"
-#include "volcal/identify/stats/channels.h"
-#include "volcal/identify/stats/even_sample.h"
+#include "volcal/identify/statistics/even_sample.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {

@@ -44,7 +44,7 @@ double independent_variance(const NoiseData& data, const NoiseParameters& noise,
 double covariance(const NoiseSequence& sequence, const NoiseParameters& noise, std::size_t a, std::size_t b) {
   double sum = 0.0;
   if (!sequence.time.empty()) {
-    sum += noise.wander * noise.wander * std::exp(-std::abs(sequence.time[a] - sequence.time[b]) / noise.tau);
+    sum += noise.drift * noise.drift * std::exp(-std::abs(sequence.time[a] - sequence.time[b]) / noise.tau);
   }
   if (!sequence.line.empty() && sequence.line[a] == sequence.line[b]) sum += noise.line * noise.line;
   return sum;
@@ -91,9 +91,9 @@ std::vector<double> mean_variance(const NoiseData& data, std::span<const NoisePa
       const double weight = influence_on(felt, i);
       squares[b] += weight * weight;
       sum[b] += weight * weight * independent_variance(data, part, i);
-      if (!sequence.time.empty() && part.wander > 0.0) {
+      if (!sequence.time.empty() && part.drift > 0.0) {
         memory[b] *= std::exp(-(sequence.time[k] - last[b]) / part.tau);
-        sum[b] += part.wander * part.wander * weight * (weight + 2.0 * memory[b]);
+        sum[b] += part.drift * part.drift * weight * (weight + 2.0 * memory[b]);
         memory[b] += weight;
         last[b] = sequence.time[k];
       }
@@ -145,7 +145,7 @@ Autocorrelation autocorrelation(const NoiseData& data, std::span<const NoisePara
     for (const std::size_t k : order) {
       const std::size_t i = sequence.observation[k];
       deviation.push_back(
-          std::sqrt(independent_variance(data, part, i) + part.wander * part.wander + part.line * part.line));
+          std::sqrt(independent_variance(data, part, i) + part.drift * part.drift + part.line * part.line));
       scaled.push_back(residual[static_cast<Eigen::Index>(i)] / deviation.back());
       white.push_back(whitened[static_cast<Eigen::Index>(i)]);
       residual_squares += scaled.back() * scaled.back();

@@ -10,9 +10,9 @@
 
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/campaign_noise.h"
-#include "volcal/identify/solve/result.h"
-#include "volcal/identify/solve/smoothing.h"
+#include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -41,7 +41,7 @@ class LinearModel {
   /// outliers.
   LinearModel with_reinstated(const std::vector<std::size_t>& observations) const;
 
-  /// Smoothing of functions that have as many knots as the readings can tell apart; part of the priors of
+  /// Smoothing of functions that have as many knots as the readings can separate; part of the priors of
   /// problem().
   const std::vector<SmoothingTerm>& smoothing() const { return smoothing_; }
   LinearModel with_smoothing(std::vector<SmoothingTerm> smoothing) const;

@@ -6,8 +6,8 @@
 
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/solve/tile_array.h"
-#include "volcal/identify/solve/tile_kernel.h"
+#include "volcal/identify/numeric/tile_array.h"
+#include "volcal/identify/numeric/tile_kernel.h"
 
 namespace volcal {
 namespace {

@@ -12,7 +12,7 @@ constexpr double kShift = 0.1;  // of a logarithm
 
 /// In the order of InstrumentNoise::log_covariance.
 constexpr std::array<double NoiseParameters::*, 5> kParameters = {
-    &NoiseParameters::white, &NoiseParameters::wander, &NoiseParameters::tau, &NoiseParameters::line,
+    &NoiseParameters::white, &NoiseParameters::drift, &NoiseParameters::tau, &NoiseParameters::line,
     &NoiseParameters::per_metre};
 
 /// |m|^2 of every column.

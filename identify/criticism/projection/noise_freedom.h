@@ -2,10 +2,10 @@
 /// How well the readings know the noise that a test stands on.
 ///
 /// A test divides |m|^2 = m^T Sigma^-1 m, what a displacement m of the readings would be seen with, by a
-/// noise that was estimated from the same readings. White noise is known from thousands of them; a wander,
-/// from as many as there are correlation times, and an effect as slow as the wander stands on it alone. With
-/// the logarithms of the noise parameters uncertain by W, the information |m|^2 (projected off the model) has
-/// the relative variance r^T W r, r its logarithmic derivatives, and the test has
+/// noise that was estimated from the same readings. White noise is known from thousands of them; correlated
+/// drift, from as many as there are correlation times, and an effect as slow as the correlated drift stands
+/// on it alone. With the logarithms of the noise parameters uncertain by W, the information |m|^2 (projected
+/// off the model) has the relative variance r^T W r, r its logarithmic derivatives, and the test has
 ///
 ///   nu = 2 / (r^T W r)
 ///

@@ -5,8 +5,8 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/stats/chi_squared.h"
-#include "volcal/identify/stats/quadratic_form.h"
+#include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/identify/statistics/quadratic_form.h"
 
 namespace volcal {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "volcal/identify/criticism/projection/separation.h"
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {

@@ -1,5 +1,5 @@
 #pragma once
-/// Which hypotheses the readings hardly tell apart, and the smallest amplitude at which they would.
+/// Which hypotheses the readings hardly separate, and the smallest amplitude at which they would.
 ///
 /// MDB: amplitude that is found with 80 % power. MIB (minimal identifiable bias): amplitude that is also told
 /// apart from every rival of the catalogue with the same power. Projecting on the rival too leaves less of an

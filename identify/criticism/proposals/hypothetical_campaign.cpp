@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "volcal/identify/solve/adjustment.h"
-#include "volcal/identify/stats/channels.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "volcal/identify/criticism/proposals/candidates/candidate_measurements.h"
 #include "volcal/identify/noise/noise_model.h"
-#include "volcal/identify/solve/datum.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/normals/datum.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {

@@ -7,7 +7,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {

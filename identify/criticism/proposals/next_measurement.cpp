@@ -11,9 +11,9 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
-#include "volcal/identify/stats/channels.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
@@ -248,7 +248,7 @@ class Proposer {
     out.gain = ratio(out.reached, out.separation);
     out.plain_gain = ratio(out.plain, out.separation);
     const std::string both = described(first) + " from " + described(second);
-    if (out.gain < kThresholds.helpful_gain || out.reached < kThresholds.told_apart) {
+    if (out.gain < kThresholds.helpful_gain || out.reached < kThresholds.separated) {
       out.gain = out.plain_gain = 1.0;
       out.reached = out.plain = out.separation;
       out.words = "Nothing on the menu tells " + both + ": they predict nearly the same readings.";

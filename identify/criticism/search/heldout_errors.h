@@ -7,9 +7,10 @@
 ///   d = y_h - J_h x^ ,   Cov d = Sigma_hh + J_h A^-1 J_h^T - J_h A^-1 B^T - B A^-1 J_h^T,
 ///   B = Sigma_hf Sigma_ff^-1 J_f
 ///
-/// (Searle, Casella and McCulloch 2006, Variance Components, 7.4: error of prediction). B is what wander and
-/// line offsets share: a dead path takes up the wander of its setup, and held-out readings have that wander
-/// too. Without B slow wander is counted twice, and what an effect moves disappears in it.
+/// (Searle, Casella and McCulloch 2006, Variance Components, 7.4: error of prediction). B is what correlated
+/// drift and line offsets share: a dead path takes up the correlated drift of its setup, and held-out
+/// readings have that correlated drift too. Without B correlated drift is counted twice, and what an effect
+/// moves disappears in it.
 
 #include <Eigen/Core>
 #include <functional>

@@ -10,7 +10,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/projection/noise_freedom.h"
 #include "volcal/identify/criticism/projection/score_statistics.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {
@@ -25,14 +25,14 @@ void keep_best(std::vector<FamilyTest>& tests) {
 std::vector<NoiseAlternative> noise_with_reduced_drift(const NoiseProblem& problem,
                                                        const NoiseEstimate& estimate, int threads) {
   const std::vector<NoiseParameters> drifting = estimate.parameters();
-  const auto drifts = [](const NoiseParameters& noise) { return noise.wander > 0.0; };
+  const auto drifts = [](const NoiseParameters& noise) { return noise.drift > 0.0; };
   if (std::ranges::none_of(drifting, drifts)) return {};
   RestrictedLikelihood likelihood(problem, threads);
   std::vector<NoiseAlternative> alternatives;
   for (std::size_t group = 0; group < drifting.size(); ++group) {
     if (!drifts(drifting[group])) continue;
     std::vector<NoiseParameters> noise = drifting;
-    noise[group].wander *= kThresholds.reduced_drift;
+    noise[group].drift *= kThresholds.reduced_drift;
     const double loss = 2.0 * (estimate.log_likelihood - likelihood.log_likelihood(noise));
     alternatives.push_back({std::move(noise), loss});
   }

@@ -11,7 +11,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/heldout_errors.h"
 #include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal {
 namespace {
@@ -101,7 +101,7 @@ std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseP
     for (const std::size_t i : sequence.observation) {
       const double white = part.white * data.sigma[i];
       const double long_part = data.length.empty() ? 0.0 : part.per_metre * data.length[i];
-      variance[i] = white * white + part.wander * part.wander + part.line * part.line + long_part * long_part;
+      variance[i] = white * white + part.drift * part.drift + part.line * part.line + long_part * long_part;
     }
   }
   return variance;

@@ -90,7 +90,7 @@ void ModelState::find_noise() {
 NoiseOptions ModelState::noise_options() const {
   NoiseOptions options;
   options.threads = setting_->threads;
-  options.wander_threshold = kThresholds.drift_evidence;
+  options.drift_threshold = kThresholds.drift_evidence;
   return options;
 }
 

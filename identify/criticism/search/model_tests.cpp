@@ -11,7 +11,7 @@
 #include "volcal/identify/criticism/projection/noise_freedom.h"
 #include "volcal/identify/criticism/scans/amplitude_constancy.h"
 #include "volcal/identify/criticism/search/model_state.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {

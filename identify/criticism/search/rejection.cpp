@@ -67,7 +67,7 @@ bool Rejection::leaves_more(const AddedEffect& effect) const {
 std::string Rejection::rejection_reason(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
   const Family& family = state_.family_of(effect);
-  if (leaves_more(effect)) return "what it leaves stands out more than it does";
+  if (leaves_more(effect)) return "what it leaves exceeds the noise more than it does";
   const auto drivers = scan_variables_of(family.name());
   if (still_moves(drivers))
     return fmt::format("{} still moves what it leaves", fmt::join(names_of(drivers), " or "));

@@ -10,7 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {
@@ -286,7 +286,7 @@ void Search::recheck(const std::set<std::size_t>& stood) {
     if (!stood.contains(effect.test.family)) {
       reason = rejection.rejection_reason(i);
     } else if (rejection.leaves_more(effect)) {
-      reason = "what has no name stands out more than it does";
+      reason = "what has no name exceeds the noise more than it does";
     }
     if (!reason.empty()) rejected_[effect.test.family] = reason;
     if (reason.empty()) kept.push_back(effect.test);

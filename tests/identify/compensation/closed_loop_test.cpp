@@ -17,10 +17,10 @@
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
-#include "volcal/sim/random_truth.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/random_truth.h"
+#include "volcal/sim/machine/reference_machines.h"
+#include "volcal/sim/machine/transforms.h"
 #include "volcal/sim/study.h"
-#include "volcal/sim/transforms.h"
 
 namespace volcal {
 namespace {

@@ -10,8 +10,8 @@
 #include "tests/support/machines.h"
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/random_truth.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/random_truth.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal {
 namespace {

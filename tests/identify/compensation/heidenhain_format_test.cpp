@@ -11,8 +11,8 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/io/control_tables.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/studies/files/control_tables.h"
 
 namespace volcal {
 namespace {

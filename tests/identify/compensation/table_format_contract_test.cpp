@@ -13,7 +13,7 @@
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

@@ -9,7 +9,7 @@
 
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

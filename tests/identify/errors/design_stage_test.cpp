@@ -14,7 +14,7 @@
 
 #include "tests/support/machines.h"
 #include "volcal/identify/errors/error_budget.h"
-#include "volcal/sim/transforms.h"
+#include "volcal/sim/machine/transforms.h"
 
 namespace volcal {
 namespace {

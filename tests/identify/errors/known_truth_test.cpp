@@ -16,7 +16,7 @@
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/sim/known_errors.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

@@ -10,7 +10,7 @@
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
 #include "volcal/identify/compensation/volume_check.h"
-#include "volcal/identify/stats/volumetric.h"
+#include "volcal/identify/errors/volumetric.h"
 
 namespace volcal {
 namespace {

@@ -11,7 +11,7 @@
 #include "tests/support/montecarlo_studies.h"
 #include "volcal/identify/montecarlo/campaign_refit.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
-#include "volcal/identify/solve/normal_equations.h"
+#include "volcal/identify/solve/normals/normal_equations.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -82,10 +82,10 @@ TEST_F(TracerStudy, PathsAgreeDrawByDraw) {
 }
 
 TEST_F(TracerStudy, PathsAgreeDrawByDrawWithCorrelatedNoise) {
-  const sim::SimulatedCampaign wandering = simulated(1e-6);
-  const FitResult fitted = fit(wandering.campaign, {}, FitOptions{});
+  const sim::SimulatedCampaign drifting = simulated(1e-6);
+  const FitResult fitted = fit(drifting.campaign, {}, FitOptions{});
   ASSERT_TRUE(fitted.noise.more_than_white);
-  const PathDifferences correlated = differences(wandering.campaign, fitted);
+  const PathDifferences correlated = differences(drifting.campaign, fitted);
   EXPECT_LT(correlated.linear, kEndOfRefits);
   EXPECT_LT(correlated.chord, kEndOfRefits);
 }

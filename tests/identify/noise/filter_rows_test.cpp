@@ -25,10 +25,10 @@
 namespace volcal {
 namespace {
 
-constexpr FilterStep kStep{.decay = 0.83, .scale = 1.71, .wander_gain = 0.37, .offset_gain = 0.21};
+constexpr FilterStep kStep{.decay = 0.83, .scale = 1.71, .drift_gain = 0.37, .offset_gain = 0.21};
 constexpr Eigen::Index kWidths[] = {1, 3, 8, 29, 64};
 
-/// Columns: values, wander, offset.
+/// Columns: values, correlated drift, offset.
 using State = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 State random_state(Eigen::Index width) {

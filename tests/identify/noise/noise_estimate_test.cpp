@@ -43,7 +43,7 @@ TEST(NoiseEstimate, IsTheMaximumOfTheDenseLikelihood) {
   for (int k = 0; k < 3; ++k) {
     const NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 60.0, 0.4e-6, 0.0}, {6, 4, 3}, 2);
     NoiseOptions options;
-    options.threshold = options.wander_threshold = 0.0;
+    options.threshold = options.drift_threshold = 0.0;
     options.per_metre = false;
     const NoiseEstimate estimate = estimate_noise(problem, options);
     const NoiseParameters& found = estimate.instruments[0].parameters;
@@ -54,7 +54,7 @@ TEST(NoiseEstimate, IsTheMaximumOfTheDenseLikelihood) {
       return -2.0 * test::dense_log_likelihood(problem, {noise});
     };
     Eigen::VectorXd at(4);
-    at << std::log(found.white), std::log(std::max(found.wander, 1e-8)), std::log(found.tau),
+    at << std::log(found.white), std::log(std::max(found.drift, 1e-8)), std::log(found.tau),
         std::log(std::max(found.line, 1e-8));
     Box box{at.array() - 2.0, at.array() + 2.0};
     box.lower(2) =
@@ -91,8 +91,8 @@ TEST(NoiseEstimate, WhatTheDataCannotSayIsOff) {
   problem.data.length.clear();
   const NoiseEstimate estimate = estimate_noise(problem);
   const InstrumentNoise& own = estimate.instruments[0];
-  EXPECT_FALSE(own.wander.possible || own.line.possible || own.per_metre.possible);
-  EXPECT_EQ(own.parameters.wander, 0.0);
+  EXPECT_FALSE(own.drift.possible || own.line.possible || own.per_metre.possible);
+  EXPECT_EQ(own.parameters.drift, 0.0);
   EXPECT_EQ(own.parameters.line, 0.0);
   EXPECT_NEAR(estimate.log_likelihood, estimate.white_log_likelihood, 1e-3);
   const auto rows = noise_table(estimate);
@@ -131,7 +131,7 @@ TEST(NoiseEstimate, TwoInstruments) {
   EXPECT_FALSE(estimate.instruments[0].line.on);
   EXPECT_NEAR(estimate.instruments[1].parameters.white, 1.5, 0.12);
   EXPECT_NEAR(estimate.instruments[1].parameters.line, 1.2e-6, 0.3e-6);
-  EXPECT_FALSE(estimate.instruments[1].wander.on);
+  EXPECT_FALSE(estimate.instruments[1].drift.on);
   EXPECT_NEAR(estimate.log_likelihood, RestrictedLikelihood(problem, 1).log_likelihood(estimate.parameters()),
               1e-6);
 }
@@ -145,13 +145,13 @@ TEST(NoiseEstimate, FindsNoiseInProportionToLength) {
   EXPECT_NEAR(own.parameters.per_metre, 0.5e-6, 0.1e-6);
   EXPECT_LT(std::abs(std::log(own.parameters.per_metre / 0.5e-6)), 3.0 * own.log_uncertainty.per_metre);
   EXPECT_NEAR(own.parameters.white, 1.0, 0.25);
-  EXPECT_FALSE(own.wander.on || own.line.on);
+  EXPECT_FALSE(own.drift.on || own.line.on);
 }
 
 void expect_same_noise(const NoiseEstimate& a, const NoiseEstimate& b) {
   EXPECT_NEAR(a.log_likelihood, b.log_likelihood, 0.02);
   for (std::size_t g = 0; g < a.instruments.size(); ++g) {
-    EXPECT_EQ(a.instruments[g].wander.on, b.instruments[g].wander.on);
+    EXPECT_EQ(a.instruments[g].drift.on, b.instruments[g].drift.on);
     EXPECT_EQ(a.instruments[g].line.on, b.instruments[g].line.on);
     EXPECT_EQ(a.instruments[g].per_metre.on, b.instruments[g].per_metre.on);
     EXPECT_NEAR(std::log(a.instruments[g].parameters.white / b.instruments[g].parameters.white), 0.0, 0.01);
@@ -186,7 +186,8 @@ TEST(NoiseEstimate, ATermThatComesOrGoesIsFound) {
   expect_same_noise(estimate_noise(white, {}, &of_lines), of_white);
 }
 
-/// A search that began where an effect had been taken for a fast wander would end in a lower maximum.
+/// A search that began where an effect had been taken for a fast correlated drift would end in a lower
+/// maximum.
 TEST(NoiseEstimate, AnEndForOtherResidualsIsNoStart) {
   std::mt19937_64 generator(3);
   const NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 120.0, 0.3e-6, 0.0}, {8, 5, 4}, 3);

@@ -40,15 +40,15 @@ NoiseProblem campaign(std::mt19937_64& generator) {
 }
 
 /// Campaigns of 1,800 readings, 24 in every run and 60 for the night: the mean of every parameter inside the
-/// 99 % interval of the mean (tau and wander in logarithms: their distributions are skewed), stated intervals
-/// cover.
+/// 99 % interval of the mean (tau and correlated drift in logarithms: their distributions are skewed), stated
+/// intervals cover.
 TEST(NoiseStudy, RecoversWhatWasPutIn) {
   std::mt19937_64 generator(1);
   NoiseProblem problem = campaign(generator);
   const NoiseParameters truth{1.3, 0.4e-6, 90.0, 0.3e-6, 0.0};
   const int campaigns = testing::short_or_long(24, 60);
-  Moments white, wander, tau, line;
-  int wander_on = 0, line_on = 0, per_metre_on = 0, covered = 0, intervals = 0;
+  Moments white, drift, tau, line;
+  int drift_on = 0, line_on = 0, per_metre_on = 0, covered = 0, intervals = 0;
   const auto cover = [&](double found, double expected, double u) {
     covered += std::abs(std::log(found / expected)) < 1.96 * u ? 1 : 0;
     ++intervals;
@@ -58,13 +58,13 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
     const InstrumentNoise own = estimate_noise(problem).instruments[0];
     white.values.push_back(own.parameters.white);
     cover(own.parameters.white, truth.white, own.log_uncertainty.white);
-    wander_on += own.wander.on ? 1 : 0;
+    drift_on += own.drift.on ? 1 : 0;
     line_on += own.line.on ? 1 : 0;
     per_metre_on += own.per_metre.on ? 1 : 0;
-    if (own.wander.on) {
-      wander.values.push_back(std::log(own.parameters.wander));
+    if (own.drift.on) {
+      drift.values.push_back(std::log(own.parameters.drift));
       tau.values.push_back(std::log(own.parameters.tau));
-      cover(own.parameters.wander, truth.wander, own.log_uncertainty.wander);
+      cover(own.parameters.drift, truth.drift, own.log_uncertainty.drift);
       cover(own.parameters.tau, truth.tau, own.log_uncertainty.tau);
     }
     if (own.line.on) {
@@ -75,17 +75,16 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
   const auto within = [](const Moments& found, double expected) {
     return std::abs(found.mean() - expected) < kTwoSided99 * found.of_mean();
   };
-  RecordProperty("wander_on", wander_on);
+  RecordProperty("wander_on", drift_on);
   RecordProperty("line_on", line_on);
   RecordProperty("covered", covered);
   RecordProperty("intervals", intervals);
-  EXPECT_GE(wander_on, campaigns * 55 / 60);
+  EXPECT_GE(drift_on, campaigns * 55 / 60);
   EXPECT_GE(line_on, campaigns * 57 / 60);
   EXPECT_LE(per_metre_on, campaigns / 10);
   EXPECT_TRUE(within(white, truth.white)) << white.mean() << " +- " << white.of_mean();
   EXPECT_TRUE(within(line, truth.line)) << line.mean() << " +- " << line.of_mean();
-  EXPECT_TRUE(within(wander, std::log(truth.wander)))
-      << std::exp(wander.mean()) << " +- " << wander.of_mean();
+  EXPECT_TRUE(within(drift, std::log(truth.drift))) << std::exp(drift.mean()) << " +- " << drift.of_mean();
   EXPECT_TRUE(within(tau, std::log(truth.tau))) << std::exp(tau.mean()) << " +- " << tau.of_mean();
   EXPECT_GE(covered, static_cast<int>(0.90 * intervals)) << covered << " of " << intervals;
 }
@@ -95,20 +94,20 @@ TEST(NoiseStudy, WhiteStaysWhite) {
   std::mt19937_64 generator(2);
   NoiseProblem problem = campaign(generator);
   const int campaigns = testing::short_or_long(60, 200);
-  int white = 0, without_wander = 0, without_line = 0, without_per_metre = 0;
+  int white = 0, without_drift = 0, without_line = 0, without_per_metre = 0;
   for (int k = 0; k < campaigns; ++k) {
     problem.residual = test::draw_noise(problem.data, {{1.3, 0.0, 600.0, 0.0, 0.0}}, generator);
     const InstrumentNoise own = estimate_noise(problem).instruments[0];
-    without_wander += own.wander.on ? 0 : 1;
+    without_drift += own.drift.on ? 0 : 1;
     without_line += own.line.on ? 0 : 1;
     without_per_metre += own.per_metre.on ? 0 : 1;
-    white += !own.wander.on && !own.line.on && !own.per_metre.on ? 1 : 0;
+    white += !own.drift.on && !own.line.on && !own.per_metre.on ? 1 : 0;
   }
-  RecordProperty("without_wander", without_wander);
+  RecordProperty("without_wander", without_drift);
   RecordProperty("without_line", without_line);
   RecordProperty("without_per_metre", without_per_metre);
   RecordProperty("white", white);
-  EXPECT_GE(white, campaigns * 95 / 100) << without_wander << ' ' << without_line << ' ' << without_per_metre;
+  EXPECT_GE(white, campaigns * 95 / 100) << without_drift << ' ' << without_line << ' ' << without_per_metre;
 }
 
 /// Two-sided p of one more column, from the whitened model: the score after projection.

@@ -9,7 +9,7 @@
 
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {
@@ -176,7 +176,8 @@ TEST(CampaignPlan, FindsTheToolThatMakesARollVisible) {
             0.05);
 }
 
-/// From two stations several errors cannot be told from where the stations stand; the plan asks for a third.
+/// From two stations several errors cannot be separated from where the stations stand; the plan asks for a
+/// third.
 TEST(CampaignPlan, FindsTheStationThatIsMissing) {
   PlanSettings settings = small_plan();
   settings.budget.stations = 2;

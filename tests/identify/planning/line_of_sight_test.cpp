@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal {
 namespace {

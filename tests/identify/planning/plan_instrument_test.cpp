@@ -12,12 +12,12 @@
 #include <map>
 #include <set>
 
-#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/planning/path_choice.h"
 #include "volcal/identify/planning/plan_search.h"
+#include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/instruments/registry.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal {
 namespace {

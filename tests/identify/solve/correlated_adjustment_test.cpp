@@ -1,5 +1,5 @@
-// Generalised least squares against plain matrix algebra, and fits of simulated campaigns with slow wander
-// and offsets of lines.
+// Generalised least squares against plain matrix algebra, and fits of simulated campaigns with correlated
+// drift and offsets of lines.
 
 #include "volcal/identify/solve/correlated_adjustment.h"
 
@@ -12,9 +12,9 @@
 #include "tests/support/noise_campaigns.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/sim/datum.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/sim/machine/datum.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {
@@ -23,7 +23,7 @@ namespace {
 using test::dense_covariance;
 
 struct NoiseOfReadings {
-  double wander = 0.0;
+  double drift = 0.0;
   double line = 0.0;
 };
 
@@ -34,8 +34,8 @@ sim::SimulatedCampaign simulated(std::uint64_t seed, const Eigen::Vector3i& grid
   study.seed = seed;
   sim::Tracking tracking;
   tracking.grid = grid;
-  tracking.noise.wander = noise.wander;
-  tracking.noise.wander_time = 200.0;
+  tracking.noise.drift = noise.drift;
+  tracking.noise.drift_time = 200.0;
   tracking.noise.line = noise.line;
   study.measurements.emplace_back().settings = tracking;
   if (with_ball_bar) {
@@ -307,8 +307,8 @@ TEST(FitWithCorrelatedNoise, ResidualsAreJudgedByTheirTotalDeviation) {
       EXPECT_EQ(record.row, 40U);
       continue;
     }
-    const NoiseRow& wander = row_of(result, "wander");
-    EXPECT_GT(record.sigma, wander.value);
+    const NoiseRow& drift = row_of(result, "wander");
+    EXPECT_GT(record.sigma, drift.value);
     squares += record.w * record.w;
     ++count;
   }

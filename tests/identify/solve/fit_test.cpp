@@ -8,8 +8,8 @@
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/evaluate.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

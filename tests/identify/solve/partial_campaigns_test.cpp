@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "volcal/identify/solve/fit.h"
-#include "volcal/sim/instruments.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
+#include "volcal/sim/measurement/instruments.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

@@ -11,8 +11,8 @@
 #include <functional>
 #include <vector>
 
-#include "volcal/identify/io/campaign_reader.h"
-#include "volcal/identify/io/model_reader.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/solve/fit.h"
 
 namespace volcal {

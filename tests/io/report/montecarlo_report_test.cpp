@@ -8,8 +8,8 @@
 
 #include "tests/io/report/drawing.h"
 #include "tests/support/machines.h"
-#include "volcal/identify/report/budget_text.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/budget_text.h"
 
 namespace volcal {
 namespace {

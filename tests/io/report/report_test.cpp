@@ -12,10 +12,10 @@
 
 #include "tests/io/report/drawing.h"
 #include "tests/io/report/synthetic_fit.h"
-#include "volcal/identify/report/correlation.h"
-#include "volcal/identify/report/fit_summary.h"
 #include "volcal/identify/report/page.h"
-#include "volcal/identify/report/residual_sample.h"
+#include "volcal/identify/report/text/fit_summary.h"
+#include "volcal/identify/report/values/correlation.h"
+#include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {

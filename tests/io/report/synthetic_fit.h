@@ -2,7 +2,7 @@
 /// A campaign and a result made by hand, with everything that a report shows: several instruments, an error
 /// that is not visible, one that is switched off, extrapolated positions, suspect readings, priors.
 
-#include "volcal/identify/solve/result.h"
+#include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal::test {

@@ -9,12 +9,13 @@
 #include <variant>
 
 #include "tests/support/scratch_folder.h"
-#include "volcal/identify/io/campaign_reader.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign_writer.h"
-#include "volcal/identify/io/hidden_answer_writer.h"
-#include "volcal/identify/io/study_reader.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
+#include "volcal/studies/files/hidden_answer_writer.h"
+#include "volcal/studies/files/simulation_writer.h"
+#include "volcal/studies/files/study_reader.h"
 
 namespace volcal {
 namespace {
@@ -26,7 +27,7 @@ kind = "laser-tracer"
 grid = [4, 3, 3]
 revisits = 1
 shuffled = true
-noise = { constant_um = 0.3, wander_um = 0.4, wander_time_s = 500.0, line_um = 0.2, outlier_share = 0.02, outlier_sigma = 9.0 }
+noise = { constant_um = 0.3, drift_um = 0.4, drift_time_s = 500.0, line_um = 0.2, outlier_share = 0.02, outlier_sigma = 9.0 }
 )";
 
 sim::Study parse_hidden(const std::string& body) {
@@ -72,8 +73,8 @@ amplitude_urad = 4.0
   EXPECT_TRUE(measurement.shuffled);
   const auto& tracer = std::get<sim::Tracking>(measurement.settings);
   EXPECT_EQ(tracer.revisits, 1);
-  EXPECT_DOUBLE_EQ(tracer.noise.wander, 0.4e-6);
-  EXPECT_EQ(tracer.noise.wander_time, 500.0);
+  EXPECT_DOUBLE_EQ(tracer.noise.drift, 0.4e-6);
+  EXPECT_EQ(tracer.noise.drift_time, 500.0);
   EXPECT_DOUBLE_EQ(tracer.noise.line, 0.2e-6);
   EXPECT_EQ(tracer.noise.outlier_share, 0.02);
   EXPECT_EQ(tracer.noise.outlier_size, 9.0);
@@ -88,13 +89,13 @@ feed_mm_min = 3000.0
 record_feed = true
 [[measurements]]
 kind = "angle-lines"
-noise = { constant_urad = 0.4, wander_urad = 0.3, line_urad = 0.2 }
+noise = { constant_urad = 0.4, drift_urad = 0.3, line_urad = 0.2 }
 )");
   EXPECT_TRUE(study.unseen);
   const auto& circles = std::get<sim::BallBarCircles>(study.measurements[0].settings);
   EXPECT_DOUBLE_EQ(circles.feed, 0.05);
   const auto& angles = std::get<sim::AngleLines>(study.measurements[1].settings);
-  EXPECT_DOUBLE_EQ(angles.noise.wander, 0.3e-6);
+  EXPECT_DOUBLE_EQ(angles.noise.drift, 0.3e-6);
   EXPECT_DOUBLE_EQ(angles.noise.line, 0.2e-6);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
   for (const double feed : simulated.campaign.setups[0].readings.feed) EXPECT_NEAR(feed, 0.05, 1e-12);

@@ -5,11 +5,11 @@
 #include <filesystem>
 
 #include "tests/support/scratch_folder.h"
-#include "volcal/identify/io/study_reader.h"
-#include "volcal/identify/planning/instruments/registry.h"
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/planning/plan_search.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/identify/planning/registry.h"
+#include "volcal/sim/machine/reference_machines.h"
+#include "volcal/studies/files/study_reader.h"
 
 namespace volcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "volcal/identify/io/study_reader.h"
+#include "volcal/studies/files/study_reader.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 
 namespace volcal {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/support/machines.h"
 #include "volcal/model/kinematics/chain.h"
-#include "volcal/sim/transforms.h"
+#include "volcal/sim/machine/transforms.h"
 
 namespace volcal {
 namespace {

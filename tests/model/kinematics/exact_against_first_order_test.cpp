@@ -10,7 +10,7 @@
 #include "tests/support/jet_rotation.h"
 #include "tests/support/machines.h"
 #include "volcal/model/kinematics/chain.h"
-#include "volcal/sim/truth_machine.h"
+#include "volcal/sim/machine/truth_machine.h"
 
 namespace volcal {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/solve/resolution.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "volcal/model/effects/registry.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

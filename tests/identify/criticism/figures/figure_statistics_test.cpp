@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "volcal/identify/stats/even_sample.h"
+#include "volcal/identify/statistics/even_sample.h"
 
 namespace volcal {
 namespace {
@@ -46,11 +46,11 @@ TEST(FigureStatistics, EqualBinsHoldTheEndsAndLeaveOutWhatIsNotANumber) {
   EXPECT_EQ(equal_bins(vector_of({2.0, 2.0}), 4), (std::vector<int>{0, 0}));
 }
 
-/// White 2, wander 3 of 600 s, line 5; times 0, 600, 1200 s given out of order, the first two of one line.
-/// Sum of the covariances: 3 x 4 + 9 (3 + 2 (2/e + 1/e^2)) + 25 (2^2 + 1), over 3^2.
-TEST(FigureStatistics, VarianceOfAMeanCountsWanderAndLines) {
+/// White 2, correlated drift 3 of 600 s, line 5; times 0, 600, 1200 s given out of order, the first two of
+/// one line. Sum of the covariances: 3 x 4 + 9 (3 + 2 (2/e + 1/e^2)) + 25 (2^2 + 1), over 3^2.
+TEST(FigureStatistics, VarianceOfAMeanCountsDriftAndLines) {
   const NoiseData data = sequence_of({600.0, 1200.0, 0.0}, {7, 8, 7});
-  const NoiseParameters noise{.white = 2.0, .wander = 3.0, .tau = 600.0, .line = 5.0, .per_metre = 0.0};
+  const NoiseParameters noise{.white = 2.0, .drift = 3.0, .tau = 600.0, .line = 5.0, .per_metre = 0.0};
   const double e = std::exp(-1.0);
   const auto variance = mean_variance(data, std::span(&noise, 1), {0, 0, 0}, 2);
   ASSERT_EQ(variance.size(), 2U);
@@ -75,7 +75,7 @@ TEST(FigureStatistics, MeansOfBins) {
 TEST(FigureStatistics, DisplacementsComeFromWhatReadingsFeel) {
   const Eigen::VectorXd felt = vector_of({0.5, -1.0, 1.0}), value = vector_of({1.5, -3.0, 3.0});
   const NoiseData data = sequence_of({}, {1, 1, 2});
-  const NoiseParameters noise{.white = 2.0, .wander = 0.0, .tau = 600.0, .line = 5.0, .per_metre = 0.0};
+  const NoiseParameters noise{.white = 2.0, .drift = 0.0, .tau = 600.0, .line = 5.0, .per_metre = 0.0};
   const auto variance = mean_variance(data, std::span(&noise, 1), {0, 0, 0}, 1, felt);
   EXPECT_NEAR(variance[0], (4.0 * 2.25 + 25.0 * (0.25 + 1.0)) / (2.25 * 2.25), 1e-12);
   const BinnedMean means = binned_mean(vector_of({1.0, 2.0, 3.0}), value, {0, 0, 0}, variance, felt);
@@ -95,7 +95,7 @@ TEST(FigureStatistics, AutocorrelationByHand) {
     residual[i] = i % 2 == 0 ? 1.0 : -1.0;
   }
   const NoiseParameters noise{
-      .white = 1.0, .wander = 0.0, .tau = 600.0, .line = std::sqrt(3.0), .per_metre = 0.0};
+      .white = 1.0, .drift = 0.0, .tau = 600.0, .line = std::sqrt(3.0), .per_metre = 0.0};
   const Autocorrelation found =
       autocorrelation(sequence_of(time, line), std::span(&noise, 1), 0, residual, Eigen::VectorXd::Ones(40));
   EXPECT_EQ(found.lag, (std::vector<int>{1, 2, 3, 4, 5, 7, 10}));  // 30 pairs are left at a lag of 10

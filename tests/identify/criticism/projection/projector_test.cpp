@@ -55,7 +55,7 @@ struct BruteForce {
     for (Eigen::Index i = 0; i < kObservations; ++i) {
       for (Eigen::Index j = 0; j < kObservations; ++j) {
         const double apart = 7.0 * std::abs(static_cast<double>(i - j));
-        sigma(i, j) = noise.wander * noise.wander * std::exp(-apart / noise.tau);
+        sigma(i, j) = noise.drift * noise.drift * std::exp(-apart / noise.tau);
         if (i / 15 == j / 15) sigma(i, j) += noise.line * noise.line;
       }
       sigma(i, i) += std::pow(noise.white * problem.data.sigma[static_cast<std::size_t>(i)], 2);
@@ -80,7 +80,7 @@ struct BruteForce {
   }
 };
 
-const NoiseParameters kNoise{.white = 1.1, .wander = 0.6, .tau = 60.0, .line = 0.4, .per_metre = 0.0};
+const NoiseParameters kNoise{.white = 1.1, .drift = 0.6, .tau = 60.0, .line = 0.4, .per_metre = 0.0};
 
 TEST(Projector, EqualsAnOrthogonalBasis) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -176,7 +176,7 @@ TEST(Projector, LocalColumnsChangeNothing) {
   problem.data.sigma[11] = std::numeric_limits<double>::infinity();
   NoiseProblem with_local = problem;
   with_local.local = local;
-  const NoiseParameters white{.white = 1.1, .wander = 0.0, .tau = 60.0, .line = 0.0, .per_metre = 0.0};
+  const NoiseParameters white{.white = 1.1, .drift = 0.0, .tau = 60.0, .line = 0.0, .per_metre = 0.0};
   for (const NoiseParameters& noise : {kNoise, white}) {
     Projector dense(problem, problem.data, {&noise, 1}, 1);
     Projector fast(with_local, problem.data, {&noise, 1}, 1, {0, half, kObservations});

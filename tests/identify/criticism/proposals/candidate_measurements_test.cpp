@@ -14,7 +14,7 @@
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {

@@ -12,7 +12,7 @@
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
-#include "volcal/sim/reference_machines.h"
+#include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
 namespace volcal {
@@ -122,7 +122,7 @@ TEST(NextMeasurement, WhatTheModelHasIsRefused) {
   EXPECT_THROW(diagnose(simulated.campaign, result, options), InputError);
 }
 
-/// Every MIB is at least the MDB; of effects that are told apart least, the rival is among the nearest.
+/// Every MIB is at least the MDB; of effects that are separated least, the rival is among the nearest.
 TEST(Confounding, FiguresOfACampaign) {
   const Diagnosis diagnosis = diagnosed_next(one_tool_per_station());
   ASSERT_FALSE(diagnosis.ranking.empty());

@@ -17,7 +17,7 @@ constexpr Eigen::Index kOfSetup = 60;
 constexpr Eigen::Index kSetups = 2;
 constexpr Eigen::Index kHeldoutReadings = kOfSetup * kSetups;
 constexpr NoiseParameters kHeldoutNoise{
-    .white = 0.9, .wander = 1.3, .tau = 400.0, .line = 0.5, .per_metre = 0.0};
+    .white = 0.9, .drift = 1.3, .tau = 400.0, .line = 0.5, .per_metre = 0.0};
 
 /// A slope that both setups share and an offset of each; lines of eight readings, every fourth held out.
 struct Example {
@@ -49,7 +49,7 @@ struct Example {
       for (Eigen::Index j = 0; j < kOfSetup; ++j) {
         const Eigen::Index other = setup * kOfSetup + j;
         const double apart = 4.0 * std::abs(static_cast<double>(i - j));
-        sigma(row, other) = std::pow(kHeldoutNoise.wander, 2) * std::exp(-apart / kHeldoutNoise.tau);
+        sigma(row, other) = std::pow(kHeldoutNoise.drift, 2) * std::exp(-apart / kHeldoutNoise.tau);
         if (row / 8 == other / 8) sigma(row, other) += std::pow(kHeldoutNoise.line, 2);
         if (row == other) sigma(row, other) += std::pow(kHeldoutNoise.white, 2);
       }
@@ -107,7 +107,7 @@ TEST(HeldoutErrors, CovarianceIsThatOfTheDefinition) {
   }
 }
 
-/// Slow wander: what is expected of the squares is what they are, as often as the spread says.
+/// Correlated drift: what is expected of the squares is what they are, as often as the spread says.
 TEST(HeldoutErrors, SquaresOfDrawnNoiseAreAsExpected) {
   constexpr int kDraws = 400;
   Example example;
@@ -129,8 +129,8 @@ TEST(HeldoutErrors, SquaresOfDrawnNoiseAreAsExpected) {
   const double deviation = std::sqrt(squares - mean * mean);
   EXPECT_NEAR(mean, figures.expected, 4.0 * deviation / std::sqrt(double{kDraws}));
   EXPECT_NEAR(deviation, figures.spread, 0.2 * figures.spread);
-  // As if the held-out readings had a wander of their own: half as much again.
-  const double apart = figures.count * (std::pow(kHeldoutNoise.white, 2) + std::pow(kHeldoutNoise.wander, 2));
+  // As if the held-out readings had correlated drift of their own: half as much again.
+  const double apart = figures.count * (std::pow(kHeldoutNoise.white, 2) + std::pow(kHeldoutNoise.drift, 2));
   EXPECT_LT(figures.expected, 0.8 * apart);
 }
 

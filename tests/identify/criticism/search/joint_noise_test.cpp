@@ -1,4 +1,4 @@
-// Effects that imitate a wander, with the noise estimated beside them. Readings are drawn.
+// Effects that imitate correlated drift, with the noise estimated beside them. Readings are drawn.
 
 #include "volcal/identify/criticism/search/joint_noise.h"
 
@@ -9,7 +9,7 @@
 #include <random>
 
 #include "tests/support/search_states.h"
-#include "volcal/identify/stats/chi_squared.h"
+#include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {
 namespace {
@@ -18,8 +18,8 @@ using testing_support::families_of;
 using testing_support::model_of_nothing_hidden;
 using testing_support::white_residual;
 
-/// A displacement that swings with the square of the position changes slowly along the path, as a wander
-/// does.
+/// A displacement that swings with the square of the position changes slowly along the path, as correlated
+/// drift does.
 class JointNoise : public ::testing::Test {
  protected:
   JointNoise() : families_(families_of(model(), "station-drift", "station P1")), problem_(model().problem()) {
@@ -46,14 +46,14 @@ class JointNoise : public ::testing::Test {
   NoiseProblem problem_;
 };
 
-TEST_F(JointNoise, NothingToDoWhereNothingWanders) {
+TEST_F(JointNoise, NothingToDoWhereNothingDrifts) {
   std::mt19937_64 random(8);
   const NoiseEstimate noise = estimate(white_residual(model(), random));
-  ASSERT_EQ(noise.instruments.at(0).parameters.wander, 0.0);
+  ASSERT_EQ(noise.instruments.at(0).parameters.drift, 0.0);
   EXPECT_TRUE(noise_with_reduced_drift(problem_, noise, 1).empty());
 }
 
-TEST_F(JointNoise, FindsWhatAWanderHasTakenUp) {
+TEST_F(JointNoise, FindsWhatADriftHasTakenUp) {
   std::mt19937_64 random(8);
   const Eigen::VectorXd white = white_residual(model(), random);
   Eigen::VectorXd amplitude(3);
@@ -61,10 +61,10 @@ TEST_F(JointNoise, FindsWhatAWanderHasTakenUp) {
   Eigen::VectorXd moved = columns() * amplitude;
   moved *= 1.5 * white.norm() / moved.norm();
   const NoiseEstimate noise = estimate(white + moved);
-  ASSERT_GT(noise.instruments.at(0).parameters.wander, 0.0);
+  ASSERT_GT(noise.instruments.at(0).parameters.drift, 0.0);
   const auto alternatives = noise_with_reduced_drift(problem_, noise, 1);
   ASSERT_EQ(alternatives.size(), 1U);
-  EXPECT_LT(alternatives[0].noise[0].wander, 0.5 * noise.instruments.at(0).parameters.wander);
+  EXPECT_LT(alternatives[0].noise[0].drift, 0.5 * noise.instruments.at(0).parameters.drift);
   EXPECT_GT(alternatives[0].loss, 0.0);
   FamilyTest test = tested_at(alternatives[0].noise);
   const double bound = test.score.lm - alternatives[0].loss;
@@ -74,14 +74,14 @@ TEST_F(JointNoise, FindsWhatAWanderHasTakenUp) {
   EXPECT_LT(test.log10_p, tested_at(noise.parameters()).log10_p);
   EXPECT_LT(test.log10_p, -6.0);
   EXPECT_GT(test.log10_p, log10_chi_squared_exceedance(test.score.lm, 3) + 1.0)
-      << "a wander is known from its correlation times";
+      << "correlated drift is known from its correlation times";
   const double ratio = test.score.lm;
   test_jointly(model(), family(), problem_, noise, {}, 2.0 * ratio, test);
   EXPECT_GE(test.score.lm, ratio) << "an upper bound will do";
   EXPECT_LT(test.score.lm, 2.0 * ratio);
 }
 
-/// A ball-bar's servo mismatch moves no reading of the tracer beside it, whose noise wanders; the bar's is
+/// A ball-bar's servo mismatch moves no reading of the tracer beside it, whose noise drifts; the bar's is
 /// white, and known from all its readings.
 TEST(JointNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   sim::Study study = testing_support::hiding({}, {5, 4, 3});
@@ -105,9 +105,9 @@ TEST(JointNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   NoiseOptions options;
   options.uncertainty = false;
   const NoiseEstimate noise = estimate_noise(problem, options);
-  ASSERT_GT(noise.instruments.at(tracer).parameters.wander, 0.0);
+  ASSERT_GT(noise.instruments.at(tracer).parameters.drift, 0.0);
   const InstrumentNoise& bar = noise.instruments.at(1 - tracer);
-  ASSERT_FALSE(bar.wander.on || bar.line.on || bar.per_metre.on);
+  ASSERT_FALSE(bar.drift.on || bar.line.on || bar.per_metre.on);
 
   const std::vector<Family> servo = families_of(fitted.model, "servo-mismatch");
   const Projector projector(problem, problem.data, noise.parameters(), 1, fitted.model.parts());
@@ -118,36 +118,37 @@ TEST(JointNoiseOfSeveral, StandsOnTheNoiseOfThoseThatAreMoved) {
   EXPECT_LE(test.score.log10_p, log10_exceedance_of_estimated(test.score.lm, test.score.dof, 0.5 * readings));
 }
 
-/// Under a true wander the ratio of an effect that is not there is chi-squared with its three amplitudes.
-TEST_F(JointNoise, StaysWithinChanceUnderATrueWander) {
+/// Under true correlated drift the ratio of an effect that is not there is chi-squared with its three
+/// amplitudes.
+TEST_F(JointNoise, StaysWithinChanceUnderATrueDrift) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
   constexpr int kDraws = 12;
   constexpr double kTau = 600.0;
-  int wandering = 0;
+  int drifting = 0;
   double ratios = 0.0;
   for (int draw = 0; draw < kDraws; ++draw) {
     Eigen::VectorXd residual = white_residual(model(), random);
     for (const NoiseSequence& sequence : problem_.data.sequences) {
-      double wander = 0.6e-6 * normal(random);
+      double drift = 0.6e-6 * normal(random);
       for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
         if (k > 0) {
           const double kept = std::exp(-(sequence.time[k] - sequence.time[k - 1]) / kTau);
-          wander = kept * wander + 0.6e-6 * std::sqrt(1.0 - kept * kept) * normal(random);
+          drift = kept * drift + 0.6e-6 * std::sqrt(1.0 - kept * kept) * normal(random);
         }
-        residual[static_cast<Eigen::Index>(sequence.observation[k])] += wander;
+        residual[static_cast<Eigen::Index>(sequence.observation[k])] += drift;
       }
     }
     const NoiseEstimate noise = estimate(residual);
-    if (noise.instruments.at(0).parameters.wander == 0.0) continue;
-    ++wandering;
+    if (noise.instruments.at(0).parameters.drift == 0.0) continue;
+    ++drifting;
     FamilyTest test = tested_at(noise.parameters());
     test_jointly(model(), family(), problem_, noise, {}, 0.0, test);
     ratios += test.score.lm;
   }
-  ASSERT_GT(wandering, kDraws / 2);
-  EXPECT_LT(ratios / wandering, 3.0 + 3.1 * std::sqrt(6.0 / wandering));
-  EXPECT_GT(ratios / wandering, 0.5);
+  ASSERT_GT(drifting, kDraws / 2);
+  EXPECT_LT(ratios / drifting, 3.0 + 3.1 * std::sqrt(6.0 / drifting));
+  EXPECT_GT(ratios / drifting, 0.5);
 }
 
 /// On one circle a drift of a few seconds follows a servo mismatch as well as its own shape does.

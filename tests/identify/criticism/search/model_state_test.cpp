@@ -80,7 +80,7 @@ TEST_F(ModelStateOfReversal, EstimatesAsDenseLeastSquaresDo) {
       for (std::size_t j = 0; j < sequence.observation.size(); ++j) {
         const auto column = static_cast<Eigen::Index>(sequence.observation[j]);
         const double gap = std::abs(sequence.time[i] - sequence.time[j]);
-        covariance(row, column) += noise.wander * noise.wander * std::exp(-gap / noise.tau);
+        covariance(row, column) += noise.drift * noise.drift * std::exp(-gap / noise.tau);
         if (!sequence.line.empty() && sequence.line[i] == sequence.line[j])
           covariance(row, column) += noise.line * noise.line;
       }

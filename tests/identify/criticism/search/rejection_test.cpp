@@ -54,7 +54,7 @@ TEST(Rejection, WhatItLeavesMayNotBeLessProbable) {
   EXPECT_THAT(Rejection(weaker).rejection_reason(0), IsEmpty());
   const ModelState stronger = with_scans(beside_backlash(), {hand_made_scan({"z"}, own - 1.0)});
   EXPECT_TRUE(Rejection(stronger).leaves_more(stronger.added()[0]));
-  EXPECT_EQ(Rejection(stronger).rejection_reason(0), "what it leaves stands out more than it does");
+  EXPECT_EQ(Rejection(stronger).rejection_reason(0), "what it leaves exceeds the noise more than it does");
 }
 
 TEST(Rejection, ItsDriverMayNotMoveWhatItLeaves) {

@@ -56,7 +56,7 @@ TEST(Search, AStepTellsTheFirstEffectAndThatMoreHasAName) {
 }
 
 /// Two channels that read the same: every thermal effect has a twin, and no set is lost.
-TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotTellApart) {
+TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
   sim::HiddenEffect first = hidden_beside("thermal-tilt", "EAZ", 1.2e-6),
                     second = hidden_beside("thermal-tilt", "ECX", 1.2e-6);
   for (sim::HiddenEffect* effect : {&first, &second}) effect->options.set("channel", "column");
@@ -231,7 +231,7 @@ TEST(Search, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
     EXPECT_NE(search.reached().setting().families[added.test.family].name().kind, "lagged-temperature");
 }
 
-/// On one circle a wander of a few seconds follows a servo mismatch as well as its own shape does.
+/// On one circle correlated drift of a few seconds follows a servo mismatch as well as its own shape does.
 TEST(Search, FindsWhatTheNoiseHasTakenUp) {
   sim::HiddenEffect servo{.kind = "servo-mismatch", .options = {}, .rms = 0.5e-6};
   servo.options.set("axis", "X");
@@ -242,7 +242,7 @@ TEST(Search, FindsWhatTheNoiseHasTakenUp) {
   const auto ball_bar = std::ranges::find(fitted.model.noise_groups(), "ball-bar");
   ASSERT_NE(ball_bar, fitted.model.noise_groups().end());
   const auto group = static_cast<std::size_t>(ball_bar - fitted.model.noise_groups().begin());
-  EXPECT_GT(noise.instruments[group].parameters.wander, 0.2e-6);
+  EXPECT_GT(noise.instruments[group].parameters.drift, 0.2e-6);
   EXPECT_THAT(kinds_and_targets(searched(fitted, true).effects), ::testing::ElementsAre("servo-mismatch XY"));
 }
 

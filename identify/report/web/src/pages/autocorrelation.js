@@ -23,7 +23,7 @@ function correlationPlot(one) {
 }
 
 export function renderAutocorrelation(body, data) {
-  body.append(note('Residuals of the model reached: correlation of readings of one setup and run that follow each other at a lag. The filter of the noise model should leave nothing outside the band; residuals lie below the noise model’s own curve where the fit has absorbed part of the wander.'));
+  body.append(note('Residuals of the model reached: correlation of readings of one setup and run that follow each other at a lag. The filter of the noise model should leave nothing outside the band; residuals lie below the noise model’s own curve where the fit has absorbed part of the correlated drift.'));
   if (data.instruments.length === 0) {
     body.append(note('There are too few readings in a row.'));
     return;

@@ -69,18 +69,18 @@ function map(hypotheses, rows) {
 
 const limitText = (limit) => {
   const mdb = limit.mdb === null ? 'never found' : `found from ${significant(limit.mdb, 2)} ${limit.unit}`;
-  if (limit.mib === null) return limit.rival === '' ? mdb : `${mdb}, never told from ${limit.rival}`;
+  if (limit.mib === null) return limit.rival === '' ? mdb : `${mdb}, not separable from ${limit.rival}`;
   const mib = `named for certain from ${significant(limit.mib, 2)} ${limit.unit}`;
   return `${mdb}, ${mib}${limit.rival === '' ? '' : ` (nearest: ${limit.rival})`}`;
 };
 
-/** Components that are all found and never told from one rival, in one line. */
+/** Components that are all found and not separable from one rival, in one line. */
 function commonLimit(limits) {
   const [{ unit, rival }] = limits;
   const common = limits.length > 1 && limits.every((limit) => limit.mdb !== null && limit.mib === null && limit.rival === rival && limit.unit === unit);
   if (!common) return null;
   const mdbs = `found from ${limits.map((limit) => significant(limit.mdb, 2)).join(', ')} ${unit}`;
-  return rival === '' ? mdbs : `${mdbs}, never told from ${rival}`;
+  return rival === '' ? mdbs : `${mdbs}, not separable from ${rival}`;
 }
 
 function limitItems(effect) {
@@ -97,7 +97,7 @@ function apartText(cosine, same) {
   if (squaredSine < same) return 'They predict the same readings: no size tells them apart.';
   const factor = 1 / Math.sqrt(squaredSine);
   if (factor < 1.1) return 'These readings tell the two apart as soon as they show one of them.';
-  return `To be told from the other, an effect must be ${significant(factor, 2)} times as large as to be found.`;
+  return `To be separated from the other, an effect must be ${significant(factor, 2)} times as large as to be found.`;
 }
 
 function remedy(hypotheses, a, b) {
@@ -177,7 +177,7 @@ const legend = () => el('p', { class: 'legend' }, [
 
 export function renderConfounding(body, data) {
   if (data.effects.length < 2) {
-    body.append(note('Fewer than two effects are visible in these readings: there is nothing to tell apart.'), proposalTable(data));
+    body.append(note('Fewer than two effects are visible in these readings: there is nothing to separate.'), proposalTable(data));
     return;
   }
   const hypotheses = new Hypotheses(data);

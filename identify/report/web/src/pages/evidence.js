@@ -51,7 +51,7 @@ function evidencePlot(data, effects) {
 const unique = (effects) => effects.filter((effect, k) => effects.findIndex((other) => other.label === effect.label) === k);
 
 const caption = (data) => {
-  const parts = [data.added.length > 0 ? 'Green: added, with the evidence when it was.' : '', data.alternatives.length > 0 ? 'Orange: alternatives that the readings do not tell apart.' : ''];
+  const parts = [data.added.length > 0 ? 'Green: added, with the evidence when it was.' : '', data.alternatives.length > 0 ? 'Orange: alternatives that the readings do not separate.' : ''];
   return parts.some(Boolean) ? [...parts, 'Others: at the model reached.'].filter(Boolean).join(' ') : 'Strongest candidates at the given model';
 };
 
@@ -59,11 +59,11 @@ export function renderEvidence(body, data) {
   const first = unique([...data.added, ...data.alternatives.flat()]);
   const known = new Set(first.map((effect) => effect.label));
   const others = data.ranking.filter((effect) => !known.has(effect.label));
-  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates. MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also told apart from every other effect, the worst of which is the rival.`));
+  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates. MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from every other effect, the worst of which is the rival.`));
   const node = el('div', { class: 'plot' });
   body.append(el('figure', {}, [el('figcaption', {}, caption(data)), node]));
   addPlot(node, () => evidencePlot(data, [...first, ...others]));
   if (data.added.length > 0) body.append(el('h3', {}, 'Added'), table(columns, rows(data.added)));
-  for (const set of data.alternatives) body.append(el('h3', {}, 'Not told apart'), table(columns, rows(set)));
+  for (const set of data.alternatives) body.append(el('h3', {}, 'The readings cannot separate'), table(columns, rows(set)));
   body.append(el('h3', {}, 'Not added, strongest first'), longTable(columns, rows(others)));
 }

@@ -9,8 +9,8 @@ function noiseVerdict(row) {
 }
 
 function noiseModel(noise) {
-  if (!noise.estimated) return [note('Readings were taken as independent; slow wander, offsets of lines and a part in proportion to length were not looked for.')];
-  if (!noise.more_than_white) return [note('Independent readings suffice: no slow wander, offset of lines or part in proportion to length is supported by the readings.')];
+  if (!noise.estimated) return [note('Readings were taken as independent; correlated drift, offsets of lines and a part in proportion to length were not looked for.')];
+  if (!noise.more_than_white) return [note('Independent readings suffice: no correlated drift, offset of lines or part in proportion to length is supported by the readings.')];
   return [
     noiseTable(noise.rows.filter((row) => row.value !== 0)),
     note(`The readings' noise is not independent. Its terms come from restricted maximum likelihood; weights and uncertainties allow for them. χ² of the whitened residuals per degree of freedom: ${fixed(noise.reduced, 3)}.`),

@@ -114,7 +114,7 @@ export function renderStory(body, data) {
   body.append(el('h3', {}, 'What was missing, and how we know'));
   body.append(...data.missing.map(missingItem));
   if (data.missing.length === 0 && data.one_of.length === 0) {
-    body.append(el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and told apart from the others.`));
+    body.append(el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and separated from the others.`));
   }
   for (const set of data.one_of) {
     body.append(el('p', {}, 'One of the following is missing; these readings do not tell them apart:'), ...set.map((effect) => missingItem({ ...effect, how: `log10 p ${fixed(effect.log10_p, 1)}` })));

@@ -1,0 +1,213 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/criticism/heldout_comparison.h"
+#include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/errors/alignment.h"
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/io/results/residual_writer.h"
+#include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/report/text/comparison_report.h"
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/text/atomic_folder.h"
+#include "volcal/identify/text/text_file.h"
+
+namespace volcal::cli {
+namespace {
+
+const std::string kNominal = "nominal";
+
+struct CompareArguments {
+  std::string campaign;
+  std::vector<std::string> models;
+  std::string output;
+  std::size_t worst = 10;
+  int threads = 0;
+  bool all = false;
+  bool heldout = false;
+  bool json = false;
+};
+
+struct NamedModel {
+  std::string name;
+  ModelSpec spec;
+  ModelSpec refittable;  ///< what --held-out fits
+  bool can_be_fitted = true;
+  std::optional<FitResult> result = {};  ///< that it was read from
+  std::optional<Campaign> aligned = {};  ///< the readings in the coordinate system of an aligned result
+
+  const Campaign& readings(const Campaign& campaign) const { return aligned ? *aligned : campaign; }
+};
+
+/// Error tables as a model.
+NamedModel load_tables(const std::string& argument, const Campaign& campaign) {
+  const FitResult tables = read_known_errors(argument);
+  if (const std::string difference = machine_difference(tables.machine, campaign.machine);
+      !difference.empty()) {
+    throw InputError({argument, 0}, "they belong to another machine than the campaign: " + difference,
+                     "compare with tables of the same machine");
+  }
+  return {argument, tables.identified, tables.identified, false};
+}
+
+/// A result, a model file, a folder of error tables, or the word "nominal".
+NamedModel load(const std::string& argument, const Campaign& campaign) {
+  if (argument == kNominal) return {"nominal machine", nominal_model(), nominal_model(), false};
+  if (!std::filesystem::exists(argument)) {
+    throw InputError({argument, 0}, "there is no such result or model",
+                     missing_remedy(argument,
+                                    "give a result folder of volcal fit, a model.toml, a folder of tables "
+                                    "--format csv, or the word nominal"));
+  }
+  if (is_tables_folder(argument)) return load_tables(argument, campaign);
+  if (is_result(argument) || std::filesystem::is_directory(argument)) {
+    const FitResult result = read_result(argument);
+    std::optional<Campaign> aligned;
+    if (!result.alignment.empty()) adopt_alignment(aligned.emplace(campaign), result);
+    const Machine& machine = aligned ? aligned->machine : campaign.machine;
+    if (const std::string difference = machine_difference(result.machine, machine); !difference.empty()) {
+      throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
+                       "compare with a result of the same machine");
+    }
+    return {argument, result.identified, refittable_model(result), true, result, std::move(aligned)};
+  }
+  NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
+  model.refittable = model.spec;
+  if (!states_errors(model.spec)) model.name = "nominal machine (" + argument + " holds no coefficients)";
+  return model;
+}
+
+/// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json and comparison.txt.
+void write_folder(const std::string& target, const Campaign& campaign,
+                  const std::vector<ComparedModel>& models, const std::string& text,
+                  const std::string& json) {
+  AtomicFolder folder(target);
+  const bool one = models.size() == 1;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const std::string name = one ? "residuals.csv" : fmt::format("residuals_{}.csv", "AB"[i]);
+    write_residuals_csv(folder.path(name), models[i].records, campaign);
+  }
+  folder.write("comparison.txt", text);
+  folder.write("comparison.json", json);
+  folder.commit();
+}
+
+std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vector<NamedModel>& models,
+                                        const CompareArguments& arguments,
+                                        const ComparisonOptions& comparison) {
+  const auto rows = judging_rows(campaign);
+  if (std::ranges::none_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; })) {
+    throw InputError({campaign.file, 0}, "--held-out: the setups have too few readings to hold lines out",
+                     "at least fifty readings, or five lines, of a setup are needed");
+  }
+  ProgressBar bar("held-out lines");
+  std::vector<HeldOutModel> judged;
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const auto count = static_cast<double>(models.size());
+    HeldOutOptions options{arguments.threads, models[m].can_be_fitted,
+                           [&](const std::string& stage, double done) {
+                             bar.update(stage, (static_cast<double>(m) + done) / count);
+                           }};
+    const auto records = heldout_residuals(models[m].readings(campaign), models[m].refittable, rows, options);
+    judged.push_back({arguments.models[m], models[m].can_be_fitted, compare(campaign, records, comparison)});
+  }
+  bar.finish();
+  return judged;
+}
+
+int run_compare(const CompareArguments& arguments) {
+  if (!arguments.output.empty()) {
+    std::vector<std::string> inputs = {arguments.campaign};
+    std::ranges::remove_copy(arguments.models, std::back_inserter(inputs), kNominal);
+    require_output_folder(arguments.output, inputs);
+  }
+  const Campaign campaign = read_campaign(arguments.campaign);
+  ComparisonOptions comparison;
+  comparison.worst = arguments.worst;
+  std::vector<NamedModel> named;
+  std::vector<ComparedModel> models;
+  for (const std::string& argument : arguments.models) {
+    const NamedModel& model = named.emplace_back(load(argument, campaign));
+    const Campaign& readings = model.readings(campaign);
+    Evaluation evaluation = evaluate_model(readings, model.spec, nullptr, arguments.threads);
+    std::optional<Screening> screening;
+    if (model.result) screening = screen(readings, as_fitted(evaluation, *model.result), arguments.threads);
+    models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
+    models.back().screening = screening;
+  }
+  std::vector<HeldOutModel> heldout;
+  if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
+  const std::string json = comparison_json(campaign, models, heldout);
+  std::string text = comparison_text(campaign, models, {arguments.all, arguments.worst});
+  if (!heldout.empty()) {
+    text += '\n' + heldout_text(campaign, heldout, campaign.reading_count());
+  } else if (models.size() > 1 &&
+             std::ranges::any_of(named, [](const NamedModel& model) { return states_errors(model.spec); })) {
+    text += '\n' + heldout_hint();
+  }
+  if (states_errors(named.back().spec) && fails(models.back()))
+    text += fmt::format("\nnext: volcal diagnose {} --auto -o diagnosis\n", arguments.campaign);
+  if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
+  if (arguments.json) {
+    fmt::print("{}", json);
+    return kDone;
+  }
+  fmt::print("{}", text);
+  if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+  return kDone;
+}
+
+std::function<int()> define_compare(CLI::App& app) {
+  auto arguments = std::make_shared<CompareArguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option(
+         "MODEL", arguments->models,
+         "one or two of: a result folder, a model.toml, a folder of tables --format csv, the word nominal "
+         "(machine without errors); a model without coefficients is the nominal machine")
+      ->required()
+      ->expected(1, 2);
+  app.add_option(
+      "-o,--output", arguments->output,
+      "folder for residuals.csv (of two models residuals_A.csv and residuals_B.csv), comparison.txt and "
+      "comparison.json");
+  app.add_option("--worst", arguments->worst, "readings listed")
+      ->check(not_negative())
+      ->capture_default_str();
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
+  app.add_flag("--held-out", arguments->heldout,
+               "fit the models anew without every fifth line and judge them on those lines");
+  app.add_flag("--all", arguments->all, "every setup, place, line and run, not only the worst");
+  app.add_flag("--json", arguments->json, "print one JSON document on standard output and nothing else");
+  return [arguments] { return run_compare(*arguments); };
+}
+
+}  // namespace
+
+const Command& compare_command() {
+  static const Command command = {
+      "compare", "show where a model fails to explain a campaign, with the figures of ISO 230",
+      "  volcal compare campaign.toml nominal\n"
+      "  volcal compare campaign.toml result -o comparison\n"
+      "  volcal compare campaign.toml nominal result\n"
+      "  volcal compare campaign.toml result result-1 --held-out\n"
+      "  volcal compare campaign.toml result --json | jq -r '.models[0].where_it_fails'\n",
+      define_compare};
+  return command;
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/conditions_options.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/program_setup.h"
+#include "volcal/identify/io/program_file.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/program_text.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal::cli {
+namespace {
+
+struct CompensateArguments {
+  std::string result;
+  std::string program;
+  std::string output;
+  ProgramSetupArguments setup;
+  std::string tool;
+  std::string lengths_from;
+  double tolerance_um = 0.5;
+  double arc_tolerance_um = 0.5;
+  int decimals = 4;
+  ConditionsArguments conditions;
+  bool check = false;
+  bool json = false;
+};
+
+/// What happened to the program.
+struct RewrittenProgram {
+  NcRewriteSummary summary;
+  std::optional<ProgramCheck> check;
+};
+
+void require_output(const CompensateArguments& arguments) {
+  if (arguments.output.empty() && !arguments.check)
+    throw InputError({}, "neither a file nor a check is asked for", "give -o OUT.ngc, --check, or both");
+  if (!arguments.output.empty() && same_file(arguments.program, arguments.output))
+    throw InputError({arguments.output, 0}, "the output is the program itself",
+                     "name another file; a program that is compensated twice is wrong twice");
+}
+
+/// A comment holds no brackets.
+std::string in_comment(std::string text) {
+  for (char& c : text) {
+    if (c == '(' || c == ')' || static_cast<unsigned char>(c) < 0x20) c = '_';
+  }
+  return text;
+}
+
+/// What the rewritten program is valid for.
+std::string header(const CompensateArguments& arguments) {
+  std::string text = fmt::format("{} result {}", kCompensatedMark, in_comment(arguments.result));
+  for (const std::string& offset : arguments.setup.work_offsets) text += " " + in_comment(offset);
+  for (const std::string& length : arguments.setup.tool_lengths) text += " " + in_comment(length);
+  return text + ")";
+}
+
+NcRewriteOptions rewrite_options(const CompensateArguments& arguments) {
+  NcRewriteOptions options;
+  options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
+  options.arc_tolerance = arguments.arc_tolerance_um * kMetrePerMicrometre;
+  options.decimals_mm = arguments.decimals;
+  options.within_readings = arguments.conditions.no_extrapolation;
+  options.header = header(arguments);
+  return options;
+}
+
+RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arguments) {
+  const NcSetup setup = program_setup(arguments.setup, result.machine);
+  const FunctionalPoint point = functional_point(result.machine, arguments.tool, arguments.lengths_from);
+  const ProgramErrors errors =
+      program_errors(result, arguments.tool, conditions_of(result, arguments.conditions));
+  NcRewriter rewriter(errors, setup, point, rewrite_options(arguments), arguments.program);
+  std::optional<NcCheck> check;
+  if (arguments.check) check.emplace(errors, setup, point);
+  LineFile program(arguments.program);
+  std::optional<AtomicFile> output;
+  if (!arguments.output.empty()) output.emplace(arguments.output);
+  const NcRewriter::Sink sink = [&](std::string_view line, std::span<const NcWrittenLine> written) {
+    if (output) {
+      for (const NcWrittenLine& text : written) output->write(text.text);
+    }
+    if (check) check->add(line, written);
+  };
+  for (std::string_view line; program.next(line);) rewriter.rewrite(line, sink);
+  if (output) output->commit();
+  RewrittenProgram done{rewriter.summary(), std::nullopt};
+  if (check) done.check = ProgramCheck{check->before(), check->after(), check->length()};
+  return done;
+}
+
+void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments) {
+  fmt::print("{}", program_summary_text(done.summary));
+  if (done.check) fmt::print("{}", program_check_text(*done.check));
+  fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
+  for (const std::string& sentence : errors_in_no_table(result)) fmt::print("! {}\n", sentence);
+  for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+  if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
+}
+
+int run_compensate(const CompensateArguments& arguments) {
+  require_output(arguments);
+  const FitResult result = read_known_errors(arguments.result);
+  const RewrittenProgram done = rewrite(result, arguments);
+  if (arguments.json) {
+    nlohmann::ordered_json json = program_json(done.summary, done.check);
+    json["effects_not_compensated"] = errors_in_no_table(result);
+    json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
+    json["invisible"] = result.rank.invisible;
+    if (!arguments.output.empty()) json["file"] = arguments.output;
+    fmt::print("{}\n", json_text(json, 2));
+  } else {
+    print_text(done, result, arguments);
+  }
+  return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
+}
+
+void add_setup_options(CLI::App& app, ProgramSetupArguments& setup) {
+  app.add_option(
+      "--work-offset", setup.work_offsets,
+      "G54=X10,Y20,Z-300, origin of a work coordinate system in machine coordinates, mm; may be given "
+      "several times, for every one that the program uses");
+  app.add_option(
+      "--tool-length", setup.tool_lengths,
+      "H1=150.2, length that G43 H1 calls, mm, positive along the tool; may be given several times");
+  app.add_option(
+      "--start", setup.start,
+      "X0,Y0,Z0, where the axes are before the program, machine coordinates in mm; default: not known, "
+      "so that the program must begin with G0 to a position of every axis");
+  app.add_option("--units", setup.units, "unit of length before G20 or G21: mm or inch; default: not known")
+      ->check(CLI::IsMember({"mm", "inch"}));
+  app.add_option("--block-delete", setup.block_delete,
+                 "how the control's switch stands for blocks that begin with /: on (skip) or off (run)")
+      ->check(CLI::IsMember({"on", "off"}));
+}
+
+std::function<int()> define_compensate(CLI::App& app) {
+  auto arguments = std::make_shared<CompensateArguments>();
+  app.add_option("RESULT", arguments->result,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv")
+      ->required();
+  app.add_option("PROGRAM", arguments->program, "NC program (RS-274, ISO 6983) of X, Y and Z")->required();
+  app.add_option("-o,--output", arguments->output, "rewritten program");
+  add_setup_options(app, arguments->setup);
+  app.add_option(
+      "--tool", arguments->tool,
+      "tool of the machine whose functional point is corrected while no tool length is active (G49); "
+      "default the first");
+  app.add_option(
+      "--lengths-from", arguments->lengths_from,
+      "tool of the machine that tool lengths are differences to; default: they count from the spindle "
+      "reference, as the machine's tool offsets do");
+  app.add_option("--tolerance-um", arguments->tolerance_um,
+                 "largest distance from the corrected path between the ends of lines, um; default 0.5")
+      ->check(positive());
+  app.add_option("--arc-tolerance-um", arguments->arc_tolerance_um,
+                 "largest distance of the chords that stand for arcs, um; default 0.5")
+      ->check(positive());
+  app.add_option("--decimals", arguments->decimals, "of coordinates in mm, inches have one more; default 4")
+      ->check(CLI::Range(4, 7));
+  add_conditions_options(app, arguments->conditions);
+  app.add_flag(
+      "--check", arguments->check,
+      "interpret both programs and print the error of the tool point along the path, before and after");
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run_compensate(*arguments); };
+}
+
+}  // namespace
+
+const Command& compensate_command() {
+  static const Command command = {
+      "compensate", "rewrite an NC program so that the identified errors cancel",
+      "  volcal compensate result part.ngc -o part-compensated.ngc --work-offset G54=X10,Y20,Z-300 \\\n"
+      "      --tool-length H1=150\n"
+      "  volcal compensate result part.ngc --check --work-offset G54=X10,Y20,Z-300 --tool long\n",
+      define_compensate};
+  return command;
+}
+
+}  // namespace volcal::cli

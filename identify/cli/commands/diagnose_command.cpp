@@ -1,0 +1,175 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/effect_list.h"
+#include "volcal/identify/cli/options/named_effect.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/catalogue/left_out.h"
+#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/results/diagnosis_json.h"
+#include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/text/atomic_folder.h"
+
+namespace volcal::cli {
+namespace {
+
+struct DiagnoseArguments {
+  std::string campaign;
+  std::string model;
+  std::string output;
+  std::string shown;
+  int threads = 0;
+  bool climb = false;
+  bool list = false;
+  bool json = false;
+  std::vector<std::string> separate;
+  std::size_t readings = PlanningOptions{}.readings;
+};
+
+ModelSpec given_model(const DiagnoseArguments& arguments, const Campaign& campaign) {
+  return arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+}
+
+/// Of a campaign also by name.
+int print_list(const DiagnoseArguments& arguments) {
+  std::vector<std::string> testable, notes;
+  if (!arguments.campaign.empty()) {
+    const Campaign campaign = read_campaign(arguments.campaign);
+    testable = testable_effects(campaign, given_model(arguments, campaign));
+    notes = campaign.notes;
+  }
+  fmt::print("{}", arguments.json ? effect_list_json(testable, notes)
+                                  : effect_list_text(testable) + campaign_notes_text(notes));
+  return kDone;
+}
+
+ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
+  for (const EffectFinding& effect : diagnosis.effects) {
+    if (!restore_left_out(effect.spec, model)) model.effects.push_back(effect.spec);
+  }
+  return model;
+}
+
+/// The ladder of an earlier diagnosis again.
+int show(const DiagnoseArguments& arguments) {
+  if (!arguments.campaign.empty()) {
+    throw InputError({}, "both a campaign to diagnose and --show are given",
+                     "volcal diagnose --show DIR prints an earlier diagnosis; leave one of the two out");
+  }
+  const Diagnosis diagnosis = read_diagnosis(arguments.shown);
+  fmt::print("{}", arguments.json ? diagnosis_json(diagnosis) : diagnosis_text(diagnosis));
+  return kDone;
+}
+
+void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
+                  const Diagnosis& diagnosis, const std::string& json) {
+  AtomicFolder folder(arguments.output);
+  folder.write("diagnosis.json", json);
+  folder.write("diagnosis.txt", diagnosis_text(diagnosis));
+  if (report_available()) {
+    folder.write("report.html", report_html(diagnosis, campaign, report_options()));
+  }
+  folder.write("machine.toml", machine_toml(campaign.machine));
+  folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
+                                           "the given model with the effects that volcal diagnose added"));
+  folder.commit();
+}
+
+int run_diagnose(const DiagnoseArguments& arguments) {
+  if (arguments.list) return print_list(arguments);
+  if (!arguments.shown.empty()) return show(arguments);
+  if (arguments.campaign.empty()) {
+    throw InputError({}, "no campaign is given",
+                     "volcal diagnose CAMPAIGN.toml -o DIR, --show DIR, or --list");
+  }
+  if (!arguments.output.empty()) {
+    require_output_folder(arguments.output, {arguments.campaign, arguments.model});
+  }
+  const Campaign campaign = read_campaign(arguments.campaign);
+  const ModelSpec model = given_model(arguments, campaign);
+  DiagnoseOptions options;
+  options.threads = arguments.threads;
+  options.climb = arguments.climb;
+  options.planning.readings = arguments.readings;
+  for (const std::string& effect : arguments.separate) {
+    options.planning.separate.push_back(named_effect("--separate", effect, campaign));
+  }
+  ProgressBar bar("diagnose");
+  FitOptions fit_options;
+  fit_options.threads = arguments.threads;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;  // the diagnosis estimates it, at every step anew
+  fit_options.progress = [&bar](const std::string& stage, double done) {
+    bar.update("fit: " + stage, 0.3 * done);
+  };
+  const FitResult result = fit(campaign, model, fit_options);
+  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
+  const Diagnosis diagnosis = diagnose(campaign, result, options);
+  bar.finish();
+  const std::string json = diagnosis_json(diagnosis);
+  if (!arguments.output.empty()) write_folder(arguments, campaign, model, diagnosis, json);
+  if (arguments.json) {
+    fmt::print("{}", json);
+  } else {
+    fmt::print("{}", diagnosis_text(diagnosis));
+    if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+    if (!arguments.output.empty() && !report_available())
+      fmt::print("no report.html: {}\n", how_to_get_report());
+  }
+  return kDone;
+}
+
+std::function<int()> define_diagnose(CLI::App& app) {
+  auto arguments = std::make_shared<DiagnoseArguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml");
+  app.add_option("-m,--model", arguments->model, "model.toml to criticise; default: all 21 errors");
+  app.add_option("-o,--output", arguments->output,
+                 "folder for diagnosis.json, report.html, diagnosis.txt and extended.toml");
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
+  app.add_flag("--auto", arguments->climb,
+               "tell everything that was found, one effect after another, not the first alone");
+  app.add_option("--separate", arguments->separate,
+                 "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
+      ->delimiter(',');
+  app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
+      ->check(CLI::Range(8, 10000))
+      ->capture_default_str();
+  app.add_option("--show", arguments->shown,
+                 "print the diagnosis kept in a folder (or diagnosis.json) again");
+  app.add_flag(
+      "--list", arguments->list,
+      "print every kind, target, driver and shape of effects, and what could act in CAMPAIGN, and stop");
+  app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
+  return [arguments] { return run_diagnose(*arguments); };
+}
+
+}  // namespace
+
+const Command& diagnose_command() {
+  static const Command command = {"diagnose",
+                                  "show where the model fails, and name the effect that is missing",
+                                  "  volcal diagnose campaign.toml -o diagnosis\n"
+                                  "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
+                                  "  volcal diagnose campaign.toml --separate station-drift:\"station "
+                                  "P1\",dead-path:\"readings of P1_short\"\n"
+                                  "  volcal diagnose --show diagnosis\n"
+                                  "  volcal diagnose --list\n"
+                                  "  volcal diagnose campaign.toml --list\n",
+                                  define_diagnose};
+  return command;
+}
+
+}  // namespace volcal::cli

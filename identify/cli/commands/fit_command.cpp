@@ -1,0 +1,142 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/fit_policies.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/io/results/result_json.h"
+#include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/fit_summary.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/text/atomic_folder.h"
+
+namespace volcal::cli {
+namespace {
+
+struct FitArguments {
+  std::string campaign;
+  std::string model;
+  std::string output;
+  std::string loss = "none";
+  std::string outliers = "list";
+  std::string solver = "compressed";
+  std::string noise = "auto";
+  int threads = 0;
+  bool keep_stated_sigma = false;
+  bool first_order = false;
+  bool json = false;
+};
+
+FitOptions fit_options(const FitArguments& arguments) {
+  FitOptions options;
+  options.threads = arguments.threads;
+  options.loss = arguments.loss == "huber"    ? RobustLoss::Huber
+                 : arguments.loss == "cauchy" ? RobustLoss::Cauchy
+                                              : RobustLoss::None;
+  options.outliers = outlier_policy(arguments.outliers);
+  options.solver = arguments.solver == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
+  options.noise = noise_policy(arguments.noise);
+  options.variance_components = !arguments.keep_stated_sigma;
+  options.exact_kinematics = !arguments.first_order;
+  return options;
+}
+
+/// A robust loss has no likelihood to test by; an adjustment that did not converge has no residuals to trust.
+bool can_be_screened(const FitResult& result, const FitOptions& options) {
+  return options.loss == RobustLoss::None && result.status != FitStatus::NotConverged;
+}
+
+void add_screening(const Campaign& campaign, int threads, FitResult& result) {
+  const auto start = std::chrono::steady_clock::now();
+  judge(screen(campaign, result, threads), result);
+  result.timings.push_back({"scans of the residuals",
+                            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+std::string diagnosis_of(const FitArguments& arguments) {
+  return "volcal diagnose " + arguments.campaign +
+         (arguments.model.empty() ? "" : " --model " + arguments.model) + " --auto -o diagnosis";
+}
+
+int run_fit(const FitArguments& arguments) {
+  require_output_folder(arguments.output, {arguments.campaign, arguments.model});
+  const Campaign campaign = read_campaign(arguments.campaign);
+  const ModelSpec model =
+      arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
+  FitOptions options = fit_options(arguments);
+  ProgressBar bar("fit");
+  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
+  FitResult result = fit(campaign, model, options);
+  if (can_be_screened(result, options)) {
+    bar.update("scans of the residuals", 0.95);
+    add_screening(campaign, options.threads, result);
+  }
+  result.provenance = provenance();
+  bar.finish();
+  std::map<std::string, std::string> more;
+  if (report_available()) more["report.html"] = report_html(result, campaign, report_options());
+  write_result_folder(result, campaign, arguments.output, more);
+  if (arguments.json) {
+    fmt::print("{}\n", result_summary_json(result));
+  } else {
+    fmt::print("{}", fit_summary_text(result, campaign));
+    fmt::print("\nwritten: {}\n", arguments.output);
+    if (result.status == FitStatus::LackOfFit) fmt::print("next: {}\n", diagnosis_of(arguments));
+    if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
+  }
+  return result.status == FitStatus::RankDeficient || result.status == FitStatus::NotConverged ? kIncomplete
+                                                                                               : kDone;
+}
+
+std::function<int()> define_fit(CLI::App& app) {
+  auto arguments = std::make_shared<FitArguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option("-m,--model", arguments->model,
+                 "model.toml: bases of the error functions, errors left out, effects, widths of priors "
+                 "([priors] squareness_mrad, displacement_um, rotation_urad); default: all 21 errors, cubic "
+                 "B-splines, automatic knots");
+  app.add_option("-o,--output", arguments->output, "result folder (replaced as a whole)")->required();
+  app.add_option("--outliers", arguments->outliers, "readings flagged by the w-test: list or remove them")
+      ->check(CLI::IsMember({"list", "remove"}));
+  app.add_option("--robust", arguments->loss, "robust loss")
+      ->check(CLI::IsMember({"none", "huber", "cauchy"}));
+  app.add_option("--solver", arguments->solver,
+                 "compressed normal equations, or one residual block per reading")
+      ->check(CLI::IsMember({"compressed", "per-reading"}));
+  app.add_option(
+         "--noise", arguments->noise,
+         "auto: estimate correlated drift, offsets of lines and noise in proportion to length, and weight by "
+         "what is supported; white: independent readings")
+      ->check(CLI::IsMember({"auto", "white"}));
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
+  app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,
+               "do not estimate variance components nor correlated noise");
+  app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");
+  app.add_flag("--json", arguments->json, "print result.json on standard output and nothing else");
+  return [arguments] { return run_fit(*arguments); };
+}
+
+}  // namespace
+
+const Command& fit_command() {
+  static const Command command = {
+      "fit", "identify the errors of a machine from a campaign",
+      "  volcal fit campaign.toml -o result\n"
+      "  volcal fit campaign.toml --model model.toml --outliers remove -o result\n"
+      "  volcal fit campaign.toml -o result --json | jq .sigma0\n",
+      define_fit};
+  return command;
+}
+
+}  // namespace volcal::cli

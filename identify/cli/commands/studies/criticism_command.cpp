@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/text/atomic_folder.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/studies/criticism/criticism.h"
+#include "volcal/studies/criticism/criticism_campaign.h"
+#include "volcal/studies/criticism/criticism_figures.h"
+#include "volcal/studies/criticism/criticism_plan.h"
+#include "volcal/studies/files/simulation_writer.h"
+
+namespace volcal::cli {
+namespace {
+
+struct CriticismArguments {
+  CriticismOptions options;
+  std::string one;  ///< ROW:INDEX
+  bool json = false;
+};
+
+std::string figures_text(const CriticismArguments& arguments, const Campaigns& campaigns) {
+  TextTable figures({{"", Align::Left}, {"share (95 % interval), count", Align::Left}, {"goal", Align::Left}},
+                    "Figures; s is the visible signal to noise |g~ a|");
+  for (const Figure& figure : figures_of(campaigns))
+    figures.add_row({figure.what, figure.share.text(), figure.goal});
+  TextTable detections(
+      {{"effect", Align::Left}, {"campaigns"}, {"ratio"}, {"95 % interval"}},
+      "Amplitude found in 80 % of campaigns over the stated detectable one (goal 0.9 to 1.1)");
+  for (const Detection& detection : detections_of(campaigns)) {
+    detections.add_row({detection.effect, count_number(detection.campaigns), fixed_number(detection.ratio, 3),
+                        fixed_number(detection.low, 3) + " to " + fixed_number(detection.high, 3)});
+  }
+  TextTable confusion({{"row | hidden", Align::Left}, {"said", Align::Left}, {"campaigns"}},
+                      "What was hidden, and what was said");
+  for (const auto& [hidden, answers] : confusion_of(campaigns)) {
+    for (const auto& [said, count] : answers) confusion.add_row({hidden, said, count_number(count)});
+  }
+  const CriticismOptions& options = arguments.options;
+  return fmt::format(
+      "model criticism, {} campaigns a row (nothing hidden: a kind of noise) of about {} readings, seeds "
+      "from "
+      "{}; intervals after Wilson\n\n{}\n{}{}{}",
+      options.campaigns, count_number(options.readings), options.seed, figures.text(), detections.text(),
+      detections.empty() ? "" : "\n", confusion.text());
+}
+
+nlohmann::ordered_json json_of(const CriticismArguments& arguments, const Campaigns& campaigns) {
+  nlohmann::ordered_json json = {
+      {"study", "criticism"}, {"seed", arguments.options.seed}, {"readings", arguments.options.readings}};
+  for (const Figure& figure : figures_of(campaigns)) {
+    const auto [low, high] = figure.share.interval();
+    json["figures"].push_back({{"figure", figure.what},
+                               {"count", figure.share.count},
+                               {"of", figure.share.of},
+                               {"share", figure.share.value()},
+                               {"low95", low},
+                               {"high95", high},
+                               {"goal", figure.goal}});
+  }
+  for (const Detection& detection : detections_of(campaigns)) {
+    json["detection"].push_back({{"effect", detection.effect},
+                                 {"campaigns", detection.campaigns},
+                                 {"ratio", detection.ratio},
+                                 {"low95", detection.low},
+                                 {"high95", detection.high}});
+  }
+  json["confusion"] = confusion_of(campaigns);
+  for (const CampaignRecord& record : campaigns) {
+    nlohmann::json entry = record;
+    entry["outcome"] = to_string(outcome_of(record));
+    json["campaigns"].push_back(nlohmann::ordered_json(entry));
+  }
+  return json;
+}
+
+/// One campaign as files, for a closer look.
+int write_one(const CriticismArguments& arguments) {
+  const CriticismOptions& options = arguments.options;
+  const std::size_t colon = arguments.one.find(':');
+  const std::string row = arguments.one.substr(0, colon), number = arguments.one.substr(colon + 1);
+  int index = -1;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), index);
+  const bool is_number = error == std::errc() && end == number.data() + number.size() && index >= 0;
+  if (colon == std::string::npos || !is_number ||
+      std::ranges::find(criticism_rows(), row) == criticism_rows().end()) {
+    throw InputError({"--one " + arguments.one, 0}, "it is no row and index", "write listed:11");
+  }
+  if (options.output.empty()) throw InputError({"--one", 0}, "it needs a folder", "add -o FOLDER");
+  const auto study = study_of_campaign(row, index, options.seed, options.readings);
+  if (!study) {
+    throw InputError({"--one " + arguments.one, 0}, "no effect drawn is visible in this layout",
+                     "choose another index");
+  }
+  AtomicFolder folder(options.output);
+  write_simulation(sim::simulate(*study), folder);
+  folder.commit();
+  fmt::print("campaign {} of row {} written to {}\nnext: volcal diagnose {}/campaign.toml --auto\n", index,
+             row, options.output, options.output);
+  return kDone;
+}
+
+int run_criticism_study(CriticismArguments arguments) {
+  if (!arguments.one.empty()) return write_one(arguments);
+  CriticismOptions& options = arguments.options;
+  if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
+  ProgressBar bar("criticism");
+  options.progress = [&bar](int done, int all) {
+    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
+  };
+  const Campaigns campaigns = criticism(options);
+  bar.finish();
+  if (arguments.json) {
+    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 1));
+  } else {
+    fmt::print("{}", figures_text(arguments, campaigns));
+  }
+  return kDone;
+}
+
+std::function<int()> define_criticism_study(CLI::App& app) {
+  auto arguments = std::make_shared<CriticismArguments>();
+  CriticismOptions& options = arguments->options;
+  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
+  app.add_option("--rows", options.rows,
+                 "null, listed, unlisted, pairs, left-out, partial, mdb; default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(rows));
+  app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")
+      ->check(positive())
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
+  app.add_option("--readings", options.readings, "of a campaign, about")
+      ->check(CLI::Range(400, 100'000))
+      ->capture_default_str();
+  app.add_option("-o,--output", options.output,
+                 "folder that keeps every finished campaign (campaigns.jsonl)");
+  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  app.add_option("--one", arguments->one,
+                 "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
+  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run_criticism_study(*arguments); };
+}
+
+}  // namespace
+
+const Command& criticism_study() {
+  static const Command command = {
+      "criticism", "effects hidden in simulated campaigns: what diagnose says of them, counted",
+      "  volcal study criticism --rows null,listed -n 40 -o counted\n"
+      "  volcal study criticism --rows null,listed -n 200 -o counted --resume\n"
+      "  volcal study criticism --rows unlisted -n 20 --json\n"
+      "  volcal study criticism --one listed:11 -o campaign\n",
+      define_criticism_study};
+  return command;
+}
+
+}  // namespace volcal::cli

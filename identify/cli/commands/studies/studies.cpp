@@ -1,0 +1,25 @@
+#include "volcal/identify/cli/commands/studies/studies.h"
+
+#include <array>
+
+namespace volcal::cli {
+
+// One line per study, in the order of the help.
+#define VOLCAL_STUDIES(STUDY)       \
+  STUDY(agreement_study)            \
+  STUDY(closed_loop_study)          \
+  STUDY(compensation_study_command) \
+  STUDY(criticism_study)            \
+  STUDY(effect_tables_command)      \
+  STUDY(planning_study_command)
+
+#define VOLCAL_DECLARE(name) const Command& name();
+#define VOLCAL_ADDRESS(name) &(name)(),
+VOLCAL_STUDIES(VOLCAL_DECLARE)
+
+std::span<const Command* const> studies() {
+  static const auto kStudies = std::to_array<const Command*>({VOLCAL_STUDIES(VOLCAL_ADDRESS)});
+  return kStudies;
+}
+
+}  // namespace volcal::cli

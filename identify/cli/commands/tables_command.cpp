@@ -1,0 +1,374 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/alignment_options.h"
+#include "volcal/identify/cli/options/axis_position.h"
+#include "volcal/identify/cli/options/conditions_options.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/report/text/compensation_text.h"
+#include "volcal/identify/report/text/correction_text.h"
+#include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/volumetric_text.h"
+#include "volcal/identify/text/atomic_folder.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/studies/files/control_tables.h"
+
+namespace volcal::cli {
+namespace {
+
+constexpr double kDefaultTolerance_um = 0.2;
+
+struct TablesArguments {
+  std::string result;
+  std::string output;
+  std::string format = "csv";
+  std::string type;
+  std::string zero = "mean";
+  std::string lines;
+  int positions = 0;
+  int grid = 5;
+  double step_mm = 0.0;
+  double tolerance_um = 0.0;
+  std::vector<std::string> at;
+  std::string tool;
+  std::vector<std::string> settings;
+  std::vector<std::string> records;
+  AlignmentArguments alignment;
+  ConditionsArguments conditions;
+  std::string approach;
+  std::string superimpose;
+  bool dry_run = false;
+  bool list = false;
+  bool json = false;
+};
+
+/// Tables that were made, and what they leave.
+struct MadeTables {
+  const TableFormat* format = nullptr;
+  TableFormatOptions options;
+  StepChoice step;
+  double tolerance = 0.0;  ///< m; 0 = the step was given or is the format's own
+  std::vector<TableFile> files;
+  CompensationTables read_back;
+  VolumeCheck check;
+  std::vector<std::string> effects_left_out;
+};
+
+std::string format_help() {
+  std::string text = "table format:";
+  for (const TableFormat* format : table_formats())
+    text += fmt::format(" {} = {};", format->name, format->summary);
+  text.back() = '.';
+  return text;
+}
+
+/// A format that is known; of one that is not written, the reason.
+std::string check_format_name(const std::string& name) {
+  if (find_table_format(name) != nullptr) return {};
+  for (const RefusedFormat& refused : refused_table_formats()) {
+    if (refused.name == name) return fmt::format("{} is not written: {}", name, refused.reason);
+  }
+  return fmt::format("{} is no table format; there are {}", name, fmt::join(table_format_names(), ", "));
+}
+
+/// All of them when none is named.
+std::vector<Tool> chosen_tools(const Machine& machine, const std::string& name) {
+  if (name.empty()) return machine.tools;
+  TableFormatOptions options;
+  options.tool = name;
+  return {tool_of(machine, options)};
+}
+
+std::vector<AxisPosition> points_of(const FitResult& result, const TablesArguments& arguments) {
+  std::vector<AxisPosition> points;
+  for (const std::string& point : arguments.at)
+    points.push_back(axis_position("--at", point, result.machine));
+  return points;
+}
+
+/// X+,Y-: axes that are not named are approached from both sides.
+ApproachDirection approach_of(const Machine& machine, const std::string& text) {
+  ApproachDirection direction{};
+  for (std::size_t i = 0; i < text.size(); i += 3) {
+    const auto axis = axis_from_letter(text[i]);
+    const bool complete = i + 1 < text.size() && (text[i + 1] == '+' || text[i + 1] == '-') &&
+                          (i + 2 == text.size() || text[i + 2] == ',');
+    if (!axis || !machine.has_axis(*axis) || !complete)
+      throw InputError({}, "--approach " + text + " names no direction of the machine's axes",
+                       "write the axes and the direction they move in, as X+,Y-");
+    direction[index_of(*axis)] = text[i + 1] == '+' ? 1 : -1;
+  }
+  return direction;
+}
+
+std::vector<VolumetricError> errors_at_points(const FitResult& result, const TablesArguments& arguments) {
+  std::vector<VolumetricError> errors;
+  const Conditions conditions = conditions_of(result, arguments.conditions);
+  const ApproachDirection direction = approach_of(result.machine, arguments.approach);
+  for (const Tool& tool : chosen_tools(result.machine, arguments.tool)) {
+    const ErrorField field(result, tool, conditions);
+    for (const AxisPosition& position : points_of(result, arguments)) {
+      require_identified_rotary_axes(result, position);
+      errors.push_back(volumetric_error(result, field, position, tool, direction));
+      if (arguments.conditions.no_extrapolation && errors.back().extrapolated)
+        throw InputError({}, "--no-extrapolation: a point of --at lies beyond the measured positions",
+                         "name a point within them, or leave the option out");
+    }
+  }
+  return errors;
+}
+
+bool makes_tables(const TablesArguments& arguments) { return !arguments.output.empty() || arguments.dry_run; }
+
+void require_something_to_do(const TablesArguments& arguments) {
+  if (arguments.result.empty())
+    throw InputError({}, "no result is given", "give the folder that volcal fit wrote, or --list");
+  if (arguments.at.empty() && !makes_tables(arguments))
+    throw InputError({}, "neither a folder nor a point is given",
+                     "give -o FOLDER, --dry-run, or --at X=100,Y=50");
+}
+
+/// Tables that were active, by the rules of their controller.
+CompensationTables tables_in(const std::string& folder) {
+  const TablesFolder active = read_tables_folder(folder);
+  return active.format->read(active.files);
+}
+
+TableFormatOptions table_options(const TableFormat& format, const FitResult& result,
+                                 const TablesArguments& arguments) {
+  TableFormatOptions options;
+  options.functions.positions = arguments.positions;
+  options.functions.zero_plus = arguments.zero == "plus";
+  options.grid_per_axis = arguments.grid;
+  options.type = arguments.type.empty() ? format.supported : CompensationType::parse(arguments.type);
+  options.tool = arguments.tool;
+  options.step = arguments.step_mm * kMetrePerMillimetre;
+  if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
+  options.settings = named_values("--set", arguments.settings);
+  options.conditions = conditions_of(result, arguments.conditions);
+  options.record = {arguments.result, named_values("--record", arguments.records)};
+  if (!arguments.superimpose.empty()) options.active = tables_in(arguments.superimpose);
+  return options;
+}
+
+MadeTables make_tables(const FitResult& result, const TablesArguments& arguments) {
+  MadeTables made;
+  made.format = find_table_format(arguments.format);
+  made.options = table_options(*made.format, result, arguments);
+  check_table_options(*made.format, result, made.options);
+  const bool own_positions = made.format->positions_of_own && arguments.tolerance_um == 0.0;
+  if (arguments.step_mm == 0.0 && !own_positions) {
+    made.tolerance =
+        (arguments.tolerance_um > 0.0 ? arguments.tolerance_um : kDefaultTolerance_um) * kMetrePerMicrometre;
+    made.step = choose_step(*made.format, result, made.options, made.tolerance);
+    made.options.step = made.step.step;
+  }
+  if (made.format->step_of != nullptr) made.options.step = made.format->step_of(made.options);
+  made.files = write_tables(*made.format, result, made.options);
+  made.read_back = made.format->read(made.files);
+  made.check = check_in_volume(result, made.options, made.read_back);
+  made.effects_left_out = errors_in_no_table(result);
+  return made;
+}
+
+std::vector<std::string> file_names(const MadeTables& made) {
+  std::vector<std::string> names;
+  for (const TableFile& file : made.files) names.push_back(file.name);
+  return names;
+}
+
+void write_files(const MadeTables& made, const std::string& target) {
+  AtomicFolder folder(target);
+  for (const TableFile& file : made.files) folder.write(file);
+  folder.commit();
+}
+
+std::string step_text(const MadeTables& made) {
+  if (made.options.step == 0.0) return {};
+  std::string text = fmt::format(", step {:g} mm", made.options.step / kMetrePerMillimetre);
+  if (made.tolerance > 0.0)
+    text += fmt::format(", at most {:.2f} um off the ideal compensation", made.step.deviation / kMicro);
+  return text;
+}
+
+void print_tables(const MadeTables& made, const TablesArguments& arguments, const FitResult& result) {
+  const Machine& machine = result.machine;
+  fmt::print("{} {}, tool {}{}\n", made.format->name, made.options.type.name(),
+             tool_of(machine, made.options).name, step_text(made));
+  fmt::print("{}", conditions_text(result, *made.options.conditions));
+  fmt::print("{}", volume_check_text(made.check, made.options.type));
+  fmt::print("Verified: {}.\n", made.format->verified);
+  if (made.tolerance > 0.0 && !made.step.reached) {
+    const bool limited = made.format->limits.points_per_table > 0 || made.format->limits.resolution > 1e-10;
+    fmt::print("! {} {:g} um: {}\n",
+               limited ? "the limits of the controller do not allow" : "no step that is tried reaches",
+               made.tolerance / kMicro,
+               limited ? limits_text(made.format->limits)
+                       : std::string("give --step for a finer table, or --tolerance for a coarser one"));
+  }
+  if (!arguments.superimpose.empty())
+    fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
+               arguments.superimpose);
+  for (const std::string& effect : made.effects_left_out) fmt::print("! {}\n", effect);
+  for (const std::string& sentence : unmeasured_travel(result)) fmt::print("! {}\n", sentence);
+  fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
+             fmt::join(file_names(made), ", "));
+}
+
+nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments& arguments,
+                                   const Machine& machine) {
+  nlohmann::ordered_json json = {{"format", arguments.format},
+                                 {"files", file_names(made)},
+                                 {"type", made.options.type.name()},
+                                 {"tool", tool_of(machine, made.options).name},
+                                 {"step_mm", made.options.step / kMetrePerMillimetre},
+                                 {"error_left", volume_check_json(made.check)},
+                                 {"verified", made.format->verified},
+                                 {"effects_in_no_table", made.effects_left_out}};
+  if (!arguments.dry_run) json["folder"] = arguments.output;
+  if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;
+  if (made.tolerance > 0.0) {
+    json["tolerance_um"] = made.tolerance / kMicro;
+    json["deviation_um"] = made.step.deviation / kMicro;
+    json["tolerance_reached"] = made.step.reached;
+  }
+  return json;
+}
+
+int list_formats(bool json) {
+  if (json) {
+    fmt::print("{}\n", table_formats_json().dump(2));
+  } else {
+    fmt::print("{}", table_formats_text());
+  }
+  return kDone;
+}
+
+FitResult aligned_result(const TablesArguments& arguments) {
+  if (!arguments.output.empty() && !arguments.dry_run) {
+    require_output_folder(arguments.output, {arguments.result});
+  }
+  FitResult result = read_known_errors(arguments.result);
+  if (!arguments.alignment.any()) return result;
+  return align_result(result, alignment_of(result, arguments.alignment)).result;
+}
+
+int run_tables(const TablesArguments& arguments) {
+  if (arguments.list) return list_formats(arguments.json);
+  require_something_to_do(arguments);
+  const FitResult result = aligned_result(arguments);
+  if (arguments.conditions.no_extrapolation && makes_tables(arguments)) require_measured_travel(result);
+  const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
+  std::optional<MadeTables> made;
+  if (makes_tables(arguments)) made = make_tables(result, arguments);
+  if (made && !arguments.dry_run) write_files(*made, arguments.output);
+  if (arguments.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    if (made) json = tables_json(*made, arguments, result.machine);
+    json["invisible"] = result.rank.invisible;
+    json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
+    json["beyond_readings"] = unmeasured_travel(result);
+    if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
+    if (made && !errors.empty())
+      json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
+    fmt::print("{}\n", json_text(json, 2));
+  } else {
+    if (!made) fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
+    fmt::print("{}", volumetric_text(result, errors));
+    if (made) {
+      fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
+      print_tables(*made, arguments, result);
+    }
+    for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+  }
+  return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
+}
+
+void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
+  app.add_option("-f,--format", arguments.format, format_help())
+      ->check(CLI::Validator(check_format_name, "FORMAT"));
+  app.add_option("--type", arguments.type,
+                 "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG joined by +, or L-VOL; "
+                 "default: all that the format can do");
+  app.add_option("--tool", arguments.tool,
+                 "tool that the compensation is for, default the first; with --at, default every tool");
+  auto* step =
+      app.add_option("--step", arguments.step_mm, "between the positions of a table, mm; default: chosen")
+          ->check(positive());
+  app.add_option(
+         "--tolerance", arguments.tolerance_um,
+         "choose the largest round step at which the tables, read back, follow the ideal compensation "
+         "this closely, um; default 0.2")
+      ->check(positive())
+      ->excludes(step);
+  app.add_option(
+      "--lines", arguments.lines,
+      "where the specific lines of L-POS, L-STR and L-SQU cross, X=500,Y=300,Z=200 in mm, axes not "
+      "named at home; default: the middle of the travel");
+  app.add_option("--set", arguments.settings, "NAME=VALUE, a setting of the format (--list)");
+  app.add_option("--superimpose", arguments.superimpose,
+                 "folder of the tables that were active while the machine was measured: the new ones replace "
+                 "them and correct both (ISO/TR 16907, 10.5)");
+  app.add_option("--record", arguments.records,
+                 fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
+                             fmt::join(recordable_conditions(), ", ")));
+  app.add_flag("--dry-run", arguments.dry_run, "write nothing: say what the tables would leave");
+  app.add_flag("--list", arguments.list, "list formats, types and limits");
+}
+
+std::function<int()> define_tables(CLI::App& app) {
+  auto arguments = std::make_shared<TablesArguments>();
+  app.add_option("RESULT", arguments->result,
+                 "result folder of volcal fit, model.toml with values, or folder of tables --format csv");
+  app.add_option("-o,--output", arguments->output, "folder for the tables");
+  add_compensation_options(app, *arguments);
+  add_alignment_options(app, arguments->alignment);
+  app.add_option("--positions", arguments->positions,
+                 "rows per function of the csv tables; default: round steps, 21 to 51 rows")
+      ->check(CLI::Range(2, 100000));
+  app.add_option("--grid", arguments->grid, "points per axis of the volumetric grid of the csv tables")
+      ->check(CLI::Range(1, 301));
+  app.add_option("--zero", arguments->zero,
+                 "csv tables with reversal: mean of both directions is zero at home, or the + direction "
+                 "(ISO/TR 16907, Table 1)")
+      ->check(CLI::IsMember({"mean", "plus"}));
+  app.add_option(
+      "--at", arguments->at,
+      "print the volumetric error at a point, X=100,Y=50 in mm and deg, axes not named at home, and with "
+      "-o or --dry-run what the tables add to the command there; may be given several times");
+  app.add_option("--approach", arguments->approach,
+                 "X+,Y-: direction in which --at is approached; axes not named: mean of both");
+  add_conditions_options(app, arguments->conditions);
+  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  return [arguments] { return run_tables(*arguments); };
+}
+
+}  // namespace
+
+const Command& tables_command() {
+  static const Command command = {
+      "tables",
+      "write the tables of an identified machine for a controller and say what they leave, or print its "
+      "error at points",
+      "  volcal tables --list\n"
+      "  volcal tables result -o tables\n"
+      "  volcal tables result --positions 101 --grid 9 -o tables\n"
+      "  volcal tables result --format csv --tool long --dry-run\n"
+      "  volcal tables result --align spindle --origin Z=0 -o tables\n"
+      "  volcal tables again --format neutral-csv --superimpose tables -o tables-2\n"
+      "  volcal tables result --at X=100,Y=250,Z=-80 --tool long\n",
+      define_tables};
+  return command;
+}
+
+}  // namespace volcal::cli

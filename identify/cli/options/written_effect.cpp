@@ -1,0 +1,152 @@
+#include "volcal/identify/cli/options/written_effect.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/kinds/custom.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal::cli {
+namespace {
+
+const std::string kForm =
+    "write \"TARGET: expression\" or \"TARGET += expression\", as in \"EZX: abs(x) / 400 * dir_x\"";
+
+[[noreturn]] void refuse(const std::string& option, const std::string& text, std::size_t column,
+                         const std::string& problem, const std::string& remedy) {
+  throw InputError({}, fmt::format("{} \"{}\", column {}: {}", option, text, column, problem), remedy);
+}
+
+/// Text between two indices with the spaces at its ends taken off; `at`: where it begins.
+struct Piece {
+  std::string text;
+  std::size_t at = 0;
+};
+
+Piece trimmed_piece(const std::string& text, std::size_t begin, std::size_t end) {
+  while (begin < end && text[begin] == ' ') ++begin;
+  while (end > begin && text[end - 1] == ' ') --end;
+  return {text.substr(begin, end - begin), begin};
+}
+
+struct TargetAndExpression {
+  Piece target, expression;
+};
+
+/// The first ": " or "+=" parts the two; an expression may hold further colons, as in x > 0 ? 1 : 2.
+TargetAndExpression parted(const std::string& option, const std::string& text) {
+  const std::size_t colon = text.find(':'), plus = text.find("+=");
+  const bool adds = plus < colon;
+  const std::size_t end = adds ? plus : colon;
+  if (end == std::string::npos) refuse(option, text, text.size() + 1, "it names no target", kForm);
+  TargetAndExpression parts{trimmed_piece(text, 0, end),
+                            trimmed_piece(text, end + (adds ? 2 : 1), text.size())};
+  if (parts.target.text.empty()) refuse(option, text, 1, "it names no target", kForm);
+  if (parts.expression.text.empty())
+    refuse(option, text, text.size() + 1, "the expression is missing", kForm);
+  return parts;
+}
+
+/// A parameter's value and, where it is to be estimated, its standard uncertainty before the fit.
+struct Parameter {
+  std::string name;
+  double value = 0.0;
+  std::optional<double> sigma;
+};
+
+std::optional<double> finite_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  return whole ? std::optional(value) : std::nullopt;
+}
+
+Parameter parameter_of(const std::string& text) {
+  const std::size_t equals = text.find('='), spread = text.find("+-");
+  const std::string remedy =
+      "write p=250 (held) or p=250+-50 (estimated, from 250 with a standard uncertainty of 50)";
+  const std::string what = "--parameter " + text + ": ";
+  if (equals == std::string::npos) throw InputError({}, what + "it has no value", remedy);
+  Parameter parameter{.name = text.substr(0, equals), .value = 0.0, .sigma = {}};
+  if (parameter.name != "p" && parameter.name != "q")
+    throw InputError({}, what + "parameters of an expression are p and q", remedy);
+  const auto value =
+      finite_number(text.substr(equals + 1, spread == std::string::npos ? spread : spread - equals - 1));
+  if (!value) throw InputError({}, what + "its value is no number", remedy);
+  parameter.value = *value;
+  if (spread == std::string::npos) return parameter;
+  const auto sigma = finite_number(text.substr(spread + 2));
+  if (!sigma || *sigma <= 0.0)
+    throw InputError({}, what + "its standard uncertainty is no number greater than 0", remedy);
+  parameter.sigma = sigma;
+  return parameter;
+}
+
+void set_parameters(const std::string& option, const std::string& text, const Piece& expression,
+                    const std::vector<std::string>& given, EffectSpec& spec) {
+  const Expression formula = custom_expression(expression.text);
+  for (const std::string& each : given) {
+    const Parameter parameter = parameter_of(each);
+    if (spec.options.number(parameter.name))
+      throw InputError({}, "--parameter " + each + ": " + parameter.name + " is given twice",
+                       "leave one out");
+    if (!formula.uses(parameter.name))
+      throw InputError({}, "--parameter " + each + ": the expression does not use " + parameter.name,
+                       "leave it out, or write " + parameter.name + " into the expression");
+    spec.options.set(parameter.name, parameter.value);
+    if (parameter.sigma) spec.options.set(parameter.name + "_sigma", *parameter.sigma);
+  }
+  for (const std::string name : {"p", "q"}) {
+    if (!formula.uses(name) || spec.options.number(name)) continue;
+    refuse(option, text, expression.at + formula.character_of(name),
+           "the expression uses " + name + ", which has no value",
+           fmt::format("add --parameter {0}=250 (held) or --parameter {0}=250+-50 (estimated)", name));
+  }
+}
+
+}  // namespace
+
+void add_parameter_option(CLI::App& app, std::vector<std::string>& parameters) {
+  app.add_option("--parameter", parameters,
+                 "p or q of the expression: p=250 is held, p=250+-50 estimated; may be given several times")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+WrittenEffect written_effect(const std::string& option, const std::string& text,
+                             const std::vector<std::string>& parameters) {
+  const auto [target, expression] = parted(option, text);
+  WrittenEffect effect;
+  effect.spec.kind = "custom";
+  effect.spec.options.set("target", target.text);
+  effect.spec.options.set("expression", expression.text);
+  try {
+    set_parameters(option, text, expression, parameters, effect.spec);
+  } catch (const ExpressionError& error) {
+    const std::string token = error.token().empty() ? "at the end" : "\"" + error.token() + "\"";
+    refuse(option, text, expression.at + error.character(), error.problem() + ", " + token,
+           custom_expression_names());
+  }
+  try {
+    effect.made = find_effect(effect.spec.kind)->make(effect.spec, {});
+  } catch (const InputError& error) {
+    const bool of_target = error.problem().find("is no target") != std::string::npos;
+    refuse(option, text, (of_target ? target.at : expression.at) + 1, error.problem(), error.remedy());
+  }
+  return effect;
+}
+
+void require_axes(const WrittenEffect& effect, const Machine& machine) {
+  for (const EffectAmplitude& amplitude : effect.made->amplitudes()) {
+    if (amplitude.target.kind != TargetKind::Motion || machine.has_axis(amplitude.target.symbol.axis))
+      continue;
+    throw InputError({}, amplitude.label + " acts on an axis that the model's machine does not have",
+                     "name an error motion of one of the machine's axes");
+  }
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,384 @@
+#include "volcal/identify/errors/alignment.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/reversal_label.h"
+
+namespace volcal {
+namespace {
+
+using Functional = Eigen::RowVectorXd;                        ///< of (parameters, 1)
+using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as function of (parameters, 1)
+
+constexpr double kHolds = 1e-9;         // largest misfit of 1, or of a slope over the travel, in a basis
+constexpr double kSameOrigin = 1e-9;    // m
+constexpr double kLargestTilt = 10e-3;  // rad
+
+Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
+
+/// a x e, column by column.
+VectorRows crossed(const VectorRows& a, const Eigen::Vector3d& e) {
+  VectorRows result(3, a.cols());
+  for (Eigen::Index column = 0; column < a.cols(); ++column)
+    result.col(column) = Eigen::Vector3d(a.col(column)).cross(e);
+  return result;
+}
+
+/// Coefficients of `value` + `slope` (q - from); InputError when the basis does not hold it.
+Eigen::VectorXd straight_line(const Basis& basis, ErrorSymbol symbol, double value, double slope,
+                              double from) {
+  const BasisMoments moment = moments(basis);
+  const Eigen::VectorXd right = (value - slope * from) * moment.zeroth + slope * moment.first;
+  Eigen::VectorXd coefficients = least_squares(gram(basis, 0), right).solution;
+  const std::vector<double> ends = basis.pieces();
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    for (const double q : {ends[i], 0.5 * (ends[i] + ends[i + 1]), ends[i + 1]}) {
+      if (std::abs(basis.row(q).dot(coefficients) - value - slope * (q - from)) > kHolds)
+        throw InputError({}, "the basis of " + symbol.name() + " does not hold a constant and a slope",
+                         "fit with a B-spline or a Legendre basis for it");
+    }
+  }
+  return coefficients;
+}
+
+/// Parameters of the machine itself; the others belong to the campaign.
+bool belongs_to_machine(const ParameterBlock& block) { return block.kind != ParameterKind::Nuisance; }
+
+class Realignment {
+ public:
+  Realignment(const FitResult& result, const Alignment& alignment)
+      : old_(result), to_(alignment), machine_(result.machine) {
+    machine_.datum = alignment.datum;
+    for (const AxisName axis : kLinearAxes) {
+      if (alignment.origin) axis_of(axis).home = (*alignment.origin)[index_of(axis)];
+    }
+    for (const AxisName axis : kLinearAxes) direction_[index_of(axis)] = direction(axis);
+    phi_ = frame_rotation();
+  }
+
+  AlignedResult aligned() {
+    AlignedResult aligned{old_};
+    FitResult& result = aligned.result;
+    const Eigen::MatrixXd jacobian = parameter_rows(result.layout);
+    const Eigen::Index size = old_.parameters.size();
+    result.parameters = jacobian * extended();
+    const Eigen::MatrixXd inner = jacobian.leftCols(size);
+    result.covariance = inner * old_.covariance * inner.transpose();
+    aligned.frame_rotation = phi_ * extended();
+    aligned.frame_covariance = phi_.leftCols(size) * old_.covariance * phi_.leftCols(size).transpose();
+    turn_tools();
+    result.machine = machine_;
+    result.adjustment = nullptr;
+    result.residuals.clear();
+    update_model(result);
+    update_rank(result);
+    return aligned;
+  }
+
+ private:
+  Axis& axis_of(AxisName name) { return *std::ranges::find(machine_.axes, name, &Axis::name); }
+  Eigen::Index columns() const { return old_.parameters.size() + 1; }
+  Eigen::VectorXd extended() const {
+    Eigen::VectorXd values(columns());
+    values << old_.parameters, 1.0;
+    return values;
+  }
+
+  /// Puts `weights` of a function's coefficients into a functional; nothing where it is switched off.
+  Functional of_coefficients(ErrorSymbol symbol, const auto& weights) const {
+    Functional row = Functional::Zero(columns());
+    const auto place = old_.layout.find(symbol);
+    if (!place) return row;
+    const FunctionGroup& group = old_.layout.groups[static_cast<std::size_t>(place->group)];
+    const Eigen::VectorXd values = weights(*group.basis);
+    for (int j = 0; j < group.basis->size(); ++j) row[group.index(j, place->slot)] = values[j];
+    return row;
+  }
+  Functional at_origin(ErrorSymbol symbol) const {
+    const double home = machine_.axis(symbol.axis).home;
+    return of_coefficients(symbol, [home](const Basis& basis) { return basis.row(home); });
+  }
+  /// Least-squares slope over the travel (datum.h); of straightness functions alone.
+  Functional slope(ErrorSymbol symbol) const {
+    if (!symbol.is_straightness()) return Functional::Zero(columns());
+    const Axis& axis = machine_.axis(symbol.axis);
+    const double middle = 0.5 * (axis.travel_min + axis.travel_max), length = axis.travel();
+    return of_coefficients(symbol, [=](const Basis& basis) {
+      const BasisMoments moment = moments(basis);
+      return Eigen::VectorXd(12.0 / (length * length * length) * (moment.first - middle * moment.zeroth));
+    });
+  }
+
+  VectorRows angles_at_origin(AxisName axis) const {
+    VectorRows rows(3, columns());
+    for (const Component component : {Component::A, Component::B, Component::C})
+      rows.row(direction_of(component)) = at_origin({component, axis});
+    return rows;
+  }
+
+  /// Mean direction of an axis minus its nominal one: squareness, straightness slopes, angles at the new
+  /// origin of the axes that carry it.
+  VectorRows direction(AxisName axis) const {
+    const Eigen::Vector3d e = axis_vector(axis);
+    VectorRows rows = VectorRows::Zero(3, columns());
+    for (const ParameterBlock& block : old_.layout.blocks) {
+      if (!block.location || block.location->axis != axis) continue;
+      rows.col(block.offset) +=
+          axis_vector(kAllAxes[static_cast<std::size_t>(direction_of(block.location->component))]).cross(e);
+    }
+    for (const Component component : {Component::X, Component::Y, Component::Z})
+      rows.row(direction_of(component)) += slope({component, axis});
+    for (const Joint& joint : machine_.structure.joints) {
+      if (joint.axis == axis && !joint.workpiece_side) break;
+      if (!is_rotary(joint.axis)) rows += crossed(angles_at_origin(joint.axis), e);
+      if (joint.axis == axis) break;
+    }
+    return rows;
+  }
+
+  VectorRows frame_rotation() const {
+    const Datum& datum = machine_.datum;
+    const Eigen::Vector3d e_p = axis_vector(datum.primary), e_s = axis_vector(datum.secondary);
+    VectorRows reference = direction_[index_of(datum.primary)];
+    if (to_.spindle_tilt)
+      reference.col(columns() - 1) +=
+          Eigen::Vector3d(to_.spindle_tilt->x(), to_.spindle_tilt->y(), 0.0).cross(e_p);
+    const VectorRows across = -crossed(reference, e_p);
+    const Functional about_primary =
+        e_p.cross(e_s).transpose() * (direction_[index_of(datum.secondary)] - crossed(across, e_s));
+    return across + e_p * about_primary;
+  }
+
+  /// Direction error of an axis in the new frame.
+  VectorRows turned_direction(AxisName axis) const {
+    return direction_[index_of(axis)] - crossed(phi_, axis_vector(axis));
+  }
+
+  std::array<Functional, 3> squareness_rows() const {
+    const Datum& datum = machine_.datum;
+    const Eigen::Vector3d e_p = axis_vector(datum.primary), e_s = axis_vector(datum.secondary),
+                          e_t = axis_vector(datum.third());
+    const VectorRows secondary = turned_direction(datum.secondary), third = turned_direction(datum.third());
+    return {e_t.cross(e_s).transpose() * secondary, e_p.cross(e_t).transpose() * third,
+            e_s.cross(e_t).transpose() * third};
+  }
+
+  /// What is left between the primary axis and the direction of the frame; zero but for a tilted spindle.
+  Functional kept_slope(ErrorSymbol symbol) const {
+    if (!to_.spindle_tilt || symbol.axis != machine_.datum.primary || !symbol.is_straightness())
+      return Functional::Zero(columns());
+    return turned_direction(symbol.axis).row(direction_of(symbol.component));
+  }
+
+  void write_function(ErrorSymbol symbol, const FunctionGroup& group, int slot, Eigen::MatrixXd& rows) const {
+    const double home = machine_.axis(symbol.axis).home;
+    const Eigen::VectorXd one = straight_line(*group.basis, symbol, 1.0, 0.0, home);
+    const Functional constant = at_origin(symbol);
+    for (int j = 0; j < group.basis->size(); ++j) {
+      rows(group.index(j, slot), group.index(j, slot)) += 1.0;
+      rows.row(group.index(j, slot)) -= one[j] * constant;
+    }
+    if (!symbol.is_straightness()) return;
+    const Eigen::VectorXd line = straight_line(*group.basis, symbol, 0.0, 1.0, home);
+    const Functional change = kept_slope(symbol) - slope(symbol);
+    for (int j = 0; j < group.basis->size(); ++j) rows.row(group.index(j, slot)) += line[j] * change;
+  }
+
+  ParameterBlock location_block(LocationSymbol symbol) const {
+    ParameterBlock block;
+    block.kind = ParameterKind::Location;
+    block.name = symbol.name();
+    block.location = symbol;
+    block.labels = {""};
+    block.units = {"urad"};
+    block.si_per_unit = {1e-6};
+    block.guess = block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(1);
+    return block;
+  }
+
+  /// New parameters from (old ones, 1); gives `layout` the new blocks.
+  Eigen::MatrixXd parameter_rows(ParameterLayout& layout) const {
+    layout.blocks.clear();
+    layout.size = layout.function_size;
+    const auto append = [&layout](ParameterBlock block) {
+      block.offset = layout.size;
+      layout.size += block.size();
+      layout.blocks.push_back(std::move(block));
+    };
+    for (const LocationSymbol symbol : machine_.datum.squareness()) append(location_block(symbol));
+    for (const ParameterBlock& block : old_.layout.blocks) {
+      if (belongs_to_machine(block) && !block.location) append(block);
+    }
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(layout.size, columns());
+    for (const FunctionGroup& group : layout.groups) {
+      for (int slot = 0; slot < group.count(); ++slot)
+        write_function(group.symbols[static_cast<std::size_t>(slot)], group, slot, rows);
+    }
+    const std::array<Functional, 3> squareness = squareness_rows();
+    for (std::size_t i = 0; i < 3; ++i) rows.row(layout.blocks[i].offset) = squareness[i];
+    for (std::size_t i = 3; i < layout.blocks.size(); ++i) {
+      const ParameterBlock& block = layout.blocks[i];
+      rows.block(block.offset, old_.layout.find_block(block.name)->offset, block.size(), block.size())
+          .setIdentity();
+    }
+    return rows;
+  }
+
+  void turn_tools() {
+    Eigen::Vector3d turn = -(phi_ * extended());
+    for (const Joint& joint : machine_.structure.joints) {
+      if (!is_rotary(joint.axis)) turn += angles_at_origin(joint.axis) * extended();
+    }
+    for (Tool& tool : machine_.tools) tool.offset += turn.cross(tool.offset);
+  }
+
+  void update_model(FitResult& result) const {
+    for (auto& [symbol, function] : result.identified.functions) {
+      if (function.coefficients.empty() || !result.layout.find(symbol)) continue;
+      const Eigen::VectorXd values = result.layout.coefficients(symbol, result.parameters);
+      function.coefficients.assign(values.begin(), values.end());
+    }
+    result.identified.locations.clear();
+    result.identified.locations_off.clear();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ParameterBlock& block = result.layout.blocks[i];
+      result.identified.locations[*block.location] = result.parameters[block.offset];
+    }
+  }
+
+  /// A squareness of the new datum is as visible as the worst that it is made of.
+  void update_rank(FitResult& result) const {
+    auto& errors = result.rank.errors;
+    const auto is_location = [](const Observability& error) {
+      return LocationSymbol::parse(error.symbol).has_value();
+    };
+    Observability worst;
+    worst.visible_fraction = 1.0;
+    for (const Observability& error : errors) {
+      if (!is_location(error)) continue;
+      worst.visible_fraction = std::min(worst.visible_fraction, error.visible_fraction);
+      if (!error.visible) worst = error;
+    }
+    if (std::erase_if(errors, is_location) == 0) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const ParameterBlock& block = result.layout.blocks[i];
+      worst.symbol = block.name;
+      worst.u_rms = std::sqrt(std::max(0.0, result.covariance(block.offset, block.offset)));
+      worst.effective_parameters = 1.0;
+      errors.push_back(worst);
+    }
+  }
+
+  const FitResult& old_;
+  const Alignment& to_;
+  Machine machine_;
+  std::array<VectorRows, 3> direction_;
+  VectorRows phi_;
+};
+
+void check_linear_axes(const Machine& machine) {
+  for (const AxisName axis : kLinearAxes) {
+    if (!machine.has_axis(axis))
+      throw InputError({}, std::string("the machine has no axis ") + letter_of(axis),
+                       "a coordinate system is aligned to X, Y and Z");
+  }
+}
+
+void check_origin(const Machine& machine, const AxisPosition& origin) {
+  for (const AxisName name : kLinearAxes) {
+    const Axis& axis = machine.axis(name);
+    const double q = origin[index_of(name)];
+    if (q < axis.travel_min - kSameOrigin || q > axis.travel_max + kSameOrigin)
+      throw InputError({}, std::string("the origin lies outside the travel of ") + letter_of(name),
+                       "give a point within the travel");
+  }
+}
+
+bool moves_origin(const Machine& machine, const Alignment& alignment) {
+  return alignment.origin && std::ranges::any_of(kLinearAxes, [&](AxisName axis) {
+           return std::abs((*alignment.origin)[index_of(axis)] - machine.axis(axis).home) > kSameOrigin;
+         });
+}
+
+void check_parameters(const FitResult& result, bool origin_moves) {
+  for (const FunctionGroup& group : result.layout.groups) {
+    if (is_rotary(group.axis))
+      throw InputError({},
+                       std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified",
+                       "alignment is for machines whose linear axes alone are identified");
+  }
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location && is_rotary(block.location->axis))
+      throw InputError({}, block.name + " of a rotary axis is identified",
+                       "alignment is for machines whose linear axes alone are identified");
+    const bool refers_to_origin =
+        block.kind == ParameterKind::Expansion ||
+        ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&
+         !reversal_symbol(block.name));
+    if (origin_moves && refers_to_origin)
+      throw InputError({}, block.name + " refers to the origin that the fit had",
+                       "change home_mm in the machine file and fit again, or leave the origin where it is");
+  }
+}
+
+void check_spindle(const FitResult& result, const Alignment& alignment) {
+  if (!alignment.spindle_tilt) return;
+  if (alignment.datum.primary != AxisName::Z)
+    throw InputError({}, "the spindle is parallel to Z (ISO 841), the primary axis is not",
+                     "make Z the primary axis");
+  if (alignment.spindle_tilt->cwiseAbs().maxCoeff() > kLargestTilt)
+    throw InputError({}, "the spindle leans by more than 10 mrad", "give its tilt in microradians");
+  for (const Component component : {Component::X, Component::Y}) {
+    const ErrorSymbol symbol{component, AxisName::Z};
+    if (alignment.spindle_tilt->norm() > 0.0 && !result.layout.find(symbol))
+      throw InputError(
+          {}, symbol.name() + " is switched off and cannot hold the slope of Z to the spindle",
+          "fit with " + symbol.name() + " in a B-spline or Legendre basis, or align to the axis");
+  }
+}
+
+std::string alignment_words(const FitResult& result) {
+  std::string text = "primary " + std::string(1, letter_of(result.machine.datum.primary)) + ", secondary " +
+                     letter_of(result.machine.datum.secondary) + ", origin";
+  for (const AxisName axis : kLinearAxes) {
+    std::string value = std::to_string(result.machine.axis(axis).home * 1e3);
+    value.erase(value.find_last_not_of('0') + 1);
+    if (value.back() == '.') value.pop_back();
+    text += std::string(" ") + letter_of(axis) + "=" + value;
+  }
+  return text + " mm";
+}
+
+}  // namespace
+
+AlignedResult align_result(const FitResult& result, const Alignment& alignment) {
+  if (alignment.datum.primary == alignment.datum.secondary)
+    throw InputError({}, "primary and secondary axis are the same", "name two different axes");
+  check_linear_axes(result.machine);
+  if (alignment.origin) check_origin(result.machine, *alignment.origin);
+  check_parameters(result, moves_origin(result.machine, alignment));
+  check_spindle(result, alignment);
+  AlignedResult aligned = Realignment(result, alignment).aligned();
+  aligned.result.alignment =
+      alignment_words(aligned.result) + (alignment.spindle_tilt ? ", along the spindle" : "");
+  return aligned;
+}
+
+void adopt_alignment(Campaign& campaign, const FitResult& result) {
+  if (result.alignment.empty()) return;
+  campaign.machine.datum = result.machine.datum;
+  for (Axis& axis : campaign.machine.axes) {
+    if (result.machine.has_axis(axis.name)) axis.home = result.machine.axis(axis.name).home;
+  }
+  for (Tool& tool : campaign.machine.tools) {
+    const auto index = result.machine.tool_index(tool.name);
+    if (index) tool.offset = result.machine.tools[*index].offset;
+  }
+}
+
+}  // namespace volcal

@@ -1,0 +1,47 @@
+#pragma once
+/// An identified machine seen in another machine coordinate system: other primary and secondary axis, other
+/// origin, other reference direction (ISO/TR 16907:2015, 7.3, 10.2 and 11.3 d). Nothing is identified anew.
+///
+/// With dP the error of the functional point, q the axes' positions and t the tool, to first order
+///   dP'(q, t) = dP(q, t) - phi x q - tau(t)
+/// phi turns the machine frame, tau moves its origin. Both are linear in the parameters, so theta' = J theta
+/// + k and C' = J C J^T: errors are the same up to the rigid motion, and so is the covariance of what a rigid
+/// motion leaves. Angles that axes have at the new origin become directions of the axes that they carry, and
+/// turn the tools: offsets are stated in the new frame.
+
+#include <optional>
+#include <string>
+
+#include "volcal/identify/result/result.h"
+#include "volcal/model/description/campaign.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+struct Alignment {
+  Datum datum;
+  /// Of X, Y, Z, where every function is zero, m; absent = the axes' homes.
+  std::optional<AxisPosition> origin;
+  /// The frame's direction of the primary axis is the spindle's instead of the axis's own reference straight
+  /// line. The value is the rotation of the spindle against that line about x and about y, rad: zero where it
+  /// was set up parallel to the uncompensated motion. The primary axis must be Z, to which spindles are
+  /// parallel (ISO 841); what remains between its motion and the spindle stays in EXZ and EYZ as a slope.
+  std::optional<Eigen::Vector2d> spindle_tilt;
+};
+
+struct AlignedResult {
+  FitResult result;  ///< without the campaign's nuisance parameters, which belong to the former frame
+  Eigen::Vector3d frame_rotation = Eigen::Vector3d::Zero();    ///< phi, rad
+  Eigen::Matrix3d frame_covariance = Eigen::Matrix3d::Zero();  ///< of phi, rad^2
+};
+
+/// Throws InputError with a remedy: a machine without X, Y and Z or with identified rotary axes, primary =
+/// secondary, an origin outside the travel, a spindle with another primary axis than Z, a function whose
+/// basis cannot hold the constant or the slope, or effects that refer to the former origin.
+AlignedResult align_result(const FitResult& result, const Alignment& alignment);
+
+/// Readings of a campaign of the machine as it was identified, in the coordinate system of an aligned result:
+/// its datum, origin and tool offsets. Any other campaign and result stay as they are.
+void adopt_alignment(Campaign& campaign, const FitResult& result);
+
+}  // namespace volcal

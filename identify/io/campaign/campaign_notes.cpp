@@ -1,0 +1,123 @@
+#include "volcal/identify/io/campaign/campaign_notes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "volcal/identify/io/campaign/doubtful_readings.h"
+#include "volcal/identify/io/campaign/reading_columns.h"
+#include "volcal/identify/standards/approach.h"
+#include "volcal/identify/text/nearest_name.h"
+#include "volcal/identify/text/text_file.h"
+
+namespace volcal {
+namespace {
+
+std::string file_of(const Setup& setup) {
+  return printable(std::filesystem::path(setup.data).filename().string());
+}
+
+/// "direction_x" as it stands in a TOML text.
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : printable(name)) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
+
+bool in_milliseconds(const std::string& name) {
+  return name.find("[ms]") != std::string::npos || name.find("(ms)") != std::string::npos ||
+         name.ends_with("_ms");
+}
+
+/// Signs of approach of an axis that occur in the whole campaign.
+std::set<int> signs_of(const Campaign& campaign, AxisName axis,
+                       const std::vector<std::vector<std::int8_t>>& derived) {
+  std::set<int> signs;
+  for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+    signs.insert(derived[i].begin(), derived[i].end());
+    const auto& recorded = campaign.setups[i].readings.direction[index_of(axis)];
+    signs.insert(recorded.begin(), recorded.end());
+  }
+  signs.erase(0);
+  return signs;
+}
+
+/// By setup; empty where the file records the axis' directions or they are not to be derived.
+std::vector<std::vector<std::int8_t>> directions_from_order(const Campaign& campaign, AxisName axis,
+                                                            const std::vector<bool>& derive) {
+  std::vector<std::vector<std::int8_t>> derived(campaign.setups.size());
+  for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+    const Readings& readings = campaign.setups[i].readings;
+    if (!derive[i] || !readings.direction[index_of(axis)].empty()) continue;
+    for (const int sign : axis_approach(readings, axis)) derived[i].push_back(static_cast<std::int8_t>(sign));
+  }
+  return derived;
+}
+
+}  // namespace
+
+void note_unused_columns(const std::vector<UnusedColumn>& unused, const Setup& setup, Campaign& campaign) {
+  if (unused.empty()) return;
+  std::vector<std::string> names;
+  std::set<std::string> meant;
+  std::string keys, scale;
+  for (const UnusedColumn& column : unused) {
+    names.push_back(printable(column.name));
+    if (column.meant.empty() || !meant.insert(column.meant).second) continue;
+    keys += (keys.empty() ? "" : ", ") + column.meant + " = " + quoted(column.name);
+    if (column.meant == "time_s" && in_milliseconds(column.name)) scale = " and scale = { time_s = 0.001 }";
+  }
+  std::string note = fmt::format("setup \"{}\": {} of {} {} not read", printable(setup.name),
+                                 join_names(names), file_of(setup), names.size() == 1 ? "is" : "are");
+  if (!keys.empty()) note += fmt::format("; to read what is meant, add columns = {{ {} }}{}", keys, scale);
+  campaign.notes.push_back(note);
+}
+
+void note_doubtful_readings(Campaign& campaign) {
+  for (const Setup& setup : campaign.setups) {
+    const std::string where = "setup \"" + printable(setup.name) + "\" (" + file_of(setup) + "): ";
+    for (const std::string& doubt : doubts_of(setup, campaign.machine))
+      campaign.notes.push_back(where + doubt);
+  }
+  for (auto one = campaign.setups.begin(); one != campaign.setups.end(); ++one) {
+    const auto twin = std::find_if(campaign.setups.begin(), one,
+                                   [&](const Setup& other) { return same_readings(other, *one); });
+    if (twin == one) continue;
+    campaign.notes.push_back(
+        fmt::format("setups \"{}\" and \"{}\" hold the same readings: they count twice; remove one of them",
+                    printable(twin->name), printable(one->name)));
+  }
+}
+
+void derive_directions(const std::vector<bool>& derive, Campaign& campaign) {
+  std::vector<std::string> columns;
+  std::set<std::size_t> setups;
+  for (const Axis& axis : campaign.machine.axes) {
+    auto derived = directions_from_order(campaign, axis.name, derive);
+    if (signs_of(campaign, axis.name, derived).size() < 2) continue;
+    bool any = false;
+    for (std::size_t i = 0; i < derived.size(); ++i) {
+      if (std::ranges::all_of(derived[i], [](std::int8_t sign) { return sign == 0; })) continue;
+      campaign.setups[i].readings.direction[index_of(axis.name)] = std::move(derived[i]);
+      setups.insert(i);
+      any = true;
+    }
+    if (any) columns.push_back(direction_column(axis.name));
+  }
+  if (columns.empty()) return;
+  std::vector<std::string> names;
+  for (const std::size_t i : setups) names.push_back(printable(campaign.setups[i].name));
+  campaign.notes.push_back(fmt::format(
+      "directions of approach that the files do not record ({} in {}) follow from the order of the readings "
+      "along "
+      "each line; if they do not stand in the order in which they were measured, set directions = "
+      "\"as-recorded\"",
+      join_names(columns), join_names(names)));
+}
+
+}  // namespace volcal

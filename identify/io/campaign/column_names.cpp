@@ -1,0 +1,86 @@
+#include "volcal/identify/io/campaign/column_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "volcal/identify/io/campaign/reading_columns.h"
+#include "volcal/identify/text/nearest_name.h"
+
+namespace volcal {
+namespace {
+
+/// Words of a name in lower case; what stands in brackets is a unit and no word.
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words = {""};
+  for (const char c : name.substr(0, name.find_first_of("[("))) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte) != 0 || byte >= 0x80) {
+      words.back() += static_cast<char>(std::tolower(byte));
+    } else if (!words.back().empty()) {
+      words.emplace_back();
+    }
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+bool is_one_of(const std::string& word, std::initializer_list<std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
+}
+
+bool says_direction(const std::string& word) {
+  return is_one_of(word, {"dir", "direction", "approach", "sense", "richtung"});
+}
+
+/// "direction_x", "dirx", "x_dir"; "direction" alone where only one axis can be meant.
+std::string meant_direction(const std::vector<std::string>& words, const Machine& machine) {
+  for (const Axis& axis : machine.axes) {
+    const std::string letter(1, static_cast<char>(std::tolower(letter_of(axis.name))));
+    const bool split = words.size() == 2 && ((says_direction(words[0]) && words[1] == letter) ||
+                                             (words[0] == letter && says_direction(words[1])));
+    const bool joined =
+        words.size() == 1 && words[0].size() > 1 &&
+        ((words[0].ends_with(letter) && says_direction(words[0].substr(0, words[0].size() - 1))) ||
+         (words[0].starts_with(letter) && says_direction(words[0].substr(1))));
+    const bool alone = words.size() == 1 && says_direction(words[0]) && machine.axes.size() == 1;
+    if (split || joined || alone) return direction_column(axis.name);
+  }
+  return "";
+}
+
+/// "temp_x", "temperature spindle", "Temp": the words behind it name the channel.
+std::string meant_temperature(const std::vector<std::string>& words) {
+  if (!is_one_of(words.front(), {"temp", "temperature", "temperatur"})) return "";
+  std::string channel;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (is_one_of(words[i], {"degc", "c", "deg", "celsius"})) continue;
+    channel += (channel.empty() ? "" : "_") + words[i];
+  }
+  return "T_" + (channel.empty() ? "machine" : channel) + "_degC";
+}
+
+std::string meant_word(const std::string& word) {
+  if (is_one_of(word, {"time", "zeit", "timestamp", "t", "elapsed", "seconds"})) return "time_s";
+  if (is_one_of(word, {"feed", "feedrate", "vorschub"})) return "feed_mm_min";
+  if (is_one_of(word, {"run", "cycle", "lauf", "repeat", "repetition"})) return "run";
+  if (is_one_of(word, {"line", "pass", "path", "linie"})) return "line";
+  return "";
+}
+
+}  // namespace
+
+std::string meant_column(const std::string& name, const std::vector<std::string>& missing,
+                         const Machine& machine) {
+  const std::vector<std::string> words = words_of(name);
+  if (words.empty()) return "";
+  if (std::string temperature = meant_temperature(words); !temperature.empty()) return temperature;
+  std::string meant = meant_direction(words, machine);
+  if (meant.empty()) meant = meant_word(words.front());
+  if (meant.empty() && words.size() > 1 && says_direction(words[0])) return "";
+  if (meant.empty()) meant = nearest_name(name, missing).value_or("");
+  return std::ranges::find(missing, meant) == missing.end() ? "" : meant;
+}
+
+}  // namespace volcal

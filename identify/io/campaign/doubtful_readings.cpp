@@ -1,0 +1,145 @@
+#include "volcal/identify/io/campaign/doubtful_readings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "volcal/identify/io/campaign/reading_columns.h"
+#include "volcal/identify/standards/approach.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kFewestRepeats = 5;
+constexpr double kShareOfRepeats = 0.3;
+constexpr std::size_t kFewestMoves = 5;
+constexpr double kShareAgainstOrder = 0.8;
+constexpr double kSlowestStep_s = 1000.0;  // median between readings, over more than a day
+constexpr double kDay_s = 86400.0;
+constexpr double kFastest = 5.0;  // m/s between readings
+
+/// Everything that was read of a row.
+std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
+  std::vector<double> all;
+  for (const auto& column : readings.position) {
+    if (!column.empty()) all.push_back(column[row]);
+  }
+  for (const auto& column : readings.value) all.push_back(column[row]);
+  for (const auto& column : readings.direction) {
+    if (!column.empty()) all.push_back(column[row]);
+  }
+  if (!readings.time.empty()) all.push_back(readings.time[row]);
+  if (!readings.line.empty()) all.push_back(readings.line[row]);
+  if (!readings.run.empty()) all.push_back(readings.run[row]);
+  return all;
+}
+
+/// A time is read once: a row that repeats it is a copy. Without times equal readings may be chance.
+std::optional<std::string> repeated_rows(const Readings& readings) {
+  std::map<std::vector<double>, std::size_t> first;
+  std::size_t repeats = 0;
+  std::pair<std::size_t, std::size_t> example;
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    const auto [known, fresh] = first.emplace(values_of_row(readings, row), row);
+    if (fresh) continue;
+    if (repeats++ == 0) example = {known->second, row};
+  }
+  const bool many = repeats >= kFewestRepeats &&
+                    static_cast<double>(repeats) >= kShareOfRepeats * static_cast<double>(readings.size());
+  if (!many && (repeats == 0 || readings.time.empty())) return std::nullopt;
+  return fmt::format(
+      "{} of {} rows repeat an earlier row in every column, line {} that of line {}: each counts as a "
+      "measurement of its own; remove the copies",
+      repeats, readings.size(), readings.source_line[example.second], readings.source_line[example.first]);
+}
+
+/// Stated directions against the moves between neighbouring readings of a pass.
+std::optional<std::string> against_order(const Readings& readings, AxisName axis) {
+  const auto& stated = readings.direction[index_of(axis)];
+  const auto& position = readings.position[index_of(axis)];
+  if (stated.empty() || position.empty()) return std::nullopt;
+  std::size_t moves = 0, against = 0;
+  for (const Pass& pass : passes(readings)) {
+    for (std::size_t k = 1; k < pass.rows.size(); ++k) {
+      const double move = position[pass.rows[k]] - position[pass.rows[k - 1]];
+      const int direction = stated[pass.rows[k]];
+      if (direction == 0 || std::abs(move) <= kStandingRange) continue;
+      ++moves;
+      against += (move > 0.0) == (direction > 0) ? 0U : 1U;
+    }
+  }
+  const bool most = static_cast<double>(against) >= kShareAgainstOrder * static_cast<double>(moves);
+  if (moves < kFewestMoves || !most) return std::nullopt;
+  const std::string column = direction_column(axis);
+  return fmt::format("{} of {} moves of {} go against {}: if its sign is reversed add scale = {{ {} = -1 }}",
+                     against, moves, letter_of(axis), column, column);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Distance along the linear axes between two rows.
+double travelled(const Readings& readings, std::size_t from, std::size_t to) {
+  double squares = 0.0;
+  for (const AxisName axis : kAllAxes) {
+    const auto& position = readings.position[index_of(axis)];
+    if (is_rotary(axis) || position.empty()) continue;
+    squares += std::pow(position[to] - position[from], 2);
+  }
+  return std::sqrt(squares);
+}
+
+std::optional<std::string> doubtful_time(const Readings& readings) {
+  const auto& time = readings.time;
+  if (time.size() < 3) return std::nullopt;
+  std::vector<double> steps, speeds;
+  for (std::size_t row = 1; row < time.size(); ++row) {
+    const double step = time[row] - time[row - 1];
+    if (!(step > 0.0)) continue;
+    steps.push_back(step);
+    const double way = travelled(readings, row - 1, row);
+    if (way > kSamePosition) speeds.push_back(way / step);
+  }
+  if (steps.empty()) return std::nullopt;
+  const auto [first, last] = std::ranges::minmax(time);
+  const double step = median(steps);
+  if (step >= kSlowestStep_s && last - first > kDay_s) {
+    return fmt::format(
+        "its readings are {:.0f} s apart and span {:.1f} days: if the times are in milliseconds add scale = "
+        "{{ time_s = 0.001 }}",
+        step, (last - first) / kDay_s);
+  }
+  if (speeds.empty() || median(speeds) <= kFastest) return std::nullopt;
+  return fmt::format(
+      "by its times the machine moved at {:.0f} m/s between readings: are they in minutes, hours or days? "
+      "add "
+      "scale = {{ time_s = 60.0 }}, 3600.0 or 86400.0",
+      median(speeds));
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_of(const Setup& setup, const Machine& machine) {
+  std::vector<std::string> doubts;
+  const auto add = [&](std::optional<std::string> doubt) {
+    if (doubt) doubts.push_back(*std::move(doubt));
+  };
+  add(repeated_rows(setup.readings));
+  for (const Axis& axis : machine.axes) add(against_order(setup.readings, axis.name));
+  add(doubtful_time(setup.readings));
+  return doubts;
+}
+
+bool same_readings(const Setup& one, const Setup& other) {
+  const Readings &a = one.readings, &b = other.readings;
+  return one.instrument == other.instrument && one.tool == other.tool && a.size() > 1 &&
+         a.column_set == b.column_set && a.value == b.value && a.position == b.position && a.time == b.time;
+}
+
+}  // namespace volcal

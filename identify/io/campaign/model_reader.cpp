@@ -1,0 +1,415 @@
+#include "volcal/identify/io/campaign/model_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "volcal/identify/io/campaign/machine_reader.h"
+#include "volcal/identify/text/nearest_name.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/identify/text/toml_document.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::int64_t kMostIntervals = 500;
+constexpr double kSamePosition = 1e-9;  // m or rad
+
+std::string coefficient_key(ErrorSymbol symbol) {
+  return "coefficients_" + std::string(edge_unit(symbol.component));
+}
+
+/// Location errors that exist on a machine: the datum's three squareness errors, and of each rotary axis all
+/// but the displacement along it.
+std::vector<LocationSymbol> location_symbols(const Machine& machine) {
+  std::vector<LocationSymbol> symbols;
+  for (const LocationSymbol& symbol : machine.datum.squareness()) {
+    if (machine.has_axis(symbol.axis)) symbols.push_back(symbol);
+  }
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) {
+      const bool along = !is_rotation(component) && direction_of(component) == direction_of(axis.name);
+      if (!along) symbols.push_back({component, axis.name});
+    }
+  }
+  return symbols;
+}
+
+std::vector<std::string> function_names(const Machine& machine) {
+  std::vector<std::string> names = {"default"};
+  for (const Axis& axis : machine.axes) {
+    for (const Component component : kAllComponents)
+      names.push_back(ErrorSymbol{component, axis.name}.name());
+  }
+  return names;
+}
+
+class ModelReader {
+ public:
+  ModelReader(const TomlDocument& document, const std::string& file, const Machine& machine)
+      : document_(document), root_(document.root()), machine_(machine) {
+    spec_.file = file;
+  }
+
+  ModelSpec read() {
+    document_.require_format(kModelFormat);
+    root_.know("machine");
+    root_.text("name");
+    read_functions();
+    read_locations();
+    read_priors();
+    read_effects();
+    document_.reject_unknown();
+    check_default();
+    return std::move(spec_);
+  }
+
+ private:
+  void read_functions() {
+    const auto functions = root_.table("functions");
+    if (!functions) return;
+    if (const auto table = functions->table("default")) spec_.default_function = read_default(*table);
+    for (const std::string& name : functions->keys()) {
+      if (name == "default") continue;
+      const auto symbol = ErrorSymbol::parse(name);
+      if (!symbol || !machine_.has_axis(symbol->axis)) {
+        reject_location_as_function(*functions, name);
+        functions->fail(name, "functions." + printable(name) + " is no error motion of this machine",
+                        suggest_name(name, function_names(machine_), "functions"));
+      }
+      spec_.functions[*symbol] = read_function(functions->required_table(name), *symbol);
+    }
+  }
+
+  /// A squareness or another location error is one number and stands in a table of its own.
+  void reject_location_as_function(const TomlTable& functions, const std::string& name) const {
+    const auto location = LocationSymbol::parse(std::string(stem_of_key(name)));
+    if (!location) return;
+    const auto known = location_symbols(machine_);
+    const std::string symbol = location->name();
+    if (std::ranges::find(known, *location) != known.end()) {
+      functions.fail(name, "functions." + printable(name) + " is a location error, no error motion",
+                     "write it below [locations]: " + symbol + " = \"zero\" switches it off, " + symbol +
+                         "_" + std::string(edge_unit(location->component)) + " = NUMBER states it");
+    }
+    functions.fail(name,
+                   "functions." + printable(name) + " is a location error that this machine does not have",
+                   "remove the line; " + location_remedy(known));
+  }
+
+  FunctionSpec read_default(const TomlTable& table) {
+    for (const char* key : {"knots_mm", "knots_deg", "coefficients_um", "coefficients_urad"}) {
+      if (table.has(key)) {
+        table.fail(key, "functions.default." + std::string(key) + " cannot hold for every function",
+                   "give it to one function, as in EXX = { " + std::string(key) + " = [...] }");
+      }
+    }
+    return read_basis(table, FunctionSpec{});
+  }
+
+  FunctionSpec read_function(const TomlTable& table, ErrorSymbol symbol) {
+    FunctionSpec spec = read_basis(table, spec_.default_function);
+    const Axis& axis = machine_.axis(symbol.axis);
+    const BasisKind& kind = *find_basis(spec.basis);
+    if (is_rotary(symbol.axis) ? !kind.rotary_axes : !kind.linear_axes) {
+      table.fail("basis",
+                 table.path() + ": the basis \"" + spec.basis + "\" does not fit " +
+                     (is_rotary(symbol.axis) ? "a rotary axis" : "a linear axis"),
+                 "choose one of " + join_names(basis_names()));
+    }
+    read_breakpoints(table, axis, kind, spec);
+    read_coefficients(table, symbol, axis, kind, spec);
+    return spec;
+  }
+
+  FunctionSpec read_basis(const TomlTable& table, const FunctionSpec& inherited) {
+    FunctionSpec spec = inherited;
+    if (const auto basis = table.choice("basis", basis_names()); basis && *basis != inherited.basis) {
+      spec = FunctionSpec{};
+      spec.basis = *basis;
+    }
+    const BasisKind& kind = *find_basis(spec.basis);
+    if (table.has("degree")) {
+      if (kind.degree_max == 0) {
+        table.fail("degree", table.path() + ": the basis \"" + spec.basis + "\" has no degree",
+                   "remove degree");
+      }
+      spec.degree = static_cast<int>(*table.integer("degree", kind.degree_min, kind.degree_max));
+    }
+    if (table.has("knots")) read_knots(table, kind, spec);
+    return spec;
+  }
+
+  static void require_knots(const TomlTable& table, const std::string& key, const BasisKind& kind) {
+    if (kind.uses_knots) return;
+    table.fail(key, table.path() + ": the basis \"" + std::string(kind.name) + "\" has no knots",
+               "remove " + key + " or choose basis = \"bspline\"");
+  }
+
+  static void read_knots(const TomlTable& table, const BasisKind& kind, FunctionSpec& spec) {
+    require_knots(table, "knots", kind);
+    const std::string path = table.path() + ".knots";
+    switch (table.kind("knots")) {
+      case TomlKind::Text:
+        table.choice("knots", {"auto"});
+        spec.knots = KnotChoice::Automatic;
+        return;
+      case TomlKind::Integer:
+        spec.knots = KnotChoice::IntervalCount;
+        spec.intervals = static_cast<int>(*table.integer("knots", 1, kMostIntervals));
+        return;
+      default:
+        table.fail("knots", path + " is neither \"auto\" nor a number of intervals",
+                   "write knots = \"auto\", knots = 8, or breakpoints as knots_mm = [...] (knots_deg on a "
+                   "rotary axis)");
+    }
+  }
+
+  void read_breakpoints(const TomlTable& table, const Axis& axis, const BasisKind& kind, FunctionSpec& spec) {
+    const bool rotary = is_rotary(axis.name);
+    const std::string key = rotary ? "knots_deg" : "knots_mm";
+    const std::string other = rotary ? "knots_mm" : "knots_deg";
+    if (!table.has(key)) {
+      if (table.has(other)) table.fail(other, "unknown key " + table.path() + "." + other, "write " + key);
+      return;
+    }
+    require_knots(table, key, kind);
+    if (table.has("knots")) {
+      table.fail("knots", table.path() + " has both knots and " + key, "keep one of the two");
+    }
+    spec.knots = KnotChoice::Explicit;
+    spec.breakpoints = *table.numbers(key);
+    const std::string name = table.path() + "." + key;
+    if (spec.breakpoints.size() < 2)
+      table.fail(key, name + " needs at least two breakpoints", "both ends included");
+    if (!std::ranges::is_sorted(spec.breakpoints, std::less_equal{})) {
+      table.fail(key, name + " is not strictly ascending", "sort the breakpoints, each once");
+    }
+    const bool ends_fit = std::abs(spec.breakpoints.front() - axis.travel_min) <= kSamePosition &&
+                          std::abs(spec.breakpoints.back() - axis.travel_max) <= kSamePosition;
+    if (!ends_fit) {
+      table.fail(key, name + " does not begin and end at the travel of " + letter_of(axis.name),
+                 std::string("first and last breakpoint are the ends of travel_") + (rotary ? "deg" : "mm"));
+    }
+  }
+
+  void read_coefficients(const TomlTable& table, ErrorSymbol symbol, const Axis& axis, const BasisKind& kind,
+                         FunctionSpec& spec) {
+    const std::string key = coefficient_key(symbol);
+    if (!table.has(key)) return;
+    spec.coefficients = *table.numbers(key);
+    const std::string name = table.path() + "." + key;
+    if (kind.uses_knots && spec.knots == KnotChoice::Automatic) {
+      table.fail(key, name + " needs fixed knots", "add knots_mm (knots_deg), or knots = INTERVALS");
+    }
+    if (spec.knots == KnotChoice::IntervalCount) spec.breakpoints = uniform_breakpoints(axis, spec.intervals);
+    const std::size_t expected = basis_size(table, axis, kind, spec);
+    if (spec.coefficients.size() != expected) {
+      table.fail(key, name + " has " + std::to_string(spec.coefficients.size()) + " values",
+                 "this basis has " + std::to_string(expected) + " coefficients");
+    }
+  }
+
+  static std::size_t basis_size(const TomlTable& table, const Axis& axis, const BasisKind& kind,
+                                const FunctionSpec& spec) {
+    try {
+      return static_cast<std::size_t>(kind.make(spec, axis)->size());
+    } catch (const std::invalid_argument& error) {
+      table.fail("basis", table.path() + ": " + error.what(), "see the documentation of the basis");
+    }
+  }
+
+  /// The default basis must fit every axis of which a function is left to it.
+  void check_default() const {
+    const BasisKind& kind = *find_basis(spec_.default_function.basis);
+    for (const Axis& axis : machine_.axes) {
+      if (is_rotary(axis.name) ? kind.rotary_axes : kind.linear_axes) continue;
+      for (const Component component : kAllComponents) {
+        const ErrorSymbol symbol{component, axis.name};
+        if (spec_.functions.contains(symbol)) continue;
+        root_.fail("functions",
+                   "the default basis \"" + spec_.default_function.basis + "\" does not fit " + symbol.name(),
+                   "give " + symbol.name() + " its own basis");
+      }
+    }
+  }
+
+  void read_locations() {
+    const auto table = root_.table("locations");
+    if (!table) return;
+    for (const std::string& key : table->keys()) {
+      const std::string stem(stem_of_key(key));
+      const auto symbol = LocationSymbol::parse(stem);
+      const auto known = location_symbols(machine_);
+      if (!symbol || std::ranges::find(known, *symbol) == known.end()) fail_location(*table, key, known);
+      if (table->kind(stem) == TomlKind::Text) {
+        table->choice(stem, {"zero"});
+        spec_.locations_off.push_back(*symbol);
+        continue;
+      }
+      const std::string wanted = stem + "_" + std::string(edge_unit(symbol->component));
+      if (key != wanted) {
+        table->fail(key, "unknown key locations." + key,
+                    "write " + wanted + " = NUMBER, or " + stem + " = \"zero\"");
+      }
+      spec_.locations[*symbol] = *table->number(key);
+    }
+  }
+
+  void read_priors() {
+    const auto table = root_.table("priors");
+    if (!table) return;
+    const auto width = [&](const char* key) {
+      const auto value = table->number(key);
+      if (value && *value <= 0.0) {
+        table->fail(key, "priors." + std::string(key) + " is a standard deviation and must be positive",
+                    "leave it out for the program's own");
+      }
+      return value;
+    };
+    spec_.priors = {width("displacement_um"), width("rotation_urad"), width("squareness_mrad")};
+  }
+
+  void fail_location(const TomlTable& table, const std::string& key,
+                     const std::vector<LocationSymbol>& known) const {
+    table.fail(key, "locations." + printable(key) + " is no location error of this machine",
+               location_remedy(known));
+  }
+
+  std::string location_remedy(const std::vector<LocationSymbol>& known) const {
+    if (known.empty()) return "a machine with one linear axis has no squareness";
+    std::vector<std::string> names;
+    names.reserve(known.size());
+    for (const LocationSymbol& symbol : known) names.push_back(symbol.name());
+    return std::string("with primary ") + letter_of(machine_.datum.primary) + " and secondary " +
+           letter_of(machine_.datum.secondary) + " the location errors are " + join_names(names);
+  }
+
+  /// An effect states its amplitude in one unit, that of what it acts on; the schema has all of them.
+  void check_units(const TomlTable& table, const EffectKind& kind, const EffectSpec& effect) const {
+    const std::unique_ptr<Effect> made = kind.make(effect, table.place().file);
+    for (const EffectAmplitude& amplitude : made->amplitudes()) {
+      for (const KeySchema& key : kind.schema().keys) {
+        if (key.key == amplitude.key || stem_of_key(key.key) != stem_of_key(amplitude.key)) continue;
+        if (!table.has(key.key)) continue;
+        table.fail(key.key, table.path() + ": " + amplitude.label + " is stated in " + amplitude.unit(),
+                   "write " + amplitude.key + " = ...");
+      }
+    }
+  }
+
+  void read_effects() {
+    std::vector<std::string> kinds;
+    for (const EffectKind* effect : effect_kinds()) kinds.push_back(effect->schema().kind);
+    for (const TomlTable& table : root_.tables("effects")) {
+      EffectSpec effect;
+      effect.kind = table.required_text("kind");
+      const EffectKind* kind = find_effect(effect.kind);
+      if (!kind) {
+        table.fail("kind", table.path() + ": effect kind \"" + printable(effect.kind) + "\" is not known",
+                   suggest_name(effect.kind, kinds, "kinds"));
+      }
+      effect.source_line = table.place().line;
+      effect.options = table.options(kind->schema().keys);
+      check_units(table, *kind, effect);
+      spec_.effects.push_back(std::move(effect));
+    }
+  }
+
+  const TomlDocument& document_;
+  TomlTable root_;
+  const Machine& machine_;
+  ModelSpec spec_;
+};
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error) && !error;
+}
+
+void check_machine(const TomlDocument& document, const std::string& file, const Machine& machine) {
+  const TomlTable root = document.root();
+  const auto named = root.text("machine");
+  if (!named) return;
+  const std::string path = resolve_path(file, *named);
+  if (!machine.file.empty() && same_file(path, machine.file)) return;
+  const Machine own = read_machine(path, root.place("machine"));
+  const std::string difference = machine_difference(own, machine);
+  if (difference.empty()) return;
+  root.fail("machine",
+            "the model is for another machine than " + (machine.file.empty() ? "this one" : machine.file) +
+                ": " + difference,
+            "use a model of the same machine");
+}
+
+/// A folder is no model; what to give in its place.
+void require_no_folder(const std::string& path, const SourcePlace& named_at) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(path, error)) return;
+  const SourcePlace place = named_at.file.empty() ? SourcePlace{path, 0} : named_at;
+  if (fs::exists(fs::path(path) / "identified.toml", error))
+    throw InputError(place, path + " is a result, a model file is expected",
+                     "give " + (fs::path(path) / "identified.toml").string());
+  if (fs::exists(fs::path(path) / "error_tables.csv", error))
+    throw InputError(
+        place, path + " is a folder of tables, a model file is expected",
+        "tables state errors and no bases: write a model.toml, or give the result they were made of");
+}
+
+std::string axis_difference(const Axis& a, const Axis& b) {
+  const auto differs = [](double x, double y) { return std::abs(x - y) > kSamePosition; };
+  const std::string name(1, letter_of(a.name));
+  if (differs(a.travel_min, b.travel_min) || differs(a.travel_max, b.travel_max)) return "travel of " + name;
+  if (differs(a.home, b.home)) return "home of " + name;
+  if ((a.reference_point - b.reference_point).norm() > kSamePosition) return "reference point of " + name;
+  if ((a.centre - b.centre).norm() > kSamePosition) return "centre of " + name;
+  return "";
+}
+
+}  // namespace
+
+std::string machine_difference(const Machine& a, const Machine& b) {
+  const auto same_joint = [](const Joint& x, const Joint& y) {
+    return x.axis == y.axis && x.workpiece_side == y.workpiece_side;
+  };
+  if (!std::ranges::equal(a.structure.joints, b.structure.joints, same_joint)) {
+    return "structure \"" + a.structure.code + "\" and \"" + b.structure.code + "\"";
+  }
+  if (a.datum.primary != b.datum.primary || a.datum.secondary != b.datum.secondary) return "datum";
+  for (std::size_t i = 0; i < a.axes.size(); ++i) {
+    if (std::string difference = axis_difference(a.axes[i], b.axes[i]); !difference.empty())
+      return difference;
+  }
+  return "";
+}
+
+ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at) {
+  require_no_folder(path, named_at);
+  const TomlDocument document = TomlDocument::read(path, named_at);
+  document.require_format(kModelFormat);
+  check_machine(document, path, machine);
+  return ModelReader(document, path, machine).read();
+}
+
+ModelSpec parse_model(const std::string& text, const std::string& file, const Machine& machine) {
+  return ModelReader(TomlDocument::parse(text, file), file, machine).read();
+}
+
+ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at) {
+  require_no_folder(path, named_at);
+  const TomlDocument document = TomlDocument::read(path, named_at);
+  document.require_format(kModelFormat);
+  const TomlTable root = document.root();
+  ModelFile file;
+  file.machine = read_machine(resolve_path(path, root.required_text("machine")), root.place("machine"));
+  file.spec = ModelReader(document, path, file.machine).read();
+  return file;
+}
+
+}  // namespace volcal

@@ -1,0 +1,207 @@
+#include "volcal/identify/io/results/diagnosis_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/results/result_json_parts.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json micro(double value) { return finite_or_null(value / kMicro); }
+
+/// null: not separable from the rival, or not computed.
+void add_mib(const AmplitudeFigure& figure, Json& json) {
+  json["mib"] = finite_or_null(figure.mib / figure.si_per_unit);
+  json["mib_rival"] = figure.mib_rival;
+}
+
+/// An effect of one amplitude has it as a number; of several, the largest in its standard uncertainty leads
+/// and all are listed.
+Json effect_json(const EffectFinding& effect) {
+  Json json = {{"kind", effect.name.kind},
+               {"target", effect.name.target},
+               {"driver", effect.name.driver},
+               {"shape", effect.name.shape},
+               {"label", effect.label}};
+  if (!effect.amplitudes.empty()) {
+    const auto size = [](const AmplitudeFigure& each) {
+      return each.u > 0.0 ? std::abs(each.value) / each.u : 0.0;
+    };
+    const AmplitudeFigure* leading = &effect.amplitudes.front();
+    for (const AmplitudeFigure& each : effect.amplitudes) {
+      if (size(each) > size(*leading)) leading = &each;
+    }
+    json["amplitude"] = finite_or_null(leading->value / leading->si_per_unit);
+    json["unit"] = leading->unit;
+    json["u"] = finite_or_null(leading->u / leading->si_per_unit);
+    json["mdb"] = finite_or_null(leading->mdb / leading->si_per_unit);
+    add_mib(*leading, json);
+    if (effect.amplitudes.size() > 1) {
+      json["amplitudes"] = Json::array();
+      for (const AmplitudeFigure& each : effect.amplitudes) {
+        json["amplitudes"].push_back({{"label", each.label},
+                                      {"amplitude", finite_or_null(each.value / each.si_per_unit)},
+                                      {"unit", each.unit},
+                                      {"u", finite_or_null(each.u / each.si_per_unit)},
+                                      {"mdb", finite_or_null(each.mdb / each.si_per_unit)}});
+        add_mib(each, json["amplitudes"].back());
+      }
+    }
+  }
+  json["log10_p"] = finite_or_null(effect.log10_p);
+  json["visible_fraction"] = finite_or_null(effect.visible_fraction);
+  json["gain"] = finite_or_null(effect.gain);
+  json["lm"] = finite_or_null(effect.lm);
+  json["dof"] = effect.dof;
+  if (!effect.shape_text.empty()) json["shape_value"] = effect.shape_text;
+  if (effect.spec.kind == kLeftOut) {
+    json["left_out"] = left_out_symbols(effect.spec);
+    json["spec"] = json_parts::effect(effect.spec);
+  } else if (!effect.resolution) {
+    json["model_toml"] = effect_toml(effect.spec);
+    json["spec"] = json_parts::effect(effect.spec);
+  }
+  return json;
+}
+
+Json list_json(const std::vector<EffectFinding>& effects) {
+  Json json = Json::array();
+  for (const EffectFinding& effect : effects) json.push_back(effect_json(effect));
+  return json;
+}
+
+Json detectable_json(const std::vector<DetectableEffect>& effects) {
+  Json json = Json::array();
+  for (const DetectableEffect& effect : effects) {
+    json.push_back({{"kind", effect.name.kind},
+                    {"target", effect.name.target},
+                    {"driver", effect.name.driver},
+                    {"shape", effect.name.shape},
+                    {"label", effect.label},
+                    {"shape_value", effect.shape_text},
+                    {"mdb", finite_or_null(effect.mdb / effect.si_per_unit)},
+                    {"unit", effect.unit},
+                    {"visible", effect.visible},
+                    {"visible_fraction", finite_or_null(effect.visible_fraction)},
+                    {"volumetric_um", micro(effect.volumetric)}});
+  }
+  return json;
+}
+
+Json unknown_json(const UnknownFinding& unknown) {
+  return {{"variables", unknown.variables},
+          {"with_one_of", unknown.with_one_of},
+          {"direction", unknown.direction},
+          {"rotation", unknown.rotation},
+          {"period_mm", unknown.period > 0.0 ? Json(unknown.period * 1e3) : Json()},
+          {"rms_um", micro(unknown.rms)},
+          {"log10_p", finite_or_null(unknown.log10_p)}};
+}
+
+Json names_json(const std::vector<EffectName>& names) {
+  Json json = Json::array();
+  for (const EffectName& name : names) json.push_back(full_name(name));
+  return json;
+}
+
+/// Gains: null where the readings as they are cannot tell the two apart at all.
+Json proposal_json(const MeasurementProposal& proposal) {
+  return {{"action", proposal.action},
+          {"setup", proposal.setup},
+          {"separates", names_json(proposal.separates)},
+          {"makes_visible", names_json(proposal.makes_visible)},
+          {"readings", proposal.readings},
+          {"separation", finite_or_null(proposal.separation)},
+          {"separation_reached", finite_or_null(proposal.reached)},
+          {"separation_plain", finite_or_null(proposal.plain)},
+          {"gain", finite_or_null(proposal.gain)},
+          {"plain_gain", finite_or_null(proposal.plain_gain)},
+          {"words", proposal.words}};
+}
+
+Json confounding_json(const Confounding& confounding) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < confounding.cosine.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < confounding.cosine.cols(); ++j)
+      row.push_back(finite_or_null(confounding.cosine(i, j)));
+    rows.push_back(std::move(row));
+  }
+  return {{"effects", names_json(confounding.names)}, {"labels", confounding.labels}, {"cosine", rows}};
+}
+
+Json step_json(const LadderStep& step) {
+  return {{"model", step.model},
+          {"added", step.added},
+          {"rms_fit_um", micro(step.rms_fit)},
+          {"rms_heldout_um", micro(step.rms_heldout)},
+          {"reduced_chi2", finite_or_null(step.reduced_chi2)},
+          {"noise_floor_um", micro(step.noise_floor)},
+          {"systematic_um", micro(step.systematic)},
+          {"systematic_low_um", micro(step.systematic_low)},
+          {"systematic_high_um", micro(step.systematic_high)},
+          {"heldout_loglik_gain", finite_or_null(step.heldout_loglik_gain)}};
+}
+
+Json noise_json(const Diagnosis& diagnosis) {
+  Json json = Json::array();
+  for (const NoiseRow& row : diagnosis.noise) {
+    json.push_back({{"instrument", diagnosis.noise_instruments[row.instrument]},
+                    {"term", row.term},
+                    {"unit", row.unit},
+                    {"value", finite_or_null(row.value)},
+                    {"low", finite_or_null(row.low)},
+                    {"high", finite_or_null(row.high)},
+                    {"likelihood_ratio", finite_or_null(row.likelihood_ratio)},
+                    {"remark", row.remark}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const Diagnosis& diagnosis) {
+  Json json = {{"format", kDiagnosisFormat},
+               {"verdict", to_string(diagnosis.verdict)},
+               {"words", diagnosis.words},
+               {"effects", list_json(diagnosis.effects)},
+               {"one_of", list_json(diagnosis.one_of)},
+               {"further_one_of", Json::array()}};
+  for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
+  json["unknown"] = Json::array();
+  for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
+  json["not_visible"] = list_json(diagnosis.not_visible);
+  json["next_measurement"] = Json::array();
+  for (const MeasurementProposal& proposal : diagnosis.proposals) {
+    json["next_measurement"].push_back(proposal_json(proposal));
+  }
+  json["confounding"] = confounding_json(diagnosis.confounding);
+  json["ladder"] = Json::array();
+  for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
+  json["model_changes"] = list_json(diagnosis.model_changes);
+  json["noise"] = noise_json(diagnosis);
+  json["removed_readings"] = Json::array();
+  for (const RemovedReading& removed : diagnosis.removed_readings) {
+    json["removed_readings"].push_back(
+        {{"setup", removed.setup}, {"line", removed.line}, {"reading", removed.reading}});
+  }
+  if (!diagnosis.not_looked_for.empty()) json["not_looked_for"] = diagnosis.not_looked_for;
+  if (!diagnosis.notes.empty()) json["notes"] = diagnosis.notes;
+  json["ranking"] = list_json(diagnosis.ranking);
+  json["families"] = diagnosis.families;
+  json["generic_tests"] = diagnosis.generic_tests;
+  json["log10_p_threshold"] = log10_family_risk();
+  json["detectable"] = detectable_json(diagnosis.detectable);
+  return json_text(json, 2) + "\n";
+}
+
+}  // namespace volcal

@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "volcal/identify/io/results/diagnosis_json.h"
+#include "volcal/identify/io/results/result_json_parts.h"
+#include "volcal/identify/text/json_input.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// null stands for what is not a number.
+double number_or_nan(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
+}
+double number_or_nan(const Json& json, const char* key) { return number_or_nan(json.at(key)); }
+double micro(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
+std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
+
+/// Of a unit as it is printed: "um/m/K" stands for the suffix um_per_m_K.
+double si_per_unit(std::string unit) {
+  const std::size_t first = unit.find('/');
+  if (first != std::string::npos) unit.replace(first, 1, "_per_");
+  std::ranges::replace(unit, '/', '_');
+  return unit_of_key("amplitude_" + unit).si_per_unit;
+}
+
+EffectName name_from(const Json& json) {
+  return {text(json, "kind"), text(json, "target"), text(json, "driver"), text(json, "shape")};
+}
+
+AmplitudeFigure amplitude_from(const Json& json) {
+  AmplitudeFigure figure;
+  figure.label = text(json, "label");
+  figure.unit = text(json, "unit");
+  figure.si_per_unit = si_per_unit(figure.unit);
+  figure.value = number_or_nan(json, "amplitude") * figure.si_per_unit;
+  figure.u = number_or_nan(json, "u") * figure.si_per_unit;
+  figure.mdb = number_or_nan(json, "mdb") * figure.si_per_unit;
+  figure.mib = number_or_nan(json, "mib") * figure.si_per_unit;
+  figure.mib_rival = text(json, "mib_rival");
+  if (std::isnan(figure.mib) && !figure.mib_rival.empty()) figure.mib = kInfinity;
+  return figure;
+}
+
+EffectFinding effect_from(const Json& json) {
+  EffectFinding effect;
+  effect.name = name_from(json);
+  effect.label = text(json, "label");
+  if (json.contains("amplitudes")) {
+    for (const Json& each : json.at("amplitudes")) effect.amplitudes.push_back(amplitude_from(each));
+  } else if (json.contains("amplitude")) {
+    effect.amplitudes.push_back(amplitude_from(json));
+  }
+  effect.log10_p = number_or_nan(json, "log10_p");
+  effect.visible_fraction = number_or_nan(json, "visible_fraction");
+  effect.gain = number_or_nan(json, "gain");
+  effect.lm = number_or_nan(json, "lm");
+  effect.dof = json.at("dof").get<int>();
+  if (json.contains("shape_value")) effect.shape_text = text(json, "shape_value");
+  effect.resolution = !json.contains("spec");
+  if (!effect.resolution) effect.spec = json_parts::effect_from(json.at("spec"));
+  return effect;
+}
+
+std::vector<EffectFinding> list_from(const Json& json) {
+  std::vector<EffectFinding> effects;
+  for (const Json& each : json) effects.push_back(effect_from(each));
+  return effects;
+}
+
+DetectableEffect detectable_from(const Json& json) {
+  DetectableEffect effect;
+  effect.name = name_from(json);
+  effect.label = text(json, "label");
+  effect.shape_text = text(json, "shape_value");
+  effect.unit = text(json, "unit");
+  effect.si_per_unit = si_per_unit(effect.unit);
+  effect.visible = json.at("visible").get<bool>();
+  effect.visible_fraction = number_or_nan(json, "visible_fraction");
+  effect.mdb = number_or_nan(json, "mdb") * effect.si_per_unit;
+  effect.volumetric = micro(json, "volumetric_um");
+  return effect;
+}
+
+/// kind:target:driver:shape
+EffectName name_from(const std::string& text) {
+  EffectName name;
+  std::size_t begin = 0;
+  for (std::string* part : {&name.kind, &name.target, &name.driver, &name.shape}) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    *part = text.substr(begin, end - begin);
+    begin = std::min(end + 1, text.size());
+  }
+  return name;
+}
+
+std::vector<EffectName> names_from(const Json& json) {
+  std::vector<EffectName> names;
+  for (const Json& each : json) names.push_back(name_from(each.get<std::string>()));
+  return names;
+}
+
+/// A gain over nothing is infinite, and null in the file.
+double gain_from(const Json& json, const char* key) {
+  return json.at(key).is_null() ? kInfinity : json.at(key).get<double>();
+}
+
+MeasurementProposal proposal_from(const Json& json) {
+  MeasurementProposal proposal;
+  proposal.action = text(json, "action");
+  proposal.setup = text(json, "setup");
+  proposal.separates = names_from(json.at("separates"));
+  proposal.makes_visible = names_from(json.at("makes_visible"));
+  proposal.readings = json.at("readings").get<std::size_t>();
+  proposal.separation = number_or_nan(json, "separation");
+  proposal.reached = number_or_nan(json, "separation_reached");
+  proposal.plain = number_or_nan(json, "separation_plain");
+  proposal.gain = gain_from(json, "gain");
+  proposal.plain_gain = gain_from(json, "plain_gain");
+  proposal.words = text(json, "words");
+  return proposal;
+}
+
+Confounding confounding_from(const Json& json) {
+  Confounding confounding;
+  confounding.names = names_from(json.at("effects"));
+  confounding.labels = json.at("labels").get<std::vector<std::string>>();
+  const auto count = static_cast<Eigen::Index>(confounding.names.size());
+  const Json& rows = json.at("cosine");
+  confounding.cosine.resize(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < count; ++j) {
+      confounding.cosine(i, j) =
+          number_or_nan(rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)));
+    }
+  }
+  return confounding;
+}
+
+LadderStep step_from(const Json& json) {
+  LadderStep step;
+  step.model = text(json, "model");
+  step.added = text(json, "added");
+  step.rms_fit = micro(json, "rms_fit_um");
+  step.rms_heldout = micro(json, "rms_heldout_um");
+  step.reduced_chi2 = number_or_nan(json, "reduced_chi2");
+  step.noise_floor = micro(json, "noise_floor_um");
+  step.systematic = micro(json, "systematic_um");
+  step.systematic_low = micro(json, "systematic_low_um");
+  step.systematic_high = micro(json, "systematic_high_um");
+  step.heldout_loglik_gain = number_or_nan(json, "heldout_loglik_gain");
+  return step;
+}
+
+void read_noise(const Json& json, Diagnosis& diagnosis) {
+  for (const Json& each : json) {
+    const std::string instrument = text(each, "instrument");
+    auto& names = diagnosis.noise_instruments;
+    const auto known = std::ranges::find(names, instrument);
+    const auto place = static_cast<std::size_t>(known - names.begin());
+    if (known == names.end()) names.push_back(instrument);
+    diagnosis.noise.push_back({place, text(each, "term"), text(each, "unit"), number_or_nan(each, "value"),
+                               number_or_nan(each, "low"), number_or_nan(each, "high"),
+                               number_or_nan(each, "likelihood_ratio"), text(each, "remark")});
+  }
+}
+
+/// Files written before waves were looked for have none.
+double wave_period(const Json& unknown) {
+  const auto found = unknown.find("period_mm");
+  return found == unknown.end() || found->is_null() ? 0.0 : found->get<double>() * 1e-3;
+}
+
+Diagnosis diagnosis_from(const Json& json) {
+  if (const std::string format = text(json, "format"); format != kDiagnosisFormat) {
+    throw std::invalid_argument("format is \"" + printable(format) + "\"");
+  }
+  Diagnosis diagnosis;
+  diagnosis.verdict = verdict_from(text(json, "verdict"));
+  diagnosis.words = json.at("words").get<std::vector<std::string>>();
+  diagnosis.effects = list_from(json.at("effects"));
+  diagnosis.one_of = list_from(json.at("one_of"));
+  for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
+  for (const Json& each : json.at("unknown")) {
+    diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
+                                 each.value("with_one_of", std::vector<std::string>{}),
+                                 text(each, "direction"), each.value("rotation", ""), micro(each, "rms_um"),
+                                 number_or_nan(each, "log10_p"), wave_period(each)});
+  }
+  diagnosis.not_visible = list_from(json.at("not_visible"));
+  for (const Json& each : json.at("next_measurement")) {
+    diagnosis.proposals.push_back(proposal_from(each));
+    diagnosis.next_measurement.push_back(diagnosis.proposals.back().words);
+  }
+  diagnosis.confounding = confounding_from(json.at("confounding"));
+  for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
+  diagnosis.model_changes = list_from(json.at("model_changes"));
+  read_noise(json.at("noise"), diagnosis);
+  diagnosis.not_looked_for = json.value("not_looked_for", std::vector<std::string>{});
+  diagnosis.notes = json.value("notes", std::vector<std::string>{});
+  for (const Json& each : json.at("removed_readings")) {
+    diagnosis.removed_readings.push_back({each.at("setup").get<std::string>(),
+                                          each.at("line").get<std::int64_t>(),
+                                          each.at("reading").get<std::string>()});
+  }
+  diagnosis.ranking = list_from(json.at("ranking"));
+  diagnosis.families = json.at("families").get<std::size_t>();
+  diagnosis.generic_tests = json.at("generic_tests").get<std::size_t>();
+  for (const Json& each : json.at("detectable")) diagnosis.detectable.push_back(detectable_from(each));
+  return diagnosis;
+}
+
+}  // namespace
+
+Diagnosis diagnosis_from_json(const std::string& text, const std::string& file) {
+  return read_json(text, file, "diagnosis",
+                   "give a folder that volcal diagnose wrote, or run the diagnosis again",
+                   [](const Json& json) {
+                     json_parts::require_no_control(json);
+                     return diagnosis_from(json);
+                   });
+}
+
+Diagnosis read_diagnosis(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError({path, 0}, "there is no such diagnosis",
+                     missing_remedy(path, "give the folder that volcal diagnose wrote with -o"));
+  }
+  const bool folder = fs::is_directory(path, error);
+  const std::string file = folder ? (fs::path(path) / "diagnosis.json").string() : path;
+  if (folder && !fs::exists(file, error)) {
+    throw InputError({path, 0}, "the folder holds no diagnosis.json",
+                     "give a folder that volcal diagnose -o wrote");
+  }
+  return diagnosis_from_json(read_text_file(file), file);
+}
+
+}  // namespace volcal

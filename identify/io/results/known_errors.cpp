@@ -1,0 +1,132 @@
+#include "volcal/identify/io/results/known_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect_keys.h"
+
+namespace volcal {
+namespace {
+
+constexpr const char* kErrorTables = "error_tables.csv";
+constexpr const char* kMetadata = "metadata.csv";
+constexpr double kSameReversal = 1e-9;  // m or rad
+
+/// Rows of one error, by position.
+struct ErrorRows {
+  std::map<double, double> forward, backward;
+};
+
+TableFile table_file(const std::filesystem::path& folder, const char* name) {
+  return {name, read_text_file((folder / name).string())};
+}
+
+/// Half the difference of the directions as b0 + b1 (q - home).
+void add_reversal(ErrorSymbol symbol, const ErrorRows& rows, double home, ModelSpec& model) {
+  double count = 0.0, q_sum = 0.0, b_sum = 0.0;
+  for (const auto& [q, value] : rows.forward) {
+    count += 1.0;
+    q_sum += q - home;
+    b_sum += value - rows.backward.at(q);
+  }
+  double moment = 0.0, spread = 0.0;
+  for (const auto& [q, value] : rows.forward) {
+    const double from_mean = q - home - q_sum / count;
+    moment += from_mean * (value - rows.backward.at(q));
+    spread += from_mean * from_mean;
+  }
+  const double slope = spread > 0.0 ? moment / spread : 0.0;
+  const double at_home = b_sum / count - slope * q_sum / count;
+  for (const auto& [q, value] : rows.forward) {
+    if (std::abs(value - rows.backward.at(q) - at_home - slope * (q - home)) < kSameReversal) continue;
+    throw InputError({kErrorTables, 0},
+                     symbol.name() +
+                         ": the directions of approach differ by more than a reversal that changes "
+                         "in proportion to the position",
+                     "use the result or the model that the tables were written from");
+  }
+  if (std::abs(at_home) > kSameReversal)
+    model.effects.push_back(effect_spec("reversal", {{"symbol", symbol.name()}, {"amplitude", at_home}}));
+  if (std::abs(slope) > kSameReversal)
+    model.effects.push_back(
+        effect_spec("position-reversal", {{"symbol", symbol.name()}, {"amplitude", slope}}));
+}
+
+void add_function(ErrorSymbol symbol, const ErrorRows& rows, ModelSpec& model) {
+  if (rows.forward.size() < 2 || rows.forward.size() != rows.backward.size())
+    throw InputError({kErrorTables, 0}, symbol.name() + " has less than two positions in a direction",
+                     "give both directions at the same positions, or direction 0 alone");
+  FunctionSpec& spec = model.functions[symbol];
+  spec.basis = "bspline";
+  spec.degree = 1;
+  spec.knots = KnotChoice::Explicit;
+  for (const auto& [q, value] : rows.forward) {
+    const auto other = rows.backward.find(q);
+    if (other == rows.backward.end())
+      throw InputError({kErrorTables, 0}, symbol.name() + " has other positions in the two directions",
+                       "give both directions at the same positions, or direction 0 alone");
+    spec.breakpoints.push_back(q);
+    spec.coefficients.push_back(0.5 * (value + other->second));
+  }
+}
+
+FitResult result_of_tables(const std::filesystem::path& folder) {
+  const TableMetadata metadata = read_table_metadata(table_file(folder, kMetadata));
+  ModelSpec model;
+  model.default_function.basis = "zero";
+  std::map<ErrorSymbol, ErrorRows> functions;
+  for (const ErrorTableRow& row :
+       read_function_table(table_file(folder, kErrorTables), TableContent::Errors)) {
+    if (const auto location = LocationSymbol::parse(row.symbol)) model.locations[*location] = row.value;
+    const auto symbol = ErrorSymbol::parse(row.symbol);
+    if (!symbol) continue;
+    if (row.direction >= 0) functions[*symbol].forward[row.position] = row.value;
+    if (row.direction <= 0) functions[*symbol].backward[row.position] = row.value;
+  }
+  for (const auto& [symbol, rows] : functions) {
+    if (!metadata.machine.has_axis(symbol.axis))
+      throw InputError({kErrorTables, 0}, symbol.name() + " belongs to an axis that the machine lacks",
+                       "take metadata.csv of the same run");
+    add_function(symbol, rows, model);
+    add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, model);
+  }
+  return stated_result(metadata.machine, model);
+}
+
+FitResult result_of_model(const std::string& path, const SourcePlace& named_at) {
+  const ModelFile model = read_model_with_machine(path, named_at);
+  if (!states_errors(model.spec))
+    throw InputError(
+        {path, 0}, "the model states no error: no coefficients, no locations, no effects",
+        "give a model with values, such as the identified.toml of a result; of a machine that is "
+        "not built yet, volcal budget MACHINE.toml --tolerances FILE");
+  return stated_result(model.machine, model.spec);
+}
+
+}  // namespace
+
+bool is_tables_folder(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) && !is_result(path) &&
+         std::filesystem::exists(std::filesystem::path(path) / kErrorTables, ignored);
+}
+
+FitResult read_known_errors(const std::string& path, const SourcePlace& named_at) {
+  if (is_tables_folder(path)) return result_of_tables(path);
+  std::error_code ignored;
+  const std::filesystem::path place(path);
+  if (!std::filesystem::is_directory(place, ignored) && place.extension() == ".toml")
+    return result_of_model(path, named_at);
+  return read_result(path, named_at);
+}
+
+}  // namespace volcal

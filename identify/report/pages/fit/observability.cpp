@@ -1,0 +1,53 @@
+/// What the readings can see: visible fraction and uncertainty of every error, correlations, rank.
+
+#include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/text/fit_summary.h"
+#include "volcal/identify/report/values/correlation.h"
+
+namespace volcal::report {
+namespace {
+
+bool is_angle(const std::string& symbol) {
+  if (const auto error = ErrorSymbol::parse(symbol)) return is_rotation(error->component);
+  if (const auto location = LocationSymbol::parse(symbol)) return is_rotation(location->component);
+  return false;
+}
+
+Json error_rows(const FitResult& result) {
+  Json rows = Json::array();
+  for (const Observability& error : result.rank.errors) {
+    rows.push_back({{"symbol", error.symbol},
+                    {"axis", std::string(1, error.symbol.back())},
+                    {"unit", is_angle(error.symbol) ? "µrad" : "µm"},
+                    {"visible", error.visible},
+                    {"visible_fraction", rounded(error.visible_fraction, 4)},
+                    {"u_rms", rounded(error.u_rms * kPerMicro, 3)},
+                    {"effective_parameters", rounded(error.effective_parameters, 3)},
+                    {"reason", error.reason},
+                    {"remedy", error.remedy}});
+  }
+  return rows;
+}
+
+Json correlation_json(const FitResult& result) {
+  const ErrorCorrelation correlation = error_correlation(result);
+  Json rows = Json::array();
+  for (Eigen::Index a = 0; a < correlation.value.rows(); ++a) {
+    Json row = Json::array();
+    for (Eigen::Index b = 0; b < correlation.value.cols(); ++b)
+      row.push_back(rounded(correlation.value(a, b), 3));
+    rows.push_back(std::move(row));
+  }
+  return {{"symbol", correlation.symbol}, {"value", std::move(rows)}};
+}
+
+}  // namespace
+
+Json observability_page(const PageInput& input) {
+  const FitResult& result = input.result;
+  return {{"parameters", result.rank.parameters}, {"rank", result.rank.rank},
+          {"rank_text", rank_text(result)},       {"invisible", result.rank.invisible},
+          {"errors", error_rows(result)},         {"correlation", correlation_json(result)}};
+}
+
+}  // namespace volcal::report

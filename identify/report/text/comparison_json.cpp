@@ -1,0 +1,203 @@
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/report/text/comparison_report.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/observation/channels.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json micro(const std::optional<double>& value) { return value ? Json(*value / kMicro) : Json(nullptr); }
+Json micro(double value) { return value / kMicro; }
+Json micro(const Eigen::Vector3d& v) { return {v.x() / kMicro, v.y() / kMicro, v.z() / kMicro}; }
+
+Json size_json(const ResidualSize& size) {
+  return {{"n", size.count}, {"mean", micro(size.mean)}, {"rms", micro(size.rms)}, {"max", micro(size.max)}};
+}
+
+Json cell_json(const ComparisonCell& cell) {
+  Json json = {{"label", cell.label},
+               {"observations", cell.observations},
+               {"chi2", cell.chi2},
+               {"dof", cell.dof},
+               {"reduced_chi2", cell.reduced_chi2()}};
+  if (cell.lengths.count > 0) json["lengths_um"] = size_json(cell.lengths);
+  if (cell.angles.count > 0) json["angles_urad"] = size_json(cell.angles);
+  json["probability"] = cell.probability;
+  json["significant"] = cell.significant;
+  json["stands_out"] = cell.stands_out;
+  return json;
+}
+
+Json unidirectional_json(const UnidirectionalFigures& figures) {
+  return {{"A_um", micro(figures.accuracy)},
+          {"E_um", micro(figures.systematic)},
+          {"R_um", micro(figures.repeatability)}};
+}
+
+Json positioning_json(const PositioningFigures& figures) {
+  return {{"targets", figures.targets.size()},
+          {"A_um", micro(figures.accuracy)},
+          {"E_um", micro(figures.systematic)},
+          {"M_um", micro(figures.mean_bidirectional)},
+          {"R_um", micro(figures.repeatability)},
+          {"B_um", micro(figures.reversal)},
+          {"mean_B_um", micro(figures.mean_reversal)},
+          {"positive", unidirectional_json(figures.positive)},
+          {"negative", unidirectional_json(figures.negative)}};
+}
+
+Json path_json(const std::optional<CircularPath>& path) {
+  if (!path) return nullptr;
+  return {{"G_um", micro(path->circular_deviation)},
+          {"Fmax_um", micro(path->radial_max)},
+          {"Fmin_um", micro(path->radial_min)},
+          {"centring", path->centring == Centring::LeastSquares ? "least squares" : "instrument"},
+          {"readings", path->readings}};
+}
+
+Json circular_json(const CircleTest& test, const CircularFigures& figures) {
+  Json reversals = Json::array();
+  for (const QuadrantReversal& reversal : figures.reversals) {
+    const AxisName axis = reversal.axis == 0 ? test.first : test.second;
+    reversals.push_back({{"axis", std::string{letter_of(axis)}},
+                         {"side", reversal.side},
+                         {"sense", reversal.sense > 0 ? "ccw" : "cw"},
+                         {"B_um", micro(reversal.value)}});
+  }
+  return {{"ccw", path_json(figures.counter_clockwise)},
+          {"cw", path_json(figures.clockwise)},
+          {"Gb_um", micro(figures.bidirectional)},
+          {"D_um", micro(figures.mean_radial)},
+          {"reversals", reversals}};
+}
+
+Json volumetric_json(const VolumetricFigures& figures) {
+  return {{"points", figures.points},
+          {"range_um", micro(figures.range)},
+          {"rms_um", micro(figures.rms)},
+          {"max_um", micro(figures.max)}};
+}
+
+Json summary_json(const DiagonalSummary& summary) {
+  return {{"diagonals", summary.diagonals},
+          {"E_d_um", micro(summary.systematic)},
+          {"B_d_um", micro(summary.reversal)}};
+}
+
+Json figures_json(const StandardFigures& figures) {
+  Json json = {{"iso230_2", Json::array()},
+               {"iso230_6", Json::array()},
+               {"iso230_6_diagonals", Json::array()},
+               {"iso230_4", Json::array()},
+               {"volumetric", Json::array()}};
+  for (const AxisLineTest& test : figures.lines) {
+    json["iso230_2"].push_back({{"setup", test.setup},
+                                {"axis", std::string{letter_of(test.axis)}},
+                                {"place", test.place},
+                                {"readings", positioning_json(test.figures.readings)},
+                                {"model", positioning_json(test.figures.model)},
+                                {"notes", test.notes}});
+  }
+  for (const DiagonalTest& test : figures.diagonals) {
+    json["iso230_6"].push_back({{"setup", test.setup},
+                                {"diagonal", test.figures.readings.name},
+                                {"readings", positioning_json(test.figures.readings.positioning)},
+                                {"model", positioning_json(test.figures.model.positioning)},
+                                {"notes", test.notes}});
+  }
+  for (const DiagonalGroup& group : figures.diagonal_groups) {
+    json["iso230_6_diagonals"].push_back({{"axes", letters_of(group.axes)},
+                                          {"readings", summary_json(group.summary.readings)},
+                                          {"model", summary_json(group.summary.model)}});
+  }
+  for (const CircleTest& test : figures.circles) {
+    json["iso230_4"].push_back({{"setup", test.setup},
+                                {"plane", std::string{letter_of(test.first), letter_of(test.second)}},
+                                {"radius_mm", test.radius * 1e3},
+                                {"readings", circular_json(test, test.figures.readings)},
+                                {"model", circular_json(test, test.figures.model)},
+                                {"notes", test.notes}});
+  }
+  for (const PointsTest& test : figures.points) {
+    json["volumetric"].push_back({{"setup", test.setup},
+                                  {"readings", volumetric_json(test.figures.readings)},
+                                  {"model", volumetric_json(test.figures.model)},
+                                  {"difference", volumetric_json(test.difference)},
+                                  {"notes", test.notes}});
+  }
+  json["not_recognised"] = figures.not_recognised;
+  return json;
+}
+
+Json worst_json(const Campaign& campaign, const ComparedModel& model) {
+  Json worst = Json::array();
+  for (const std::size_t i : model.comparison.worst) {
+    const ResidualRecord& record = model.records[i];
+    const Setup& setup = campaign.setups[record.setup];
+    const auto channel = static_cast<std::size_t>(record.channel);
+    const bool angle = is_angle_channel(setup, channel);
+    worst.push_back({{"setup", setup.name},
+                     {"line", record.source_line},
+                     {"column", channel_column(setup, channel)},
+                     {angle ? "residual_urad" : "residual_um", micro(record.residual())},
+                     {angle ? "sigma_urad" : "sigma_um", micro(record.sigma)},
+                     {"standardized", record.residual() / record.sigma},
+                     {"w", record.w},
+                     {"flagged", record.flagged},
+                     {"removed", record.removed}});
+  }
+  return worst;
+}
+
+Json breakdowns_json(const Comparison& comparison) {
+  Json breakdowns = Json::object();
+  for (const Breakdown& breakdown : comparison.breakdowns) {
+    Json cells = Json::array();
+    for (const ComparisonCell& cell : breakdown.cells) cells.push_back(cell_json(cell));
+    breakdowns[breakdown.by] = std::move(cells);
+  }
+  return breakdowns;
+}
+
+Json model_json(const Campaign& campaign, const ComparedModel& model) {
+  Json json = {{"name", model.name},
+               {"where_it_fails", failure_sentence(model)},
+               {"total", cell_json(model.comparison.total)},
+               {"removed", model.comparison.removed},
+               {"cells_tested", model.comparison.cells},
+               {"by", breakdowns_json(model.comparison)},
+               {"worst_readings", worst_json(campaign, model)},
+               {"standards", figures_json(model.figures)}};
+  if (model.screening) {
+    json["scans"] = {{"tests", model.screening->tests},
+                     {"contradict", model.screening->contradicts},
+                     {"leading", model.screening->leading},
+                     {"log10_p", model.screening->log10_p},
+                     {"rms_um", model.screening->rms * 1e6}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string comparison_json(const Campaign& campaign, std::span<const ComparedModel> models,
+                            std::span<const HeldOutModel> heldout) {
+  Json list = Json::array();
+  for (const ComparedModel& model : models) list.push_back(model_json(campaign, model));
+  Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
+  if (!campaign.notes.empty()) json["notes"] = campaign.notes;
+  if (!heldout.empty()) json["held_out"] = Json::array();
+  for (const HeldOutModel& model : heldout) {
+    json["held_out"].push_back({{"name", model.name},
+                                {"fitted_without_them", model.fitted},
+                                {"total", cell_json(model.comparison.total)},
+                                {"by", breakdowns_json(model.comparison)}});
+  }
+  return json_text(json, 2) + '\n';
+}
+
+}  // namespace volcal

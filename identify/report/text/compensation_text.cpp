@@ -1,0 +1,117 @@
+#include "volcal/identify/report/text/compensation_text.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kShownResolution = 1e-10;  // m; finer ones limit nothing
+
+std::vector<std::string> figures(const std::string& name, const ErrorLeft& left) {
+  return {name, fixed_number(left.rms / kMicro, 2), fixed_number(left.max / kMicro, 2)};
+}
+
+nlohmann::ordered_json left_json(const ErrorLeft& left) {
+  return {{"rms_um", left.rms / kMicro}, {"max_um", left.max / kMicro}};
+}
+
+std::string settings_text(const TableFormat& format) {
+  std::string text;
+  for (const TableSetting& setting : format.settings) {
+    text += fmt::format("    --set {}: {}{}\n", setting.name, setting.help,
+                        setting.otherwise.empty() ? std::string(", must be given")
+                                                  : fmt::format("; otherwise {}", setting.otherwise));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string volume_check_text(const VolumeCheck& check, const CompensationType& type) {
+  TextTable volume({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}}, "Error left in the volume");
+  volume.add_row(figures("before", check.before));
+  volume.add_row(figures("ideal " + type.name(), check.ideal));
+  volume.add_row(figures("tables read back", check.exported));
+  if (check.identification_u > 0.0)
+    volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
+  if (check.over_conditions)
+    volume.add_row(figures("tables, ends of the campaign's conditions", *check.over_conditions));
+  TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});
+  for (const PartLeft& part : check.parts) {
+    parts.add_row({CompensationType(part.part).name(), fixed_number(part.before.rms / kMicro, 2),
+                   fixed_number(part.exported.rms / kMicro, 2), fixed_number(part.exported.max / kMicro, 2)});
+  }
+  return volume.text() + parts.text();
+}
+
+nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
+  nlohmann::ordered_json json = {{"before", left_json(check.before)},
+                                 {"ideal", left_json(check.ideal)},
+                                 {"tables", left_json(check.exported)},
+                                 {"identification_u_um", check.identification_u / kMicro},
+                                 {"expected_rms_um", check.expected_rms() / kMicro}};
+  if (check.over_conditions) json["tables_over_conditions"] = left_json(*check.over_conditions);
+  for (const PartLeft& part : check.parts) {
+    json["by_type"][CompensationType(part.part).name()] = {{"before", left_json(part.before)},
+                                                           {"tables", left_json(part.exported)}};
+  }
+  return json;
+}
+
+std::string limits_text(const CompensationLimits& limits) {
+  std::string text;
+  if (limits.points_per_table > 0)
+    text += fmt::format("at most {} positions a table, ", limits.points_per_table);
+  if (limits.resolution >= kShownResolution)
+    text += fmt::format("values in steps of {} um, ", short_number(limits.resolution / kMicro));
+  if (limits.equidistant) text += "equal steps, ";
+  return text + (limits.both_directions ? "both directions" : "one table for both directions");
+}
+
+std::string table_formats_text() {
+  std::string text;
+  for (const TableFormat* format : table_formats()) {
+    text += fmt::format(
+        "{}\n    {}\n    types: {}; others: {}\n    limits: {}\n{}    source: {}\n    verified: {}\n",
+        format->name, format->summary, format->supported.name(), format->refusal, limits_text(format->limits),
+        settings_text(*format), format->source, format->verified);
+  }
+  text += "\nNot written\n";
+  for (const RefusedFormat& refused : refused_table_formats())
+    text += fmt::format("    {}: {}\n", refused.name, refused.reason);
+  text += "\nTypes of compensation (ISO/TR 16907:2015), joined by +\n";
+  for (const CompensationTypeInfo& info : compensation_types())
+    text += fmt::format("    {} ({}): {}; from {}\n", info.name, info.clause, info.summary, info.errors);
+  return text;
+}
+
+nlohmann::ordered_json table_formats_json() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const TableFormat* format : table_formats()) {
+    nlohmann::ordered_json settings = nlohmann::ordered_json::array();
+    for (const TableSetting& setting : format->settings)
+      settings.push_back({{"name", setting.name}, {"help", setting.help}, {"otherwise", setting.otherwise}});
+    list.push_back({{"name", format->name},
+                    {"summary", format->summary},
+                    {"types", format->supported.name()},
+                    {"refusal", format->refusal},
+                    {"points_per_table", format->limits.points_per_table},
+                    {"resolution_um", format->limits.resolution / kMicro},
+                    {"both_directions", format->limits.both_directions},
+                    {"equidistant", format->limits.equidistant},
+                    {"settings", settings},
+                    {"source", format->source},
+                    {"verified", format->verified}});
+  }
+  nlohmann::ordered_json not_written = nlohmann::ordered_json::array();
+  for (const RefusedFormat& refused : refused_table_formats())
+    not_written.push_back({{"name", refused.name}, {"reason", refused.reason}});
+  return {{"formats", list}, {"not_written", not_written}};
+}
+
+}  // namespace volcal

@@ -1,0 +1,231 @@
+#include "volcal/identify/report/text/diagnosis_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/report/values/detectable_groups.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/noise_words.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kRanked = 12;
+constexpr double kNear = 0.9;               // cosine
+constexpr std::size_t kMostAmplitudes = 3;  // of an effect; functions that the model leaves out have more
+
+std::string edge(double si, double si_per_unit, int digits = 3) {
+  return short_number(si / si_per_unit, digits);
+}
+
+std::string ladder_table(const Diagnosis& diagnosis) {
+  TextTable table({{"model", Align::Left},
+                   {"added", Align::Left},
+                   {"rms fitted [um]"},
+                   {"rms held out [um]"},
+                   {"noise floor [um]"},
+                   {"systematic [um]"},
+                   {"95 % interval [um]"},
+                   {"log-likelihood"}},
+                  "The ladder (held-out lines did not choose)");
+  for (const LadderStep& step : diagnosis.ladder) {
+    table.add_row(
+        {step.model, step.added.empty() ? "as given" : step.added, edge(step.rms_fit, kMicro),
+         edge(step.rms_heldout, kMicro), edge(step.noise_floor, kMicro), edge(step.systematic, kMicro),
+         fmt::format("{} .. {}", edge(step.systematic_low, kMicro), edge(step.systematic_high, kMicro)),
+         fixed_number(step.heldout_loglik_gain, 1)});
+  }
+  return table.text();
+}
+
+std::string mib_text(const AmplitudeFigure& figure) {
+  if (std::isnan(figure.mib)) return "-";
+  return std::isinf(figure.mib) ? "never" : edge(figure.mib, figure.si_per_unit, 2);
+}
+
+/// Rivals in the confounding matrix, those of the leading effects first.
+std::string confounding_table(const Confounding& confounding) {
+  struct Pair {
+    double cosine;
+    Eigen::Index first;
+    Eigen::Index second;
+  };
+  std::vector<Pair> pairs;
+  for (Eigen::Index i = 0; i < confounding.cosine.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (confounding.cosine(i, j) > kNear) pairs.push_back({confounding.cosine(i, j), j, i});
+    }
+  }
+  if (pairs.empty()) return {};
+  std::ranges::stable_sort(pairs, {}, [](const Pair& pair) { return std::pair(pair.first, -pair.cosine); });
+  TextTable table({{"cosine"}, {"effect", Align::Left}, {"and", Align::Left}},
+                  "Nearly collinear (after projection off the model)");
+  for (std::size_t i = 0; i < std::min(kRanked, pairs.size()); ++i) {
+    table.add_row({fixed_number(pairs[i].cosine, 3),
+                   confounding.labels[static_cast<std::size_t>(pairs[i].first)],
+                   confounding.labels[static_cast<std::size_t>(pairs[i].second)]});
+  }
+  return "\n" + table.text();
+}
+
+std::string rank_of(const EffectFinding& finding, const std::vector<EffectFinding>& ranked) {
+  const auto found = std::ranges::find(ranked, finding.name, &EffectFinding::name);
+  return found == ranked.end() ? "-" : std::to_string(found - ranked.begin() + 1);
+}
+
+std::string evidence_table(const std::vector<EffectFinding>& findings,
+                           const std::vector<EffectFinding>& ranked, const std::string& title,
+                           std::size_t most) {
+  TextTable table({{"rank"},
+                   {"effect", Align::Left},
+                   {"kind", Align::Left},
+                   {"amplitude"},
+                   {"+- U95"},
+                   {"unit", Align::Left},
+                   {"MDB"},
+                   {"MIB"},
+                   {"rival", Align::Left},
+                   {"visible fraction"},
+                   {"log10 p"}},
+                  title);
+  for (std::size_t i = 0; i < std::min(most, findings.size()); ++i) {
+    const EffectFinding& finding = findings[i];
+    const std::string rank = rank_of(finding, ranked);
+    const std::string visible = fixed_number(finding.visible_fraction, 3);
+    const std::string p = fixed_number(finding.log10_p, 1);
+    if (finding.amplitudes.empty() || finding.amplitudes.size() > kMostAmplitudes) {
+      table.add_row({rank, finding.label, finding.name.kind, "-", "-", "", "-", "-", "", visible, p});
+      continue;
+    }
+    for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
+      const AmplitudeFigure& each = finding.amplitudes[k];
+      table.add_row({k == 0 ? rank : "", each.label, k == 0 ? finding.name.kind : "",
+                     edge(each.value, each.si_per_unit), edge(kCoverageFactor * each.u, each.si_per_unit, 2),
+                     each.unit, edge(each.mdb, each.si_per_unit, 2), mib_text(each), each.mib_rival,
+                     k == 0 ? visible : "", k == 0 ? p : ""});
+    }
+  }
+  return table.text();
+}
+
+std::string noise_text(const Diagnosis& diagnosis) {
+  TextTable table({{"instrument", Align::Left},
+                   {"term", Align::Left},
+                   {"value"},
+                   {"95 % interval"},
+                   {"unit", Align::Left},
+                   {"", Align::Left}},
+                  "Noise (restricted maximum likelihood)");
+  for (const NoiseRow& row : diagnosis.noise) {
+    const std::string& instrument = diagnosis.noise_instruments[row.instrument];
+    const EdgeNoise noise = edge_noise(row, instrument);
+    table.add_row({instrument, noise.meaning, short_number(noise.value, 3),
+                   fmt::format("{} .. {}", short_number(noise.low, 3), short_number(noise.high, 3)),
+                   noise.unit, row.remark});
+  }
+  return table.text();
+}
+
+std::string unknown_table(const Diagnosis& diagnosis) {
+  TextTable table({{"depends on", Align::Left}, {"along", Align::Left}, {"rms [um]"}, {"log10 p"}},
+                  "What the generic scans still see");
+  for (const UnknownFinding& unknown : diagnosis.unknown) {
+    table.add_row({unknown.dependence(), unknown.action(), edge(unknown.rms, kMicro),
+                   fixed_number(unknown.log10_p, 1)});
+  }
+  return table.text();
+}
+
+/// By kind; diagnosis.json and report.html have every effect.
+std::string detectable_table(const Diagnosis& diagnosis) {
+  TextTable table({{"kind", Align::Left},
+                   {"effects"},
+                   {"not visible"},
+                   {"smallest MDB"},
+                   {"largest MDB"},
+                   {"unit", Align::Left},
+                   {"in the volume [um]"},
+                   {"found first", Align::Left}},
+                  "Below the detection limit: smallest detectable amplitudes (MDB), found with 80 % power");
+  for (const report::DetectableGroup& group : report::detectable_groups(diagnosis.detectable)) {
+    const bool any = group.easiest != nullptr;
+    table.add_row({group.kind, std::to_string(group.effects), std::to_string(group.not_visible),
+                   any ? edge(group.easiest->mdb, group.si_per_unit, 2) : "-",
+                   any ? edge(group.hardest->mdb, group.si_per_unit, 2) : "-", group.unit,
+                   any ? edge(group.easiest->volumetric, kMicro, 2) : "-", any ? group.easiest->label : "-"});
+  }
+  return table.text();
+}
+
+/// "  removed: S1 lines 12 and 40 (length_mm)", a line for each setup and column.
+std::string removed_text(const Diagnosis& diagnosis) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::int64_t>> lines;
+  for (const RemovedReading& removed : diagnosis.removed_readings)
+    lines[{removed.setup, removed.reading}].push_back(removed.line);
+  std::string text;
+  for (const auto& [of, numbers] : lines) {
+    text += fmt::format("  removed: {}, {}, line{} {}\n", of.first, of.second, numbers.size() == 1 ? "" : "s",
+                        fmt::join(numbers, ", "));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
+  std::vector<EffectFinding> all;
+  std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis);
+  lists.insert(lists.begin(), &diagnosis.effects);
+  lists.push_back(&diagnosis.ranking);
+  for (const auto* list : lists) {
+    for (const EffectFinding& effect : *list) {
+      const bool known = std::ranges::find(all, effect.name, &EffectFinding::name) != all.end();
+      if (!known && !effect.resolution) all.push_back(effect);
+    }
+  }
+  return all;
+}
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+  const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
+  std::string text = to_string(diagnosis.verdict) + "\n";
+  for (const std::string& words : diagnosis.words) text += words + "\n";
+  text += "\n" + ladder_table(diagnosis);
+  if (!diagnosis.effects.empty())
+    text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
+  for (const auto* set : sets_of_alternatives(diagnosis))
+    text += "\n" + evidence_table(*set, ranked, "The readings cannot separate", set->size());
+  if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
+  text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
+  text +=
+      "  MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from "
+      "every "
+      "other effect, the worst of which is the rival\n";
+  text += confounding_table(diagnosis.confounding);
+  if (!diagnosis.next_measurement.empty()) {
+    text += "\nWhich measurement next\n";
+    for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
+  }
+  if (!diagnosis.detectable.empty()) {
+    text += "\n" + detectable_table(diagnosis) +
+            "  in the volume: root mean square displacement of the functional point by the one found first\n";
+  }
+  text += "\n" + noise_text(diagnosis);
+  text += fmt::format(
+      "\n{} families and {} generic tests; {} families of which less than 2 % is visible; {} readings "
+      "removed\n",
+      diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(),
+      diagnosis.removed_readings.size());
+  text += removed_text(diagnosis);
+  for (const std::string& words : diagnosis.not_looked_for) text += words + "\n";
+  for (const std::string& note : diagnosis.notes) text += "! " + note + "\n";
+  return text;
+}
+
+}  // namespace volcal

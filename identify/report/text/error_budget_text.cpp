@@ -1,0 +1,153 @@
+#include "volcal/identify/report/text/error_budget_text.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kShownContributions = 12;
+
+std::vector<std::string> cells_of(const BudgetLine& line, double coverage_factor) {
+  return {line.name,
+          line.depends_on,
+          fixed_number(line.rms / kMicro, 2),
+          fixed_number(line.max / kMicro, 2),
+          fixed_number(100.0 * line.share, 1),
+          fixed_number(coverage_factor * line.u_rms / kMicro, 2)};
+}
+
+nlohmann::ordered_json line_json(const BudgetLine& line) {
+  nlohmann::ordered_json json = {{"name", line.name}};
+  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on;
+  json["rms_um"] = line.rms / kMicro;
+  json["max_um"] = line.max / kMicro;
+  json["share_percent"] = 100.0 * line.share;
+  json["u_rms_um"] = line.u_rms / kMicro;
+  return json;
+}
+
+/// Width of the band of an error, SI; none where it has no tolerance.
+std::optional<double> width_of_error(const Tolerances& tolerances, const std::string& name) {
+  if (const auto symbol = ErrorSymbol::parse(name)) {
+    const auto found = tolerances.functions.find(*symbol);
+    if (found != tolerances.functions.end()) return found->second;
+  }
+  if (const auto symbol = LocationSymbol::parse(name)) {
+    const auto found = tolerances.squareness.find(*symbol);
+    if (found != tolerances.squareness.end()) return found->second;
+  }
+  return std::nullopt;
+}
+
+std::string unit_of_error(const std::string& name) {
+  if (const auto symbol = ErrorSymbol::parse(name)) return std::string(edge_unit(symbol->component));
+  return "urad";
+}
+
+std::vector<std::string> design_cells(const BudgetLine& line, const Tolerances& tolerances) {
+  const auto width = width_of_error(tolerances, line.name);
+  return {line.name, line.depends_on,
+          width ? short_number(*width / kMicro) + " " + unit_of_error(line.name) : std::string(),
+          fixed_number(line.expected_rms() / kMicro, 2), fixed_number(100.0 * line.expected_share, 1)};
+}
+
+/// Errors of the linear axes that no tolerance bounds.
+std::vector<std::string> without_tolerance(const Machine& machine, const Tolerances& tolerances) {
+  std::vector<std::string> names;
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      if (!tolerances.functions.contains(symbol)) names.push_back(symbol.name());
+    }
+  }
+  for (const LocationSymbol symbol : machine.datum.squareness()) {
+    if (machine.has_axis(symbol.axis) && !tolerances.squareness.contains(symbol))
+      names.push_back(symbol.name());
+  }
+  return names;
+}
+
+nlohmann::ordered_json design_line_json(const BudgetLine& line, const Tolerances& tolerances) {
+  nlohmann::ordered_json json = {{"name", line.name}};
+  if (!line.depends_on.empty()) json["depends_on"] = line.depends_on;
+  if (const auto width = width_of_error(tolerances, line.name))
+    json["tolerance_" + unit_of_error(line.name)] = *width / kMicro;
+  json["expected_rms_um"] = line.expected_rms() / kMicro;
+  json["expected_share_percent"] = 100.0 * line.expected_share;
+  return json;
+}
+
+}  // namespace
+
+std::string design_budget_text(const ErrorBudget& budget, const Machine& machine,
+                               const Tolerances& tolerances, const std::string& tool, bool verbose) {
+  const std::vector<TextColumn> columns = {
+      {"", Align::Left}, {"depends on", Align::Left}, {"tolerance"}, {"RMS [um]"}, {"share [%]"}};
+  TextTable causes(columns, "Expected error in the volume, tool " + tool + ", by cause");
+  for (const BudgetLine& line : budget.causes) causes.add_row(design_cells(line, tolerances));
+  causes.add_row(design_cells(budget.total, tolerances));
+  const std::size_t shown =
+      verbose ? budget.contributions.size() : std::min(kShownContributions, budget.contributions.size());
+  TextTable parts(columns, "By error, largest first");
+  for (std::size_t i = 0; i < shown; ++i) parts.add_row(design_cells(budget.contributions[i], tolerances));
+  std::string text = causes.text() + parts.text();
+  if (shown < budget.contributions.size())
+    text += fmt::format("{} smaller ones: --verbose\n", budget.contributions.size() - shown);
+  if (budget.rms_95 > 0.0)
+    text += fmt::format("RMS of the volume that 95 % of such machines do not exceed: {} um\n",
+                        fixed_number(budget.rms_95 / kMicro, 2));
+  text += "u = tolerance / (2 sqrt 3); over the travel a slope and two waves, straightness two waves\n";
+  const auto missing = without_tolerance(machine, tolerances);
+  if (!missing.empty())
+    text += fmt::format("! without a tolerance, counted as free of error: {}\n", fmt::join(missing, ", "));
+  return text;
+}
+
+nlohmann::ordered_json design_budget_json(const ErrorBudget& budget, const Machine& machine,
+                                          const Tolerances& tolerances) {
+  nlohmann::ordered_json json = {{"total", design_line_json(budget.total, tolerances)}};
+  if (budget.rms_95 > 0.0) json["rms_95_um"] = budget.rms_95 / kMicro;
+  json["causes"] = nlohmann::ordered_json::array();
+  json["contributions"] = nlohmann::ordered_json::array();
+  for (const BudgetLine& line : budget.causes) json["causes"].push_back(design_line_json(line, tolerances));
+  for (const BudgetLine& line : budget.contributions)
+    json["contributions"].push_back(design_line_json(line, tolerances));
+  json["without_tolerance"] = without_tolerance(machine, tolerances);
+  return json;
+}
+
+std::string error_budget_text(const ErrorBudget& budget, const std::string& tool, double coverage_factor,
+                              bool verbose) {
+  const std::vector<TextColumn> columns = {{"", Align::Left}, {"depends on", Align::Left},
+                                           {"RMS [um]"},      {"max [um]"},
+                                           {"share [%]"},     {"U95 [um]"}};
+  TextTable causes(columns, "Error in the volume, tool " + tool + ", by cause");
+  for (const BudgetLine& line : budget.causes) causes.add_row(cells_of(line, coverage_factor));
+  causes.add_row(cells_of(budget.total, coverage_factor));
+  const std::size_t shown =
+      verbose ? budget.contributions.size() : std::min(kShownContributions, budget.contributions.size());
+  TextTable parts(columns, "By error, largest first");
+  for (std::size_t i = 0; i < shown; ++i) parts.add_row(cells_of(budget.contributions[i], coverage_factor));
+  std::string text = causes.text() + parts.text();
+  if (shown < budget.contributions.size())
+    text += fmt::format("{} smaller ones: --verbose\n", budget.contributions.size() - shown);
+  return text;
+}
+
+nlohmann::ordered_json error_budget_json(const ErrorBudget& budget) {
+  nlohmann::ordered_json json = {{"total", line_json(budget.total)}};
+  json["causes"] = nlohmann::ordered_json::array();
+  json["contributions"] = nlohmann::ordered_json::array();
+  for (const BudgetLine& line : budget.causes) json["causes"].push_back(line_json(line));
+  for (const BudgetLine& line : budget.contributions) json["contributions"].push_back(line_json(line));
+  return json;
+}
+
+}  // namespace volcal

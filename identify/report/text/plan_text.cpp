@@ -1,0 +1,271 @@
+#include "volcal/identify/report/text/plan_text.h"
+
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/planning/registry.h"
+#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/report/values/detectable_groups.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kPerMicrometre = 1e6;
+constexpr double kPerMillimetre = 1e3;
+
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string hours(double seconds) {
+  return std::isfinite(seconds) ? fixed_number(seconds / kSecondsPerHour, 2) : "-";
+}
+
+std::string tolerance_text(double tolerance) {
+  return tolerance > 0.0 ? fixed_number(tolerance * kPerMillimetre, 0) : "< 10";
+}
+
+/// Plan, what it is compared with, the user's own.
+std::vector<const ExpectedCampaign*> compared(const CampaignPlan& plan) {
+  std::vector<const ExpectedCampaign*> all = {&plan.plan};
+  if (plan.settings.existing == nullptr) all.push_back(&plan.textbook);
+  if (plan.given) all.push_back(&*plan.given);
+  return all;
+}
+
+InstrumentWords words_of(const CampaignPlan& plan) { return plan_instrument_of(plan.settings).words(); }
+
+/// "100 mm, u 0.5 um"
+std::string bar_words(const PlannedBar& bar) {
+  const std::string length = fmt::format("{:g} mm", bar.length * kPerMillimetre);
+  if (!bar.length_sigma) return length + ", length unknown";
+  return fmt::format("{}, u {:g} um", length, *bar.length_sigma * kPerMicrometre);
+}
+
+/// "short 76, side_x 90"; where a tool has several parts "short XY 72, short YZ 66".
+std::string readings_by_tool(const PlanLayout& layout, std::size_t station, const Machine& machine) {
+  std::string text;
+  for (const PlanRun& run : layout.runs) {
+    if (run.station != station) continue;
+    text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", machine.tools[run.tool].name,
+                        run.part.empty() ? "" : " " + run.part, 2 * run.positions.size());
+  }
+  return text;
+}
+
+/// Stations of a campaign, or places of centre balls, whichever the plan has.
+std::set<std::string> places_of(const Campaign& campaign, const InstrumentWords& words) {
+  std::set<std::string> places;
+  for (const Setup& setup : campaign.setups) {
+    const PlanInstrument* instrument = find_plan_instrument(setup.instrument);
+    if (instrument == nullptr || instrument->words().place != words.place) continue;
+    if (const auto place = instrument->place_of(setup, campaign.machine)) places.insert(place->name);
+  }
+  return places;
+}
+
+std::string head(const CampaignPlan& plan) {
+  const PlanSettings& settings = plan.settings;
+  const PlanBudget& budget = settings.budget;
+  std::string text = fmt::format("{} ({})\n", settings.machine.name, settings.machine.structure.code);
+  text += fmt::format("minimised: {}\n", target_words(settings));
+  text += fmt::format("budget: {} {}{} of {}", budget.stations, settings.existing ? "further " : "",
+                      words_of(plan).places, settings.instrument);
+  if (settings.bar.length > 0.0) text += " " + bar_words(settings.bar);
+  if (budget.readings) text += fmt::format(", {} readings", count_number(*budget.readings));
+  if (budget.time) text += fmt::format(", {} h", hours(*budget.time));
+  text += "\n";
+  return text;
+}
+
+std::string layout_table(const CampaignPlan& plan) {
+  const PlanLayout& layout = plan.searched.layout;
+  const InstrumentWords words = words_of(plan);
+  TextTable table({{words.place, Align::Left},
+                   {"x [mm]"},
+                   {"y [mm]"},
+                   {"z [mm]"},
+                   {"may be off [mm]"},
+                   {"readings by tool", Align::Left}},
+                  words.heading);
+  for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
+    const Eigen::Vector3d at = layout.stations_w[i] * kPerMillimetre;
+    const bool known = i < plan.searched.station_tolerance.size();
+    table.add_row({layout.station_names[i], fixed_number(at.x(), 0), fixed_number(at.y(), 0),
+                   fixed_number(at.z(), 0), known ? tolerance_text(plan.searched.station_tolerance[i]) : "-",
+                   readings_by_tool(layout, i, plan.settings.machine)});
+  }
+  std::string text = table.text();
+  if (!plan.searched.as_good_w.empty()) {
+    std::vector<std::string> places;
+    for (const Eigen::Vector3d& at : plan.searched.as_good_w) {
+      places.push_back(fmt::format("[{:.0f}, {:.0f}, {:.0f}]", at.x() * kPerMillimetre,
+                                   at.y() * kPerMillimetre, at.z() * kPerMillimetre));
+    }
+    text += fmt::format("  as good within {:.1f} %: {} mm\n",
+                        std::max(0.1, 100.0 * (plan.searched.as_good_ratio - 1.0)), joined_words(places));
+  }
+  return text;
+}
+
+std::string figures_table(const CampaignPlan& plan) {
+  const InstrumentWords words = words_of(plan);
+  TextTable table({{"campaign", Align::Left},
+                   {words.places},
+                   {"setups"},
+                   {"readings"},
+                   {"time [h]"},
+                   {"u volume, RMS [um]"},
+                   {"largest [um]"},
+                   {"worst length in tables [um]"},
+                   {"worst angle [urad]"},
+                   {"not visible", Align::Left}},
+                  "What it would tell (standard uncertainties)");
+  for (const ExpectedCampaign* each : compared(plan)) {
+    const std::vector<std::string> hidden = each->invisible();
+    table.add_row({each->name, count_number(static_cast<long long>(places_of(each->campaign, words).size())),
+                   count_number(static_cast<long long>(each->campaign.setups.size())),
+                   count_number(static_cast<long long>(each->campaign.reading_count())),
+                   hours(each->duration), fixed_number(each->volumetric.rms * kPerMicrometre, 3),
+                   fixed_number(each->volumetric.largest * kPerMicrometre, 3),
+                   fixed_number(each->worst_length * kPerMicrometre, 3),
+                   fixed_number(each->worst_angle * kPerMicrometre, 3),
+                   hidden.empty() ? "-" : joined_words(hidden)});
+  }
+  return table.text();
+}
+
+const Observability* error_of(const ExpectedCampaign& campaign, const std::string& symbol) {
+  for (const Observability& error : campaign.result.rank.errors) {
+    if (error.symbol == symbol) return &error;
+  }
+  return nullptr;
+}
+
+std::string errors_table(const CampaignPlan& plan) {
+  std::vector<TextColumn> columns = {{"error", Align::Left}, {"unit", Align::Left}};
+  const std::vector<const ExpectedCampaign*> all = compared(plan);
+  for (const ExpectedCampaign* each : all) columns.push_back({"U95 " + each->name});
+  columns.push_back({"less by [%]"});
+  columns.push_back({"visible fraction"});
+  columns.push_back({"effective parameters"});
+  TextTable table(columns,
+                  "Every error: U95 = 1.96 u, root mean square over the travel; visible fraction (share of "
+                  "its signal that "
+                  "nothing else imitates) and effective parameters with the plan");
+  for (const Observability& error : plan.plan.result.rank.errors) {
+    const auto symbol = ErrorSymbol::parse(error.symbol);
+    const auto location = LocationSymbol::parse(error.symbol);
+    const bool angle = symbol     ? is_rotation(symbol->component)
+                       : location ? is_rotation(location->component)
+                                  : false;
+    if (!symbol && !location) continue;
+    std::vector<std::string> cells = {error.symbol, angle ? "urad" : "um"};
+    for (const ExpectedCampaign* each : all) {
+      const Observability* own = error_of(*each, error.symbol);
+      cells.push_back(own == nullptr  ? "-"
+                      : !own->visible ? "not visible"
+                                      : fixed_number(kCoverageFactor * own->u_rms * kPerMicrometre, 3));
+    }
+    const Observability* before = error_of(*all[1], error.symbol);
+    const bool both = before != nullptr && before->visible && error.visible;
+    cells.push_back(both ? fixed_number(100.0 * (1.0 - error.u_rms / before->u_rms), 1) : "-");
+    cells.push_back(fixed_number(error.visible_fraction, 3));
+    cells.push_back(fixed_number(error.effective_parameters, 1));
+    table.add_row(cells);
+  }
+  return table.text();
+}
+
+std::string detectable_table(const CampaignPlan& plan) {
+  TextTable table({{"effect", Align::Left},
+                   {"effects"},
+                   {"not visible"},
+                   {"MDB, easiest"},
+                   {"hardest"},
+                   {"unit", Align::Left},
+                   {"hardest one", Align::Left}},
+                  "Smallest amplitudes that would be found (80 % power, 0.5 % risk over the catalogue); all "
+                  "in plan.json");
+  for (const report::DetectableGroup& group : report::detectable_groups(plan.plan.detectable)) {
+    const auto cell = [&](const DetectableEffect* effect) {
+      return effect == nullptr ? "-" : short_number(effect->mdb / group.si_per_unit, 3);
+    };
+    table.add_row({group.kind, count_number(static_cast<long long>(group.effects)),
+                   count_number(static_cast<long long>(group.not_visible)), cell(group.easiest),
+                   cell(group.hardest), group.unit, group.hardest == nullptr ? "-" : group.hardest->label});
+  }
+  return table.text();
+}
+
+std::string invisible_text(const CampaignPlan& plan) {
+  std::string text;
+  for (const std::string& sentence : plan.plan.result.rank.invisible) text += "  " + sentence + "\n";
+  return text.empty() ? "" : "\nWhat this budget cannot determine\n" + text;
+}
+
+std::string options_table(const CampaignPlan& plan) {
+  TextTable table({{"one setup more", Align::Left},
+                   {"readings"},
+                   {"u volume, RMS [um]"},
+                   {"makes visible", Align::Left},
+                   {"still not visible", Align::Left}},
+                  "What one setup more would bring, best first");
+  for (const PlanOption& option : plan.options) {
+    table.add_row({option.words, count_number(static_cast<long long>(option.readings)),
+                   fixed_number(option.volumetric_rms * kPerMicrometre, 3),
+                   option.made_visible.empty() ? "-" : joined_words(option.made_visible),
+                   option.still_invisible.empty() ? "-" : joined_words(option.still_invisible)});
+  }
+  return table.empty() ? "" : "\n" + table.text();
+}
+
+std::string verdict(const CampaignPlan& plan) {
+  const double ratio = target_ratio(plan);
+  const std::string other = plan.settings.existing != nullptr ? "what there is" : "the textbook layout";
+  return fmt::format("Against {}: {} {:.1f} % {}\n", other, target_words(plan.settings),
+                     100.0 * std::abs(1.0 - ratio), ratio <= 1.0 ? "less" : "more");
+}
+
+}  // namespace
+
+std::string target_words(const PlanSettings& settings) {
+  switch (settings.target) {
+    case PlanTarget::Volumetric:
+      return "volumetric uncertainty, RMS of the vector";
+    case PlanTarget::Worst:
+      return "largest uncertainty of a table value, rotations by their lever";
+    case PlanTarget::Symbol:
+      return "uncertainty of " + settings.symbol;
+    case PlanTarget::Separate:
+      break;
+  }
+  std::vector<std::string> names;
+  for (const EffectSpec& effect : settings.separate)
+    names.push_back(full_name(find_effect(effect.kind)->make(effect, {})->name()));
+  return "amplitude at which " + joined_words(names) + " are separated";
+}
+
+const ExpectedCampaign& compared_with(const CampaignPlan& plan) {
+  return plan.settings.existing != nullptr ? *plan.given : plan.textbook;
+}
+
+double target_ratio(const CampaignPlan& plan) {
+  const bool by_search =
+      plan.settings.target == PlanTarget::Separate || plan.settings.target == PlanTarget::Worst;
+  if (by_search && plan.searched.textbook > 0.0)
+    return std::sqrt(plan.searched.value / plan.searched.textbook);
+  return plan.plan.target_u / compared_with(plan).target_u;
+}
+
+std::string plan_text(const CampaignPlan& plan) {
+  return head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) + "\n" +
+         errors_table(plan) + "\n" + detectable_table(plan) + invisible_text(plan) + options_table(plan) +
+         campaign_notes_text(plan.notes);
+}
+
+}  // namespace volcal

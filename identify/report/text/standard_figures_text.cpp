@@ -1,0 +1,233 @@
+#include "volcal/identify/report/text/standard_figures_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "volcal/identify/report/text/text_tables.h"
+
+namespace volcal {
+namespace {
+
+using Cells = std::vector<std::string>;
+
+std::string micrometres(std::optional<double> value) { return value ? fixed_number(*value * 1e6, 2) : "-"; }
+
+void append(Cells& cells, Cells more) {
+  cells.insert(cells.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// One row for the readings and one per model under a common heading; the heading stands once.
+class SourceRows {
+ public:
+  explicit SourceRows(TextTable& table) : table_(table) {}
+
+  void add(Cells heading, const std::string& source, Cells figures) {
+    if (heading == last_) {
+      heading.assign(heading.size(), "");
+    } else {
+      last_ = heading;
+    }
+    heading.push_back(source);
+    append(heading, std::move(figures));
+    table_.add_row(std::move(heading));
+  }
+
+ private:
+  TextTable& table_;
+  Cells last_;
+};
+
+std::vector<TextColumn> columns(std::initializer_list<const char*> left,
+                                std::initializer_list<const char*> right) {
+  std::vector<TextColumn> result;
+  for (const char* header : left) result.push_back({header, Align::Left});
+  for (const char* header : right) result.push_back({header, Align::Right});
+  return result;
+}
+
+Cells positioning_cells(const PositioningFigures& figures) {
+  return {micrometres(figures.accuracy),
+          micrometres(figures.positive.accuracy),
+          micrometres(figures.negative.accuracy),
+          micrometres(figures.systematic),
+          micrometres(figures.positive.systematic),
+          micrometres(figures.negative.systematic),
+          micrometres(figures.mean_bidirectional),
+          micrometres(figures.repeatability),
+          micrometres(figures.positive.repeatability),
+          micrometres(figures.negative.repeatability),
+          micrometres(figures.reversal),
+          micrometres(figures.mean_reversal)};
+}
+
+std::string lines_text(std::span<const NamedFigures> models) {
+  TextTable table(columns({"setup", "axis", "at", "source"},
+                          {"A", "A+", "A-", "E", "E+", "E-", "M", "R", "R+", "R-", "B", "mean B"}),
+                  "Positioning of the axes, ISO 230-2:2014 [um]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->lines;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup, {letter_of(tests[i].axis)}, tests[i].place};
+    rows.add(heading, "readings", positioning_cells(tests[i].figures.readings));
+    for (const NamedFigures& model : models) {
+      rows.add(heading, model.name, positioning_cells(model.figures->lines[i].figures.model));
+    }
+  }
+  return table.text();
+}
+
+std::string diagonals_text(std::span<const NamedFigures> models) {
+  TextTable table(columns({"setup", "diagonal", "source"},
+                          {"A", "A+", "A-", "E", "E+", "E-", "M", "R", "R+", "R-", "B", "mean B"}),
+                  "Diagonal displacement, ISO 230-6:2002 [um]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->diagonals;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup, tests[i].figures.readings.name};
+    rows.add(heading, "readings", positioning_cells(tests[i].figures.readings.positioning));
+    for (const NamedFigures& model : models) {
+      rows.add(heading, model.name, positioning_cells(model.figures->diagonals[i].figures.model.positioning));
+    }
+  }
+  return table.text();
+}
+
+std::string diagonal_groups_text(std::span<const NamedFigures> models) {
+  TextTable table(columns({"diagonals", "number", "source"}, {"E_d [um]", "B_d [um]"}));
+  SourceRows rows(table);
+  const auto& groups = models.front().figures->diagonal_groups;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const Cells heading = {(groups[i].axes.size() == 3 ? "body " : "face ") + letters_of(groups[i].axes),
+                           std::to_string(groups[i].summary.readings.diagonals)};
+    const auto cells = [](const DiagonalSummary& summary) {
+      return Cells{micrometres(summary.systematic), micrometres(summary.reversal)};
+    };
+    rows.add(heading, "readings", cells(groups[i].summary.readings));
+    for (const NamedFigures& model : models) {
+      rows.add(heading, model.name, cells(model.figures->diagonal_groups[i].summary.model));
+    }
+  }
+  return table.text();
+}
+
+/// Mean over both ends and senses of the reversal of one axis of the circle.
+std::optional<double> mean_reversal(const CircularFigures& figures, int axis) {
+  double sum = 0.0;
+  int count = 0;
+  for (const QuadrantReversal& reversal : figures.reversals) {
+    if (reversal.axis != axis) continue;
+    sum += reversal.value;
+    ++count;
+  }
+  return count == 0 ? std::nullopt : std::optional(sum / count);
+}
+
+std::string circle_reversal(const CircleTest& test, const CircularFigures& figures, AxisName axis) {
+  if (axis == test.first) return micrometres(mean_reversal(figures, 0));
+  if (axis == test.second) return micrometres(mean_reversal(figures, 1));
+  return "-";
+}
+
+Cells circle_cells(const CircleTest& test, const CircularFigures& figures) {
+  const auto of = [](const std::optional<CircularPath>& path, double CircularPath::*figure) {
+    return path ? micrometres((*path).*figure) : std::string("-");
+  };
+  Cells cells = {of(figures.counter_clockwise, &CircularPath::circular_deviation),
+                 of(figures.clockwise, &CircularPath::circular_deviation),
+                 micrometres(figures.bidirectional),
+                 of(figures.counter_clockwise, &CircularPath::radial_max),
+                 of(figures.counter_clockwise, &CircularPath::radial_min),
+                 of(figures.clockwise, &CircularPath::radial_max),
+                 of(figures.clockwise, &CircularPath::radial_min),
+                 micrometres(figures.mean_radial)};
+  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+    cells.push_back(circle_reversal(test, figures, axis));
+  }
+  return cells;
+}
+
+std::string circles_text(std::span<const NamedFigures> models) {
+  TextTable table(
+      columns({"setup", "plane", "R [mm]", "source"}, {"G ccw", "G cw", "G(b)", "Fmax ccw", "Fmin ccw",
+                                                       "Fmax cw", "Fmin cw", "D", "B X", "B Y", "B Z"}),
+      "Circular tests, ISO 230-4:2005 [um]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->circles;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup,
+                           {letter_of(tests[i].first), letter_of(tests[i].second)},
+                           short_number(tests[i].radius * 1e3)};
+    rows.add(heading, "readings", circle_cells(tests[i], tests[i].figures.readings));
+    for (const NamedFigures& model : models) {
+      rows.add(heading, model.name, circle_cells(tests[i], model.figures->circles[i].figures.model));
+    }
+  }
+  return table.text();
+}
+
+Cells volumetric_cells(const VolumetricFigures& figures) {
+  return {std::to_string(figures.points), micrometres(figures.range.x()), micrometres(figures.range.y()),
+          micrometres(figures.range.z()), micrometres(figures.rms),       micrometres(figures.max)};
+}
+
+std::string points_text(std::span<const NamedFigures> models) {
+  TextTable table(
+      columns({"setup", "source"}, {"points", "range x", "range y", "range z", "rms |e|", "max |e|"}),
+      "Volumetric errors [um]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->points;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    rows.add({tests[i].setup}, "readings", volumetric_cells(tests[i].figures.readings));
+    for (const NamedFigures& model : models) {
+      const PointsTest& test = model.figures->points[i];
+      rows.add({tests[i].setup}, model.name, volumetric_cells(test.figures.model));
+      rows.add({tests[i].setup}, "readings - " + model.name, volumetric_cells(test.difference));
+    }
+  }
+  return table.text();
+}
+
+/// "note (setups)" for every different note, in order of appearance.
+template <class Test>
+std::string notes_text(const std::vector<Test>& tests) {
+  std::vector<std::pair<std::string, std::string>> notes;
+  for (const Test& test : tests) {
+    for (const std::string& note : test.notes) {
+      const auto same =
+          std::find_if(notes.begin(), notes.end(), [&](const auto& known) { return known.first == note; });
+      if (same == notes.end()) {
+        notes.emplace_back(note, test.setup);
+      } else {
+        same->second += ", " + test.setup;
+      }
+    }
+  }
+  std::string text;
+  for (const auto& [note, setups] : notes) text += fmt::format("  {} ({})\n", note, setups);
+  return text;
+}
+
+}  // namespace
+
+std::string standard_figures_text(std::span<const NamedFigures> models) {
+  const StandardFigures& first = *models.front().figures;
+  const std::string circles = circles_text(models);
+  const std::string circle_key =
+      circles.empty() ? "" : "  B: reversal at the quadrants as ISO 230-2, mean of both ends and senses\n";
+  std::string text;
+  for (const std::string& part :
+       {lines_text(models) + notes_text(first.lines),
+        diagonals_text(models) + diagonal_groups_text(models) + notes_text(first.diagonals),
+        circles + circle_key + notes_text(first.circles), points_text(models) + notes_text(first.points)}) {
+    if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
+  }
+  for (const std::string& reason : first.not_recognised) text += "  no standard test: " + reason + '\n';
+  return text;
+}
+
+}  // namespace volcal

@@ -1,0 +1,310 @@
+#include "volcal/identify/standards/standard_figures.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "volcal/identify/standards/approach.h"
+#include "volcal/identify/standards/target_positions.h"
+#include "volcal/identify/standards/test_paths.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/instruments/nuisance.h"
+#include "volcal/model/observation/channels.h"
+
+namespace volcal {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kBeamAlignment = 0.01;  // rad between beam and motion
+
+/// Readings and predictions of one setup, [channel][row]; not a number where there is no record.
+struct SetupValues {
+  std::vector<std::vector<double>> reading;
+  std::vector<std::vector<double>> predicted;
+  int removed = 0;
+
+  bool has(std::size_t row) const {
+    return std::all_of(reading.begin(), reading.end(),
+                       [&](const std::vector<double>& channel) { return !std::isnan(channel[row]); });
+  }
+};
+
+std::vector<SetupValues> values_by_setup(const Campaign& campaign, std::span<const ResidualRecord> records) {
+  std::vector<SetupValues> values;
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<double> empty(setup.readings.size(), std::nan(""));
+    values.push_back(
+        {std::vector(setup.readings.channels(), empty), std::vector(setup.readings.channels(), empty), 0});
+  }
+  for (const ResidualRecord& record : records) {
+    if (record.left_out) continue;
+    SetupValues& setup = values[record.setup];
+    const auto channel = static_cast<std::size_t>(record.channel);
+    setup.reading[channel][record.row] = record.reading;
+    setup.predicted[channel][record.row] = record.predicted;
+    setup.removed += record.removed ? 1 : 0;
+  }
+  return values;
+}
+
+std::vector<std::string> common_notes(const SetupValues& values) {
+  if (values.removed == 0) return {};
+  return {fmt::format("{} readings that the adjustment left out are in these figures", values.removed)};
+}
+
+std::string place_of(const Campaign& campaign, const Setup& setup, const StraightPath& path) {
+  std::string place;
+  for (const Axis& axis : campaign.machine.axes) {
+    if (is_rotary(axis.name) || axis.name == path.moving.front()) continue;
+    const double position = setup.readings.position[index_of(axis.name)][path.rows.front()];
+    place += fmt::format("{}{} {:g}", place.empty() ? "" : ", ", letter_of(axis.name),
+                         std::round(position * 1e6) / 1e3);
+  }
+  return place.empty() ? place : place + " mm";
+}
+
+/// Deviations along a line of a displacement setup.
+class LineEvaluation {
+ public:
+  LineEvaluation(const Campaign& campaign, const Setup& setup, const StraightPath& path)
+      : setup_(setup), path_(path), point_w_(nominal_points_w(campaign, setup)) {
+    const Vector3d first_to_last_w = line_direction(point_w_).value_or(path.direction_w);
+    beam_w_ = setup.options.vector("direction").value_or(first_to_last_w).normalized();
+    is_deviation_ = channel_column(setup, 0).starts_with("deviation");
+    own_zero_ = setup.options.text("offset_per").value_or("setup") == "line" && !setup.readings.line.empty();
+  }
+
+  bool beam_along_motion() const { return beam_w_.cross(path_.direction_w).norm() < kBeamAlignment; }
+  bool every_line_has_its_own_zero() const { return own_zero_; }
+
+  PositioningFigures figures(const SetupValues& values, const std::vector<double>& value) const {
+    std::vector<PositioningReading> readings;
+    std::vector<std::int32_t> line;
+    for (std::size_t k = 0; k < path_.rows.size(); ++k) {
+      const std::size_t row = path_.rows[k];
+      if (!values.has(row)) continue;
+      readings.push_back({path_.along[k], deviation(row, value[row]), path_.approach[k]});
+      line.push_back(setup_.readings.line.empty() ? 0 : setup_.readings.line[row]);
+    }
+    if (own_zero_) zero_each_line(line, readings);
+    PositioningFigures figures = positioning_figures(readings);
+    if (own_zero_) drop_what_compares_lines(line, readings, figures);
+    return figures;
+  }
+
+ private:
+  double deviation(std::size_t row, double value) const {
+    const double commanded = beam_w_.dot(point_w_[row] - point_w_[path_.rows.front()]);
+    const double sense = beam_w_.dot(path_.direction_w) > 0.0 ? 1.0 : -1.0;
+    return sense * (is_deviation_ ? value : value - commanded);
+  }
+
+  static void zero_each_line(const std::vector<std::int32_t>& line,
+                             std::vector<PositioningReading>& readings) {
+    std::map<std::int32_t, std::pair<double, int>> sums;
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      sums[line[k]].first += readings[k].deviation;
+      ++sums[line[k]].second;
+    }
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      readings[k].deviation -= sums[line[k]].first / sums[line[k]].second;
+    }
+  }
+
+  /// A line's own zero says nothing between lines: figures of both directions, and those of one direction
+  /// where its lines did not meet the same targets.
+  static void drop_what_compares_lines(const std::vector<std::int32_t>& line,
+                                       const std::vector<PositioningReading>& readings,
+                                       PositioningFigures& figures) {
+    figures.reversal.reset();
+    figures.mean_reversal.reset();
+    figures.systematic.reset();
+    figures.repeatability.reset();
+    figures.accuracy.reset();
+    const bool positive = lines_share_targets(line, readings, +1);
+    const bool negative = lines_share_targets(line, readings, -1);
+    if (!positive) figures.positive = {};
+    if (!negative) figures.negative = {};
+    if (!positive || !negative) figures.mean_bidirectional.reset();
+  }
+
+  static bool lines_share_targets(const std::vector<std::int32_t>& line,
+                                  const std::vector<PositioningReading>& readings, int direction) {
+    std::vector<double> position;
+    for (const PositioningReading& reading : readings) position.push_back(reading.target);
+    const TargetGroups targets = group_targets(position, kSamePosition);
+    std::map<std::int32_t, std::set<std::size_t>> met;
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      if (readings[k].direction == direction) met[line[k]].insert(targets.group[k]);
+    }
+    return std::all_of(met.begin(), met.end(),
+                       [&](const auto& one) { return one.second == met.begin()->second; });
+  }
+
+  const Setup& setup_;
+  const StraightPath& path_;
+  std::vector<Vector3d> point_w_;
+  Vector3d beam_w_;
+  bool is_deviation_ = false;
+  bool own_zero_ = false;
+};
+
+std::vector<std::string> line_notes(const LineEvaluation& evaluation, const PositioningFigures& figures,
+                                    const SetupValues& values) {
+  std::vector<std::string> notes = common_notes(values);
+  if (evaluation.every_line_has_its_own_zero()) {
+    const bool shared = figures.positive.systematic || figures.negative.systematic;
+    notes.emplace_back(shared
+                           ? "every line has its own zero: reversal and bidirectional figures are not seen"
+                           : "every line has its own zero and targets of its own: no figure compares them");
+  }
+  if (figures.target_spread > kSamePosition) {
+    notes.push_back(fmt::format("recorded positions within {:.1f} um were taken as one target",
+                                figures.target_spread / kMetrePerMicrometre));
+  }
+  if (figures.unknown_direction > 0) {
+    notes.push_back(fmt::format("{} readings of unknown approach are left out", figures.unknown_direction));
+  }
+  const auto one_sided =
+      std::count_if(figures.targets.begin(), figures.targets.end(),
+                    [](const PositioningTarget& target) { return !target.bidirectional(); });
+  if (one_sided > 0 && figures.reversal) {
+    notes.push_back(
+        fmt::format("{} of {} targets were met from one direction only", one_sided, figures.targets.size()));
+  }
+  const bool repeated = figures.positive.repeatability || figures.negative.repeatability;
+  if (!repeated && !figures.targets.empty()) {
+    notes.emplace_back("R and A are undefined: they need two approaches of every target from a direction");
+  }
+  return notes;
+}
+
+void evaluate_displacement(const Campaign& campaign, const Setup& setup, const SetupValues& values,
+                           StandardFigures& result) {
+  const FoundPaths<StraightPath> found = straight_paths(campaign, setup);
+  for (const std::string& reason : found.not_recognised) {
+    result.not_recognised.push_back(setup.name + ": " + reason);
+  }
+  for (const StraightPath& path : found.paths) {
+    const LineEvaluation evaluation(campaign, setup, path);
+    if (!evaluation.beam_along_motion()) {
+      result.not_recognised.push_back(setup.name + ": the beam does not lie along the motion of " +
+                                      path.name);
+      continue;
+    }
+    PositioningFigures readings = evaluation.figures(values, values.reading[0]);
+    PositioningFigures model = evaluation.figures(values, values.predicted[0]);
+    std::vector<std::string> notes = line_notes(evaluation, readings, values);
+    if (path.moving.size() == 1) {
+      result.lines.push_back({setup.name,
+                              path.moving.front(),
+                              place_of(campaign, setup, path),
+                              {std::move(readings), std::move(model)},
+                              std::move(notes)});
+    } else {
+      result.diagonals.push_back({setup.name,
+                                  path.moving,
+                                  {{path.name, std::move(readings)}, {path.name, std::move(model)}},
+                                  std::move(notes)});
+    }
+  }
+}
+
+void summarise_diagonals(StandardFigures& result) {
+  std::map<std::vector<AxisName>, SideBySide<std::vector<DiagonalFigures>>> groups;
+  for (const DiagonalTest& test : result.diagonals) {
+    groups[test.axes].readings.push_back(test.figures.readings);
+    groups[test.axes].model.push_back(test.figures.model);
+  }
+  for (const auto& [axes, figures] : groups) {
+    result.diagonal_groups.push_back(
+        {axes, {diagonal_summary(figures.readings), diagonal_summary(figures.model)}});
+  }
+}
+
+/// Circle of a ball-bar setup: distances to the bar's centre, in the plane of the circle.
+CircularFigures circle_figures(const CirclePath& path, const Vector3d& instrument_w,
+                               const SetupValues& values, const std::vector<double>& length) {
+  const Vector3d offset_w = instrument_w - path.centre_w;
+  const Eigen::Vector2d in_plane(offset_w.dot(path.first_w), offset_w.dot(path.second_w));
+  const double height = offset_w.dot(path.first_w.cross(path.second_w));
+  std::vector<CircleReading> readings;
+  for (std::size_t k = 0; k < path.rows.size(); ++k) {
+    const std::size_t row = path.rows[k];
+    if (!values.has(row) || length[row] <= std::abs(height)) continue;
+    const double radius = std::sqrt(length[row] * length[row] - height * height);
+    readings.push_back({path.angle[k], radius - path.commanded_radius[k], path.sense[k]});
+  }
+  return circular_figures(readings, path.radius, in_plane);
+}
+
+void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const SetupValues& values,
+                       StandardFigures& result) {
+  const FoundPaths<CirclePath> found = circle_paths(campaign, setup);
+  for (const std::string& reason : found.not_recognised) {
+    result.not_recognised.push_back(setup.name + ": " + reason);
+  }
+  for (const CirclePath& path : found.paths) {
+    const Vector3d instrument_w = setup.options.vector("centre").value_or(path.centre_w);
+    CircleTest test{setup.name,    path.first, path.second,         path.radius,
+                    path.centre_w, {},         common_notes(values)};
+    test.figures.readings = circle_figures(path, instrument_w, values, values.reading[0]);
+    test.figures.model = circle_figures(path, instrument_w, values, values.predicted[0]);
+    if (setup.options.number("length_sigma").value_or(1.0) != 0.0) {
+      test.notes.emplace_back("the bar is not calibrated: F and D contain its length error");
+    }
+    result.circles.push_back(std::move(test));
+  }
+}
+
+void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupValues& values,
+                     StandardFigures& result) {
+  if (setup.readings.channels() < 3) {
+    result.not_recognised.push_back(setup.name + (setup.readings.channels() == 1
+                                                      ? ": one component of the error vectors only"
+                                                      : ": two components of the error vectors only"));
+    return;
+  }
+  const std::vector<Vector3d> point_w = nominal_points_w(campaign, setup);
+  std::vector<Vector3d> points, readings, model;
+  for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+    if (!values.has(row)) continue;
+    points.push_back(point_w[row]);
+    readings.emplace_back(values.reading[0][row], values.reading[1][row], values.reading[2][row]);
+    model.emplace_back(values.predicted[0][row], values.predicted[1][row], values.predicted[2][row]);
+  }
+  if (points.empty()) return;
+  std::vector<Vector3d> difference;
+  difference.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) difference.emplace_back(readings[i] - model[i]);
+  PointsTest test{setup.name, {}, volumetric_figures(difference), common_notes(values)};
+  if (setup.options.text("alignment").value_or("rigid") == "rigid") {
+    readings = without_rigid_motion(points, readings);
+    model = without_rigid_motion(points, model);
+    test.notes.emplace_back("readings and model each without their best rigid motion");
+  }
+  test.figures = {volumetric_figures(readings), volumetric_figures(model)};
+  result.points.push_back(std::move(test));
+}
+
+}  // namespace
+
+StandardFigures standard_figures(const Campaign& campaign, std::span<const ResidualRecord> records) {
+  const std::vector<SetupValues> values = values_by_setup(campaign, records);
+  StandardFigures result;
+  for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
+    const Setup& setup = campaign.setups[i];
+    if (setup.instrument == "displacement") evaluate_displacement(campaign, setup, values[i], result);
+    if (setup.instrument == "ball-bar") evaluate_ball_bar(campaign, setup, values[i], result);
+    if (setup.instrument == "volumetric-points") evaluate_points(campaign, setup, values[i], result);
+  }
+  summarise_diagonals(result);
+  return result;
+}
+
+}  // namespace volcal

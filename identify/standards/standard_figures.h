@@ -1,0 +1,77 @@
+#pragma once
+/// The standards' own figures of a campaign, from its readings and from a model's predictions side by side:
+/// ISO 230-2 for displacement along one axis, ISO 230-6 along diagonals, ISO 230-4 for circles of a ball-bar,
+/// and volumetric figures for measured error vectors. m and rad.
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/standards/iso230_2.h"
+#include "volcal/identify/standards/iso230_4.h"
+#include "volcal/identify/standards/iso230_6.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+/// The same figures of the readings and of the model at the same commanded positions.
+template <class Figures>
+struct SideBySide {
+  Figures readings;
+  Figures model;
+};
+
+struct AxisLineTest {
+  std::string setup;
+  AxisName axis = AxisName::X;
+  std::string place;  ///< positions of the other linear axes: "Y 100, Z -135 mm"
+  SideBySide<PositioningFigures> figures;
+  std::vector<std::string> notes;
+};
+
+struct DiagonalTest {
+  std::string setup;
+  std::vector<AxisName> axes;  ///< two: face, three: body diagonal
+  SideBySide<DiagonalFigures> figures;
+  std::vector<std::string> notes;
+};
+
+/// Body diagonals, or face diagonals of one plane, of the whole campaign.
+struct DiagonalGroup {
+  std::vector<AxisName> axes;
+  SideBySide<DiagonalSummary> summary;
+};
+
+struct CircleTest {
+  std::string setup;
+  AxisName first = AxisName::X;
+  AxisName second = AxisName::Y;
+  double radius = 0.0;
+  Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
+  SideBySide<CircularFigures> figures;
+  std::vector<std::string> notes;
+};
+
+struct PointsTest {
+  std::string setup;
+  SideBySide<VolumetricFigures> figures;
+  VolumetricFigures difference;  ///< readings minus model
+  std::vector<std::string> notes;
+};
+
+struct StandardFigures {
+  std::vector<AxisLineTest> lines;
+  std::vector<DiagonalTest> diagonals;
+  std::vector<DiagonalGroup> diagonal_groups;
+  std::vector<CircleTest> circles;
+  std::vector<PointsTest> points;
+  std::vector<std::string> not_recognised;  ///< setups of these instruments that are no such test, and why
+};
+
+/// `records`: one per observation, any order. Readings without a record are left out of both sides.
+StandardFigures standard_figures(const Campaign& campaign, std::span<const ResidualRecord> records);
+
+}  // namespace volcal

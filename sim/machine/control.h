@@ -1,0 +1,86 @@
+#pragma once
+/// The compensation of a simulated control: tables as their file holds them, and what they add to the
+/// commands. Interpolation, directions and signs are the simulator's own and share nothing with the exporters
+/// (identify/compensation), so that a mistake there cannot cancel. m and rad; types of ISO/TR
+/// 16907:2015, 8.2.
+
+#include <Eigen/Core>
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volcal/sim/machine/truth_machine.h"
+
+namespace volcal::sim {
+
+enum class TableValue {
+  Correction,  ///< the control adds it
+  Error        ///< actual minus nominal: the control subtracts it
+};
+
+/// Linear between positions, the end values beyond them; a column per direction of approach, the mean of both
+/// where the direction is unknown.
+struct ControlAxisTable {
+  AxisName input = AxisName::X;
+  AxisName output = AxisName::X;
+  TableValue meaning = TableValue::Correction;
+  std::vector<double> position;  ///< of `input`, ascending
+  std::vector<double> towards_plus;
+  std::vector<double> towards_minus;
+};
+
+/// What the product of two tables adds to the first one's output: value times value of `factor` as a number.
+struct ControlProduct {
+  ControlAxisTable table;
+  ControlAxisTable factor;
+};
+
+/// Trilinear between nodes, the end values beyond them.
+struct ControlGrid {
+  TableValue meaning = TableValue::Correction;
+  std::array<std::vector<double>, 3> nodes;  ///< of X, Y, Z, ascending; one node: the axis does not matter
+  std::vector<Eigen::Vector3d> mean;         ///< of both directions, Z fastest
+  /// Per axis, value approaching towards + minus value approaching towards -; empty = none.
+  std::array<std::vector<Eigen::Vector3d>, 3> reversal;
+};
+
+/// Printer firmware: x -= y xy + z (xz - xy yz), y -= z yz.
+struct ControlSkew {
+  double xy = 0.0, xz = 0.0, yz = 0.0;
+};
+
+/// A control that computes the functional point from tables of single errors and the tool it was told. Uses
+/// the exact transforms of truth_machine.h; zero at home approached towards +.
+struct ControlModel {
+  Machine machine;
+  Eigen::Vector3d tool = Eigen::Vector3d::Zero();
+  TableValue meaning = TableValue::Correction;
+  std::map<ErrorSymbol, ControlAxisTable> motions;  ///< `output` is not used; angles in rad
+  std::map<LocationSymbol, double> locations;
+};
+
+/// Tables of one folder; their corrections add up.
+struct ControlTables {
+  std::vector<ControlAxisTable> axis_tables;
+  std::vector<ControlProduct> products;
+  std::vector<ControlGrid> grids;
+  std::vector<ControlSkew> skews;
+  std::vector<ControlModel> models;
+
+  bool empty() const {
+    return axis_tables.empty() && products.empty() && grids.empty() && skews.empty() && models.empty();
+  }
+};
+
+struct ActiveCompensation {
+  ControlTables tables;
+  double least_increment =
+      0.0;                  ///< m; corrections come in whole steps of it (ISO/TR 16907, 11.2 c); 0 = none
+  std::string description;  ///< for the campaign file
+};
+
+/// What the control adds to the commands of X, Y, Z.
+CommandCorrection command_correction(const ActiveCompensation& compensation);
+
+}  // namespace volcal::sim

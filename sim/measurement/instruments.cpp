@@ -1,0 +1,325 @@
+#include "volcal/sim/measurement/instruments.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "volcal/sim/machine/random.h"
+#include "volcal/sim/machine/transforms.h"
+#include "volcal/sim/measurement/noise.h"
+
+namespace volcal::sim {
+namespace {
+
+constexpr int kMaxChannels = 3;
+
+/// Directions and origins of a setup, from its commanded points.
+struct SetupGeometry {
+  Eigen::Vector3d first_w = Eigen::Vector3d::Zero();
+  Eigen::Vector3d line_w = Eigen::Vector3d::Zero();  ///< unit; zero when all points coincide
+  Eigen::Vector3d centroid_w = Eigen::Vector3d::Zero();
+};
+
+using Channels = std::array<double, kMaxChannels>;
+
+/// One reading without noise, and the standard deviation of its independent noise.
+struct Reading {
+  Channels value{};
+  Channels sigma{};
+  std::size_t channels = 1;
+};
+
+/// What a reading is taken of.
+struct Sighting {
+  const SetupPlan& plan;
+  const InstrumentTruth& instrument;
+  const SetupGeometry& geometry;
+  const TruthMachine& machine;
+  const MachineState& state;
+  std::int32_t line;
+  Eigen::Vector3d point_w;
+  Eigen::Vector3d nominal_w;
+
+  double sigma(double length) const { return std::hypot(plan.noise.constant, plan.noise.per_metre * length); }
+  double offset() const {
+    const auto found = instrument.line_offset.find(line);
+    return found == instrument.line_offset.end() ? instrument.offset : found->second;
+  }
+  Eigen::Vector3d direction(const char* key) const {
+    const auto given = plan.options.vector(key);
+    return given ? given->normalized() : geometry.line_w;
+  }
+  Eigen::Vector3d from_station() const {
+    const Eigen::Matrix4d& floor = instrument.floor;
+    return floor.topLeftCorner<3, 3>() * point_w + floor.topRightCorner<3, 1>() - instrument.station;
+  }
+};
+
+Reading read_tracer(const Sighting& sighting) {
+  const InstrumentTruth& truth = sighting.instrument;
+  const double distance = sighting.from_station().norm();
+  return {{distance * (1.0 + truth.length_scale) - truth.dead_path}, {sighting.sigma(distance)}};
+}
+
+Reading read_tracker(const Sighting& sighting) {
+  const InstrumentTruth& truth = sighting.instrument;
+  const Eigen::Matrix3d rotation = rotation_321(truth.station_rotation).topLeftCorner<3, 3>();
+  const Eigen::Vector3d v = rotation.transpose() * sighting.from_station();
+  const double angle = sighting.plan.noise.angle;
+  return {{v.norm() * (1.0 + truth.length_scale), std::atan2(v.y(), v.x()),
+           std::atan2(v.z(), std::hypot(v.x(), v.y()))},
+          {sighting.sigma(v.norm()), angle, angle},
+          3};
+}
+
+Reading read_ball_bar(const Sighting& sighting) {
+  const InstrumentTruth& truth = sighting.instrument;
+  const double distance = (sighting.point_w - truth.centre).norm();
+  return {{distance + truth.length_error}, {sighting.sigma(distance)}};
+}
+
+/// Coordinate direction most nearly across a beam, made exactly so.
+Eigen::Vector3d across(const Eigen::Vector3d& beam) {
+  Eigen::Index least = 0;
+  beam.cwiseAbs().minCoeff(&least);
+  return (Eigen::Vector3d::Unit(least) - beam[least] * beam).normalized();
+}
+
+Reading read_displacement(const Sighting& sighting) {
+  const Eigen::Vector3d beam = sighting.direction("direction");
+  const double angle = sighting.instrument.beam_angle;
+  const Eigen::Vector3d actual_beam =
+      angle == 0.0 ? beam : Eigen::Vector3d(std::cos(angle) * beam + std::sin(angle) * across(beam));
+  const double along = actual_beam.dot(sighting.point_w - sighting.geometry.first_w);
+  const double commanded = beam.dot(sighting.nominal_w - sighting.geometry.first_w);
+  const double shown = along * (1.0 + sighting.instrument.length_scale) + sighting.offset();
+  return {{sighting.plan.column_set == 1 ? shown - commanded : shown}, {sighting.sigma(commanded)}};
+}
+
+Reading read_straightness(const Sighting& sighting) {
+  const Eigen::Vector3d direction = sighting.direction("direction");
+  const Eigen::Vector3d& along = sighting.geometry.line_w;
+  const double distance = along.dot(sighting.nominal_w - sighting.geometry.first_w);
+  const double reference = direction.dot(sighting.instrument.artefact_rotation.cross(along)) * distance;
+  return {{direction.dot(sighting.point_w - sighting.geometry.first_w) - reference + sighting.offset()},
+          {sighting.sigma(distance)}};
+}
+
+Reading read_angle(const Sighting& sighting) {
+  const std::string body = sighting.plan.options.text("body").value_or("relative");
+  Eigen::Vector3d rotation = body == "table"  ? sighting.machine.table_rotation(sighting.state)
+                             : body == "tool" ? sighting.machine.tool_rotation(sighting.state)
+                                              : sighting.machine.relative_rotation(sighting.state);
+  if (body != "relative") rotation += rotation_vector(sighting.instrument.floor.topLeftCorner<3, 3>());
+  return {{rotation.dot(sighting.direction("axis")) + sighting.offset()}, {sighting.sigma(0.0)}};
+}
+
+Reading read_volumetric_points(const Sighting& sighting) {
+  const RigidMotion& alignment = sighting.instrument.alignment;
+  const Eigen::Vector3d error = sighting.point_w - sighting.nominal_w + alignment.translation +
+                                alignment.rotation.cross(sighting.nominal_w);
+  const double sigma = sighting.sigma((sighting.nominal_w - sighting.geometry.centroid_w).norm());
+  return {{error.x(), error.y(), error.z()}, {sigma, sigma, sigma}, 3};
+}
+
+using ReadFunction = Reading (*)(const Sighting&);
+struct SimulatedInstrument {
+  std::string_view name;
+  ReadFunction read;
+};
+
+constexpr std::array<SimulatedInstrument, 7> kInstruments = {{
+    {"laser-tracer", read_tracer},
+    {"laser-tracker", read_tracker},
+    {"ball-bar", read_ball_bar},
+    {"displacement", read_displacement},
+    {"straightness", read_straightness},
+    {"angle", read_angle},
+    {"volumetric-points", read_volumetric_points},
+}};
+
+ReadFunction find_instrument(const std::string& name) {
+  for (const SimulatedInstrument& instrument : kInstruments) {
+    if (instrument.name == name) return instrument.read;
+  }
+  throw std::invalid_argument("instrument " + name + " is not simulated");
+}
+
+/// How far each axis has gone since it last turned round. Turning on the spot, it overruns the point.
+class Turns {
+ public:
+  const std::array<double, kAxisCount>& advance(const CommandedPoint& point) {
+    for (std::size_t k = 0; k < kAxisCount; ++k) {
+      const double move = previous_ != nullptr ? std::abs(point.position[k] - previous_->position[k]) : 0.0;
+      const bool turned = previous_ == nullptr || point.direction[k] != previous_->direction[k];
+      travelled_[k] = !turned ? travelled_[k] + move : move > 0.0 ? move : kOverrun;
+    }
+    previous_ = &point;
+    return travelled_;
+  }
+
+ private:
+  static constexpr double kOverrun = 1e-3;
+  const CommandedPoint* previous_ = nullptr;
+  std::array<double, kAxisCount> travelled_{};
+};
+
+MachineState state_at(const CommandedPoint& point, std::size_t tool, const MeasuringConditions& conditions,
+                      double time) {
+  const bool settled = conditions.at_reference_temperature;
+  return {
+      point.position,
+      point.direction,
+      time,
+      settled ? conditions.environment.reference_temperatures() : conditions.environment.temperatures(time),
+      tool,
+      point.velocity,
+      {},
+      settled};
+}
+
+SetupGeometry geometry_of(const SetupPlan& plan, const MeasuringConditions& conditions) {
+  const Eigen::Vector3d& tool = conditions.machine.machine().tools.at(plan.tool).offset;
+  const auto nominal = [&](const CommandedPoint& point) {
+    return conditions.machine.nominal_point({point.position, point.direction, 0.0, {}}, tool);
+  };
+  SetupGeometry geometry;
+  geometry.first_w = nominal(plan.points.front());
+  Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
+  for (const CommandedPoint& point : plan.points) {
+    const Eigen::Vector3d path = nominal(point) - geometry.first_w;
+    if (path.norm() > farthest.norm()) farthest = path;
+    geometry.centroid_w += path / static_cast<double>(plan.points.size());
+  }
+  geometry.centroid_w += geometry.first_w;
+  constexpr double kSamePoint = 1e-9;
+  Eigen::Vector3d path = nominal(plan.points.back()) - geometry.first_w;
+  if (path.norm() < kSamePoint) path = farthest;
+  geometry.line_w = path.norm() > 0.0 ? path.normalized() : path;
+  return geometry;
+}
+
+double feed_of(const CommandedPoint& point) {
+  return std::hypot(point.velocity[0], point.velocity[1], point.velocity[2]);
+}
+
+/// Columns that describe how a point was reached.
+void append_point(const CommandedPoint& point, const MachineState& state, const Machine& machine,
+                  bool records_feed, Readings& readings) {
+  const bool has_direction = std::ranges::any_of(point.direction, [](std::int8_t d) { return d != 0; });
+  for (const Axis& axis : machine.axes) {
+    const std::size_t k = index_of(axis.name);
+    readings.position[k].push_back(point.position[k]);
+    if (has_direction || !readings.direction[k].empty()) readings.direction[k].push_back(point.direction[k]);
+  }
+  readings.time.push_back(state.time);
+  readings.line.push_back(point.line);
+  readings.run.push_back(point.run);
+  if (records_feed) readings.feed.push_back(feed_of(point));
+  for (const auto& [channel, value] : state.temperature) readings.temperature[channel].push_back(value);
+  readings.source_line.push_back(static_cast<std::int64_t>(readings.source_line.size()) + 2);
+}
+
+Options noise_options(const SetupPlan& plan) {
+  Options noise;
+  noise.set("constant", plan.noise.constant);
+  if (plan.instrument == "angle") return noise;
+  noise.set("per_metre", plan.noise.per_metre);
+  if (plan.instrument == "laser-tracker") noise.set("angle", plan.noise.angle);
+  return noise;
+}
+
+/// Takes the readings of one setup, one after another.
+class Measurer {
+ public:
+  Measurer(const SetupPlan& plan, const MeasuringConditions& conditions)
+      : plan_(plan),
+        conditions_(conditions),
+        read_(find_instrument(plan.instrument)),
+        geometry_(geometry_of(plan, conditions)) {}
+
+  /// Without the instrument's noise; `repeatability` is the machine's.
+  Reading read(const CommandedPoint& point, const MachineState& state,
+               const Eigen::Vector3d& repeatability) const {
+    const TruthMachine& truth = conditions_.machine;
+    const Occasion occasion{plan_, state};
+    Eigen::Vector3d tool = conditions_.tool_offsets.at(plan_.tool);
+    InstrumentTruth instrument = plan_.truth;
+    if (conditions_.interference) {
+      for (const auto& change : conditions_.interference->tool) tool += change(occasion);
+      for (const auto& change : conditions_.interference->instrument) change(occasion, instrument);
+    }
+    const Eigen::Vector3d& nominal_tool = truth.machine().tools.at(plan_.tool).offset;
+    Reading reading =
+        read_({plan_, instrument, geometry_, truth, state, point.line,
+               truth.point(state, tool) + repeatability, truth.nominal_point(state, nominal_tool)});
+    if (!conditions_.interference) return reading;
+    const Channels undisturbed = reading.value;
+    for (const auto& error : conditions_.interference->reading) {
+      for (std::size_t k = 0; k < reading.channels; ++k) {
+        reading.value[k] += error(occasion, k, undisturbed[k]);
+      }
+    }
+    return reading;
+  }
+
+ private:
+  const SetupPlan& plan_;
+  const MeasuringConditions& conditions_;
+  ReadFunction read_;
+  SetupGeometry geometry_;
+};
+
+Setup described(const SetupPlan& plan) {
+  Setup setup;
+  setup.name = plan.name;
+  setup.instrument = plan.instrument;
+  setup.tool = plan.tool;
+  setup.options = plan.options;
+  setup.noise = noise_options(plan);
+  setup.has_noise = true;
+  setup.repeatability = plan.noise.repeatability;
+  setup.readings.column_set = plan.column_set;
+  return setup;
+}
+
+/// Tracker's angles are not moved by the machine's repeatability as lengths are.
+double independent_sigma(const SetupPlan& plan, const Reading& reading, std::size_t channel) {
+  const bool is_length = plan.instrument != "angle" && (plan.instrument != "laser-tracker" || channel == 0);
+  return std::hypot(reading.sigma[channel], is_length ? plan.noise.repeatability : 0.0);
+}
+
+}  // namespace
+
+Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {
+  if (plan.points.empty()) throw std::invalid_argument("setup " + plan.name + " has no points");
+  const Measurer measurer(plan, conditions);
+  const CorrelatedNoise correlated(plan, conditions.seed);
+  RandomStream random(conditions.seed, "noise of " + plan.name);
+  Turns turns;
+  Setup setup = described(plan);
+  double time = start_time;
+  for (std::size_t row = 0; row < plan.points.size(); ++row) {
+    const CommandedPoint& point = plan.points[row];
+    MachineState state = state_at(point, plan.tool, conditions, time);
+    state.since_reversal = turns.advance(point);
+    Eigen::Vector3d repeatability = Eigen::Vector3d::Zero();
+    if (!conditions.noise_free) repeatability = plan.noise.repeatability * random.normal_vector();
+    Reading reading = measurer.read(point, state, repeatability);
+    if (!conditions.noise_free) {
+      for (std::size_t k = 0; k < reading.channels; ++k) {
+        reading.value[k] +=
+            reading.sigma[k] * random.normal() + correlated.slow(row, k) +
+            correlated.outlier(row, k) * plan.noise.outlier_size * independent_sigma(plan, reading, k);
+      }
+    }
+    setup.readings.value.resize(reading.channels);
+    for (std::size_t k = 0; k < reading.channels; ++k) setup.readings.value[k].push_back(reading.value[k]);
+    append_point(point, state, conditions.machine.machine(), plan.records_feed, setup.readings);
+    time += plan.seconds_per_reading;
+  }
+  return setup;
+}
+
+}  // namespace volcal::sim

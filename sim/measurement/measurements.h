@@ -1,0 +1,168 @@
+#pragma once
+/// Settings of the usual measurements, and the setups that they become. m, rad, s, degC. Positions of axes
+/// are given as shares of the travel, `at` = (0.5, 0.5, 0.5) being the middle of the volume.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/machine.h"
+#include "volcal/sim/measurement/setup_plan.h"
+
+namespace volcal::sim {
+
+/// Tracking interferometer or tracker at several stations: jittered grids over the whole travel, each
+/// position met from both directions; or, of a run that has them, positions as given. Without stations and
+/// runs: four stations around the volume and eight runs with the machine's first three tools (fewer if it has
+/// fewer).
+struct Tracking {
+  struct Station {
+    std::string name;
+    Eigen::Vector3d position_w = Eigen::Vector3d::Zero();
+  };
+  struct Run {
+    std::string station;
+    std::string tool;
+    std::vector<CommandedPoint> points = {};  ///< in place of a grid
+  };
+  std::string instrument = "laser-tracer";  ///< or "laser-tracker"
+  std::vector<Station> stations;
+  std::vector<Run> runs;
+  int revisits = 0;                          ///< how often the list of runs is gone through again
+  Eigen::Vector3i grid{9, 7, 6};             ///< positions per axis; readings per run are twice the product
+  double jitter = 0.3;                       ///< largest, as a share of a grid step
+  double station_guess_error = 5e-3;         ///< standard deviation per component of the campaign's guesses
+  std::optional<double> station_sigma;       ///< stated in the campaign; absent = free
+  double dead_path_spread = 1e-3;            ///< how far the readings' zero is from the first point
+  double station_rotation_spread = 1e-2;     ///< rad, of a tracker's frame
+  std::optional<double> length_scale_sigma;  ///< stated and drawn, one for all runs; absent = exact
+  NoiseLevel noise{0.25e-6, 0.3e-6, 1e-6, 0.6e-6};
+  double seconds_per_reading = 4.0;
+};
+
+/// ISO 230-4 circles, clockwise (run 0) and counter-clockwise (run 1), one setup per plane; or, of runs that
+/// are listed, positions as given, one setup per run. The centre ball of a run stands at centre_w.
+struct BallBarCircles {
+  struct Run {
+    std::string name;  ///< of its setup
+    Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
+    std::string tool;
+    std::vector<CommandedPoint> points;  ///< on a sphere about the centre, within the bar's stroke
+    SourcePlace place = {};              ///< of the study file, for messages
+  };
+  std::vector<Run> runs;  ///< in place of planes
+  std::vector<std::string> planes = {"XY", "YZ", "ZX"};
+  std::string tool;  ///< empty = the first
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  double radius = 0.0;  ///< 0 = 150 mm, or 45 % of the shortest travel if that is less
+  int points_per_turn = 180;
+  double feed = 0.0;                   ///< m/s; 0 = what seconds_per_reading gives, otherwise it gives that
+  bool records_feed = false;           ///< the campaign has the column feed_mm_min
+  double centre_error = 20e-6;         ///< standard deviation of centre_mm, per component
+  double length_error = 3e-6;          ///< standard deviation of the bar's length error
+  std::optional<double> length_sigma;  ///< stated: 0 = calibrated (and the length error is 0), absent = free
+  NoiseLevel noise{0.3e-6, 0.0, 0.0, 0.5e-6};
+  double seconds_per_reading = 0.1;
+};
+
+/// ISO 230-6: body diagonals, or the face diagonals of the planes through `at`; as steps if asked for.
+struct Diagonals {
+  enum class Kind { Body, Face };
+  Kind kind = Kind::Body;
+  bool steps = false;
+  std::string tool;
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  double margin = 0.0;  ///< share of the travel left out at each end
+  int points = 21;      ///< of a diagonal; of step diagonals: the number of steps
+  int runs = 1;
+  bool bidirectional = true;
+  double offset_spread = 20e-6;
+  NoiseLevel noise{0.25e-6, 0.3e-6, 0.0, 0.5e-6};
+  double seconds_per_reading = 2.0;
+};
+
+/// ISO 230-2 positioning along one axis each, bidirectional.
+struct AxisLines {
+  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::string tool;
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  int points = 11;
+  int runs = 5;
+  bool offset_per_line = false;
+  double offset_spread = 20e-6;
+  NoiseLevel noise{0.25e-6, 0.3e-6, 0.0, 0.5e-6};
+  double seconds_per_reading = 4.0;
+};
+
+/// Straightness of each axis in both transverse directions against a straightedge or beam, bidirectional.
+struct StraightnessLines {
+  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::string tool;
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  int points = 21;
+  int runs = 1;
+  double offset_spread = 5e-6;
+  double rotation_spread = 50e-6;  ///< rad, of the artefact
+  NoiseLevel noise{0.4e-6, 0.0, 0.0, 0.5e-6};
+  double seconds_per_reading = 2.0;
+};
+
+/// A square in a plane: straightness of both axes against the arms of one artefact, whose rotation they
+/// share.
+struct Squares {
+  std::vector<std::string> planes = {"XY", "YZ", "ZX"};
+  std::string tool;
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  int points = 21;
+  int runs = 1;
+  double offset_spread = 5e-6;
+  double rotation_spread = 50e-6;
+  NoiseLevel noise{0.4e-6, 0.0, 0.0, 0.5e-6};
+  double seconds_per_reading = 2.0;
+};
+
+/// Angles along each axis, about x, y and z: angular interferometer ("relative") or level ("tool", "table").
+struct AngleLines {
+  std::vector<AxisName> axes = {AxisName::X, AxisName::Y, AxisName::Z};
+  std::string body = "relative";
+  std::string tool;
+  Eigen::Vector3d at{0.5, 0.5, 0.5};
+  int points = 21;
+  int runs = 1;
+  double offset_spread = 10e-6;  ///< rad
+  NoiseLevel noise{0.5e-6, 0.0, 0.0, 0.0};
+  double seconds_per_reading = 2.0;
+};
+
+/// Error vectors on a regular grid over the travel (grid plate, probed artefact).
+struct PointGrid {
+  Eigen::Vector3i grid{5, 4, 3};
+  std::string tool;
+  bool rigid_alignment = true;
+  double alignment_shift = 20e-6;
+  double alignment_rotation = 20e-6;  ///< rad
+  NoiseLevel noise{0.5e-6, 0.0, 0.0, 0.5e-6};
+  double seconds_per_reading = 10.0;
+};
+
+using MeasurementSettings = std::variant<Tracking, BallBarCircles, Diagonals, AxisLines, StraightnessLines,
+                                         Squares, AngleLines, PointGrid>;
+
+struct Measurement {
+  std::string name;  ///< prefix of its setups' names; empty = by kind
+  MeasurementSettings settings;
+  SourcePlace place = {};  ///< of the study file, for messages
+  bool shuffled = false;   ///< lines in random order instead of the path's
+};
+
+/// Setups of a measurement, each with as many unseen positions as it has points; nuisance truths are drawn
+/// from the stream of (seed, measurement name). The machine needs the axes X, Y and Z. Throws InputError for
+/// a tool, station, plane or number that makes no sense.
+std::vector<SetupPlan> plan_setups(const Measurement& measurement, const Machine& machine,
+                                   std::uint64_t seed);
+
+}  // namespace volcal::sim

@@ -1,0 +1,49 @@
+#pragma once
+/// Commanded positions of the usual measuring paths. m; axis positions, not workpiece coordinates. Axes that
+/// do not move stand where the start says and count as approached in the + direction.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/sim/machine/random.h"
+#include "volcal/sim/measurement/setup_plan.h"
+
+namespace volcal::sim {
+
+/// Position of all axes with X, Y, Z at `fraction` of their travel and rotary axes at home.
+CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fraction);
+
+/// `count` equally spaced points from start to end, `runs` times forward and, if bidirectional, back; each
+/// pass is a line (numbered from 0) approached from one side with overrun. count >= 2.
+std::vector<CommandedPoint> straight_path(const CommandedPoint& start, const CommandedPoint& end, int count,
+                                          int runs, bool bidirectional);
+
+/// Sequential step diagonal (ISO 230-6): from start to end in `steps` steps, each moving X, then Y, then Z.
+std::vector<CommandedPoint> step_path(const CommandedPoint& start, const CommandedPoint& end, int steps,
+                                      int runs, bool bidirectional);
+
+/// Full circle of two linear axes about `centre`: line and run 0 clockwise, 1 counter-clockwise as seen along
+/// the negative normal (first axis towards second is counter-clockwise), both from angle 0 with overlap.
+std::vector<CommandedPoint> circular_path(const CommandedPoint& centre, AxisName first, AxisName second,
+                                          double radius, int points_per_turn);
+
+/// Boustrophedon grid over the whole travel, each position moved by up to `jitter` of a grid step and clipped
+/// to the travel, in whole micrometres, then the same positions in reverse order approached from the other
+/// side. Each row is a line.
+std::vector<CommandedPoint> jittered_grid_path(const Machine& machine, const Eigen::Vector3i& count,
+                                               double jitter, RandomStream& random);
+
+/// Positions on the way from each point of a line to the next, at random shares of it; for the last point of
+/// a line, on the way to it. As many as `points`, with their lines, runs and speeds.
+std::vector<CommandedPoint> points_between(const std::vector<CommandedPoint>& points, RandomStream& random);
+
+/// Puts whole lines of a setup into random order, the unseen positions along with them. Each point keeps its
+/// direction of approach: the machine overruns it from the same side.
+void shuffle_lines(RandomStream& random, SetupPlan& plan);
+
+/// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home,
+/// direction not recorded.
+std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random);
+
+}  // namespace volcal::sim

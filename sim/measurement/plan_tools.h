@@ -1,0 +1,54 @@
+#pragma once
+/// What the planners of several measurements share.
+
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/sim/machine/random.h"
+#include "volcal/sim/measurement/measurements.h"
+#include "volcal/sim/measurement/setup_plan.h"
+
+namespace volcal::sim {
+
+/// Machine and naming of one measurement while its setups are planned.
+struct PlanContext {
+  const Machine& machine;
+  std::string prefix;  ///< of setup names, with its underscore
+  std::uint64_t seed;
+  SourcePlace place;
+
+  /// Index of a tool by name, the first when the name is empty; throws InputError.
+  std::size_t tool(const std::string& name) const;
+  [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const;
+  /// Throws InputError unless value >= least.
+  void require_at_least(int value, int least, const std::string& what) const;
+};
+
+/// Two linear axes named as in "XY"; the remaining one is the normal.
+struct Plane {
+  AxisName first;
+  AxisName second;
+};
+Plane parse_plane(const std::string& name, const PlanContext& context);
+
+/// Start and end of an axis' travel with the other axes at shares `at` of theirs.
+struct LineEnds {
+  CommandedPoint start;
+  CommandedPoint end;
+};
+LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d& at);
+
+/// A position as a user would state it, in whole steps of `millimetres`.
+Eigen::Vector3d stated_position(const Eigen::Vector3d& position, double millimetres);
+
+std::vector<SetupPlan> plan_tracking(const Tracking& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_axis_lines(const AxisLines& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_squares(const Squares& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanContext& context);
+
+}  // namespace volcal::sim

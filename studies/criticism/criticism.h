@@ -1,0 +1,29 @@
+#pragma once
+/// Model criticism counted over simulated campaigns, resumable: every finished campaign is a line of
+/// campaigns.jsonl in the output folder.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "volcal/studies/criticism/criticism_record.h"
+
+namespace volcal::cli {
+
+struct CriticismOptions {
+  std::vector<std::string> rows;  ///< of criticism_rows()
+  int campaigns = 20;             ///< per row; null: per kind of noise
+  std::uint64_t seed = 1;
+  int readings = 1500;
+  int threads = 0;     ///< 0 = all; results do not depend on it
+  std::string output;  ///< folder; empty = nothing is kept
+  bool resume = false;
+  std::function<void(int done, int all)> progress;
+};
+
+/// In the order of rows and indices. Throws InputError for an output folder that holds campaigns already
+/// (without `resume`), or campaigns of another seed or size (with it).
+std::vector<CampaignRecord> criticism(const CriticismOptions& options);
+
+}  // namespace volcal::cli

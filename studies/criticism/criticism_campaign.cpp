@@ -1,0 +1,418 @@
+#include "volcal/studies/criticism/criticism_campaign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/observation/channels.h"
+#include "volcal/studies/criticism/criticism_names.h"
+#include "volcal/studies/criticism/criticism_plan.h"
+
+namespace volcal::cli {
+namespace {
+
+constexpr double kTrialRms = 1e-6;        // m
+constexpr double kLargestRms = 40e-6;     // m: a larger effect is another kind of trouble
+constexpr double kLargestAngle = 300e-6;  // rad, and per whatever the amplitude is taken for
+constexpr double kLargestLength = 200e-6;
+constexpr int kMostAttempts = 60;
+constexpr double kLargestShared = 0.75;  // of a squared signal, by the columns of what is hidden beside it
+constexpr double kRemainderOfTheSame = 0.02;  // share of a signal; below, no reading tells two effects apart
+constexpr std::size_t kKeptOfRanking = 5;
+
+FitResult fitted(const Campaign& campaign, const ModelSpec& model) {
+  FitOptions options;
+  options.threads = 1;
+  options.outliers = OutlierPolicy::Remove;
+  options.noise = NoisePolicy::White;  // as `volcal diagnose`
+  return fit(campaign, model, options);
+}
+
+/// Readings of `b` less those of `a`, in the order of observations.
+Eigen::VectorXd difference(const Campaign& a, const Campaign& b) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < a.setups.size(); ++i) {
+    const Readings& before = a.setups[i].readings;
+    const Readings& after = b.setups[i].readings;
+    for (std::size_t row = 0; row < before.size(); ++row) {
+      for (std::size_t channel = 0; channel < before.channels(); ++channel) {
+        values.push_back(after.value[channel][row] - before.value[channel][row]);
+      }
+    }
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+double square_um(const Eigen::VectorXd& metres) {
+  return (1e6 * metres).squaredNorm() / static_cast<double>(metres.size());
+}
+
+sim::Study hiding(sim::Study study, const std::vector<sim::HiddenEffect>& effects) {
+  study.hidden = effects;
+  return study;
+}
+
+/// The campaign without what is hidden, and how the model would see what is: the noise is the true one.
+class Yardstick {
+ public:
+  explicit Yardstick(const sim::Study& study)
+      : simulated_(sim::simulate(study)),
+        result_(fitted(simulated_.campaign, {})),
+        model_(simulated_.campaign, result_),
+        smooth_(model_.problem(), model_.problem().data, true_noise(), 1),
+        free_(model_.with_smoothing({}).problem(), model_.problem().data, true_noise(), 1) {}
+
+  /// Change of the readings by an effect that has an amplitude or an rms.
+  Eigen::VectorXd change(const sim::Study& study, const sim::HiddenEffect& effect, double* amplitude) const {
+    const sim::SimulatedCampaign with = sim::simulate(hiding(study, {effect}));
+    *amplitude = with.hidden.front().amplitude;
+    return difference(simulated_.campaign, with.campaign);
+  }
+
+  /// What the functions could not take up had they any shape that their knots allow.
+  struct Visible {
+    double signal = 0.0;
+    double fraction = 0.0;
+  };
+  Visible visible(const Eigen::VectorXd& change) const {
+    const ProjectedColumns projected = free_.project(change);
+    const double signal = std::sqrt(std::max(0.0, projected.gram(0, 1)(0, 0)));
+    return {signal, projected.norm[0] > 0.0 ? signal / projected.norm[0] : 0.0};
+  }
+
+  /// Least squares of a change on columns, after projection off functions as smooth as those of the machine.
+  struct Explained {
+    double share = 0.0;  ///< of the squared signal
+    Eigen::VectorXd amplitude;
+  };
+  Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
+    return explained(change, columns, smooth_);
+  }
+  /// The same as `visible` sees it.
+  double share_taken(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
+    return explained(change, columns, free_).share;
+  }
+  /// Columns of a finding at its shape; none for more resolution.
+  Eigen::MatrixXd columns(const EffectFinding& finding) const {
+    if (finding.resolution) return {static_cast<Eigen::Index>(model_.size()), 0};
+    return columns(finding.spec);
+  }
+  Eigen::MatrixXd columns(const EffectSpec& spec) const {
+    std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
+    const Eigen::VectorXd shape = effect->shape_values();
+    return family_columns(model_, Family{spec, std::move(effect), std::nullopt, {shape}}, shape);
+  }
+
+  const Campaign& campaign() const { return simulated_.campaign; }
+
+ private:
+  static Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns,
+                             const Projector& projector) {
+    const Eigen::Index count = columns.cols();
+    if (count == 0) return {};
+    Eigen::MatrixXd all(columns.rows(), count + 1);
+    all << columns, change;
+    const Eigen::MatrixXd gram = projector.project(all).gram(0, count + 1);
+    const Eigen::MatrixXd own = gram.topLeftCorner(count, count);
+    const Eigen::VectorXd mixed = gram.topRightCorner(count, 1);
+    const Eigen::VectorXd scale = own.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Explained out;
+    out.amplitude = scale.cwiseProduct(
+        least_squares(scale.asDiagonal() * own * scale.asDiagonal(), scale.cwiseProduct(mixed), 1e-9)
+            .solution);
+    out.share = gram(count, count) > 0.0 ? mixed.dot(out.amplitude) / gram(count, count) : 0.0;
+    return out;
+  }
+
+  std::vector<NoiseParameters> true_noise() const {
+    std::vector<NoiseParameters> noise;
+    for (const std::string& group : model_.noise_groups()) {
+      const auto plan =
+          std::ranges::find(simulated_.plans, instrument_of_noise_group(group), &sim::SetupPlan::instrument);
+      noise.push_back({.drift = plan->noise.drift, .tau = plan->noise.drift_time, .line = plan->noise.line});
+    }
+    return noise;
+  }
+
+  sim::SimulatedCampaign simulated_;
+  FitResult result_;
+  LinearModel model_;
+  Projector smooth_;
+  Projector free_;
+};
+
+/// An effect that shows at second order alone needs an amplitude that no machine has.
+bool plausible(const sim::HiddenEffect& effect, double amplitude, double rms) {
+  const std::string unit = sim::amplitude_unit(effect);
+  if (unit.starts_with("urad") && std::abs(amplitude) > kLargestAngle) return false;
+  if (unit == "um" && std::abs(amplitude) > kLargestLength) return false;
+  return rms <= kLargestRms;
+}
+
+/// Hidden effects with the amplitudes that give the wanted signals, and what they do to the readings.
+struct Hidden {
+  std::vector<sim::HiddenEffect> effects;
+  std::vector<Eigen::VectorXd> changes;
+};
+
+class CampaignRun {
+ public:
+  CampaignRun(const std::string& row, int index, std::uint64_t seed, int readings)
+      : row_(row), index_(index), seed_(seed), readings_(readings) {
+    record_.row = row;
+    record_.index = index;
+    record_.seed = seed;
+    record_.wanted_readings = readings;
+  }
+
+  std::optional<sim::Study> study() {
+    if (!find_visible()) return std::nullopt;
+    return hiding(plan_.study, hidden_.effects);
+  }
+
+  CampaignRecord run() {
+    const std::optional<sim::Study> drawn = study();
+    if (!drawn) {
+      record_.failure = "no effect drawn is visible in this layout";
+      return std::move(record_);
+    }
+    const sim::SimulatedCampaign simulated = sim::simulate(*drawn);
+    describe(simulated.campaign);
+    const FitResult given = fitted(simulated.campaign, {});
+    DiagnoseOptions options;
+    options.compare = false;
+    options.figures = false;
+    options.threads = 1;
+    options.climb = true;
+    options.leave_out = plan_.leave_out;
+    const Diagnosis diagnosis = diagnose(simulated.campaign, given, options);
+    judge(diagnosis);
+    if (row_ == "listed" || row_ == "pairs") recover(simulated, given, diagnosis);
+    return std::move(record_);
+  }
+
+ private:
+  /// Draws until every hidden effect shows in the readings. A partial campaign takes what comes.
+  bool find_visible() {
+    for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+      plan_ = plan_campaign(row_, index_, seed_, readings_, attempt);
+      if (plan_.hidden.empty()) return true;
+      if (attempt % kAttemptsPerKind == 0) yardstick_ = std::make_unique<Yardstick>(plan_.study);
+      hidden_ = {};
+      record_.hidden.clear();
+      const auto added = [this](const PlannedEffect& effect) { return add(effect); };
+      if (std::ranges::all_of(plan_.hidden, added) && stand_apart()) return true;
+    }
+    return false;
+  }
+
+  bool add(const PlannedEffect& planned) {
+    sim::HiddenEffect effect = planned.effect;
+    const bool scaled = planned.signal > 0.0;
+    effect.rms = scaled ? kTrialRms : planned.rms;
+    double amplitude = 0.0;
+    Eigen::VectorXd change;
+    try {
+      change = yardstick_->change(plan_.study, effect, &amplitude);
+    } catch (const InputError&) {
+      return false;  // it has no effect on these readings
+    }
+    const Yardstick::Visible visible = yardstick_->visible(change);
+    if (scaled && visible.fraction < kThresholds.visible_fraction) return false;
+    const double factor = scaled ? planned.signal / visible.signal : 1.0;
+    if (!plausible(effect, amplitude * factor, *effect.rms * factor)) return false;
+    HiddenRecord record;
+    record.signal = visible.signal * factor;
+    record.visible_fraction = visible.fraction;
+    record.rms_um = *effect.rms * factor * 1e6;
+    effect.rms.reset();
+    effect.amplitude = amplitude * factor;
+    record.text = text_of(effect);
+    hidden_.changes.emplace_back(change * factor);
+    hidden_.effects.push_back(std::move(effect));
+    record_.hidden.push_back(std::move(record));
+    return true;
+  }
+
+  /// Effects hidden together are raised until each has its signal beside the columns of the others; false
+  /// where these take nearly all of it.
+  bool stand_apart() {
+    std::vector<double> factors(hidden_.effects.size(), 1.0);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      for (std::size_t k = 0; k < factors.size(); ++k) {
+        const auto other = right_answer(hidden_.effects[k], yardstick_->campaign()).spec;
+        if (k == i || !other) continue;
+        const double share = yardstick_->share_taken(hidden_.changes[i], yardstick_->columns(*other));
+        if (share > kLargestShared) return false;
+        factors[i] = std::max(factors[i], 1.0 / std::sqrt(1.0 - share));
+      }
+    }
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      *hidden_.effects[i].amplitude *= factors[i];
+      hidden_.changes[i] *= factors[i];
+      record_.hidden[i].rms_um *= factors[i];
+    }
+    return true;
+  }
+
+  void describe(const Campaign& campaign) {
+    record_.readings = static_cast<int>(campaign.reading_count());
+    record_.structure = plan_.study.machine.structure.code;
+    record_.layout = plan_.layout;
+    record_.noise = plan_.noise;
+    for (std::size_t i = 0; i < hidden_.effects.size(); ++i) {
+      RightAnswer right = right_answer(hidden_.effects[i], campaign);
+      HiddenRecord& hidden = record_.hidden[i];
+      if (right.name && !left_out(*right.name)) hidden.right = full_name(*right.name);
+      hidden.drivers.assign(right.drivers.begin(), right.drivers.end());
+      hidden.companions.assign(right.companions.begin(), right.companions.end());
+      hidden.directions.assign(right.directions.begin(), right.directions.end());
+      right_.push_back(std::move(right));
+    }
+  }
+
+  bool left_out(const EffectName& name) const {
+    return std::ranges::find(plan_.leave_out, name.kind) != plan_.leave_out.end();
+  }
+
+  void judge(const Diagnosis& diagnosis) {
+    record_.verdict = to_string(diagnosis.verdict);
+    record_.families = static_cast<int>(diagnosis.families);
+    record_.removed_readings = static_cast<int>(diagnosis.removed_readings.size());
+    for (const EffectFinding& finding : diagnosis.effects) record_.named.push_back(answer(finding));
+    for (const auto* set : sets_of_alternatives(diagnosis)) {
+      auto& answers = record_.sets.emplace_back();
+      for (const EffectFinding& finding : *set) answers.push_back(answer(finding));
+    }
+    for (const EffectFinding& finding : diagnosis.ranking) {
+      if (record_.ranking.size() < kKeptOfRanking) record_.ranking.push_back(answer(finding));
+    }
+    for (const UnknownFinding& unknown : diagnosis.unknown) {
+      record_.unknown.push_back({unknown.variables, unknown.direction, unknown.log10_p});
+    }
+    for (const EffectFinding& change : diagnosis.model_changes) record_.model_changes.push_back(change.label);
+    for (const NoiseRow& row : diagnosis.noise) {
+      if (row.value != 0.0) {
+        record_.noise_terms.push_back(fmt::format(
+            "{} {} {:.3g} {}", diagnosis.noise_instruments[row.instrument], row.term, row.value, row.unit));
+      }
+    }
+    record_.named_explain = explained_by_all(diagnosis.effects);
+    record_.told_explain = explained_by_all(with_first_of_sets(diagnosis));
+  }
+
+  static std::vector<EffectFinding> with_first_of_sets(const Diagnosis& diagnosis) {
+    std::vector<EffectFinding> reported = diagnosis.effects;
+    for (const auto* set : sets_of_alternatives(diagnosis)) reported.push_back(set->front());
+    return reported;
+  }
+
+  double explained_by_all(const std::vector<EffectFinding>& findings) const {
+    if (findings.empty() || hidden_.changes.empty()) return 0.0;
+    Eigen::VectorXd change = hidden_.changes.front();
+    for (std::size_t i = 1; i < hidden_.changes.size(); ++i) change += hidden_.changes[i];
+    Eigen::MatrixXd all(change.size(), 0);
+    for (const EffectFinding& finding : findings) {
+      const Eigen::MatrixXd columns = yardstick_->columns(finding);
+      const Eigen::Index before = all.cols();
+      all.conservativeResize(Eigen::NoChange, before + columns.cols());
+      all.rightCols(columns.cols()) = columns;
+    }
+    return yardstick_->explained(change, all).share;
+  }
+
+  AnswerRecord answer(const EffectFinding& finding) const {
+    AnswerRecord answer;
+    answer.name = full_name(finding.name);
+    answer.resolution = finding.resolution;
+    answer.log10_p = finding.log10_p;
+    answer.gain = finding.gain;
+    answer.scanned = !finding.shape_text.empty();
+    Yardstick::Explained nearest;
+    int nearest_hidden = -1;
+    for (std::size_t i = 0; i < hidden_.changes.size(); ++i) {
+      const Yardstick::Explained explained =
+          yardstick_->explained(hidden_.changes[i], yardstick_->columns(finding));
+      if (nearest_hidden >= 0 && explained.share <= nearest.share) continue;
+      nearest = explained;
+      nearest_hidden = static_cast<int>(i);
+    }
+    answer.explains = nearest.share;
+    for (std::size_t i = 0; i < right_.size(); ++i) {
+      if (record_.hidden[i].right == answer.name) {
+        answer.by_name = true;
+        answer.hidden = static_cast<int>(i);
+      }
+    }
+    const bool same = !finding.resolution && 1.0 - nearest.share < kRemainderOfTheSame * kRemainderOfTheSame;
+    if (answer.hidden < 0 && same) answer.hidden = nearest_hidden;
+    for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
+      const AmplitudeFigure& figure = finding.amplitudes[k];
+      const double truth =
+          nearest.amplitude.size() > 0 ? nearest.amplitude[static_cast<Eigen::Index>(k)] : 0.0;
+      const double mdb = std::isfinite(figure.mdb) ? figure.mdb : 0.0;  // 0: never found
+      answer.amplitudes.push_back({figure.value / figure.si_per_unit, figure.u / figure.si_per_unit,
+                                   mdb / figure.si_per_unit, truth / figure.si_per_unit});
+    }
+    return answer;
+  }
+
+  /// Prediction error at unseen positions: the setups, stations and dead paths are those of the campaign.
+  static double unseen_square(const sim::SimulatedCampaign& simulated, const FitResult& result) {
+    return square_um(LinearModel(simulated.unseen, result).problem().residual);
+  }
+
+  void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
+    record_.recovery = true;
+    record_.ms_given = unseen_square(simulated, given);
+    ModelSpec reported, named;
+    for (const RightAnswer& right : right_) {
+      if (right.spec) reported.effects.push_back(*right.spec);
+    }
+    for (const EffectFinding& finding : diagnosis.effects) named.effects.push_back(finding.spec);
+    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, reported));
+    record_.ms_named = named.effects.empty() ? record_.ms_given
+                                             : unseen_square(simulated, fitted(simulated.campaign, named));
+    record_.ms_told = record_.ms_named;
+    if (record_.sets.empty()) return;
+    ModelSpec with_sets;
+    for (const EffectFinding& finding : with_first_of_sets(diagnosis)) {
+      if (!finding.resolution) with_sets.effects.push_back(finding.spec);
+    }
+    record_.ms_told = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+  }
+
+  std::string row_;
+  int index_;
+  std::uint64_t seed_;
+  int readings_;
+  PlannedCampaign plan_;
+  std::unique_ptr<Yardstick> yardstick_;
+  Hidden hidden_;
+  std::vector<RightAnswer> right_;
+  CampaignRecord record_;
+};
+
+}  // namespace
+
+CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings) {
+  return CampaignRun(row, index, seed, readings).run();
+}
+
+std::optional<sim::Study> study_of_campaign(const std::string& row, int index, std::uint64_t seed,
+                                            int readings) {
+  return CampaignRun(row, index, seed, readings).study();
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,20 @@
+#pragma once
+/// One campaign of the study: simulated, fitted, diagnosed and compared with what was hidden.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "volcal/sim/study.h"
+#include "volcal/studies/criticism/criticism_record.h"
+
+namespace volcal::cli {
+
+/// Repeatable to the bit.
+CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings);
+
+/// The same campaign for itself; none where no effect drawn is visible.
+std::optional<sim::Study> study_of_campaign(const std::string& row, int index, std::uint64_t seed,
+                                            int readings);
+
+}  // namespace volcal::cli

@@ -1,0 +1,44 @@
+#include "volcal/studies/criticism/criticism_record.h"
+
+#include <nlohmann/json.hpp>
+
+#include "volcal/identify/text/nesting.h"
+
+namespace volcal::cli {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AmplitudeRecord, value, u, mdb, truth)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AnswerRecord, name, hidden, by_name, resolution, scanned, explains,
+                                   log10_p, gain, amplitudes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HiddenRecord, text, right, signal, visible_fraction, rms_um, drivers,
+                                   companions, directions)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UnknownRecord, variables, direction, log10_p)
+
+namespace {
+struct Fields : CampaignRecord {};
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fields, row, index, seed, wanted_readings, readings, structure, layout,
+                                   noise, failure, hidden, verdict, named, sets, ranking, unknown,
+                                   model_changes, noise_terms, families, removed_readings, named_explain,
+                                   told_explain, recovery, ms_given, ms_named, ms_told, ms_oracle)
+}  // namespace
+
+void to_json(nlohmann::json& json, const CampaignRecord& record) { to_json(json, Fields{record}); }
+
+void from_json(const nlohmann::json& json, CampaignRecord& record) {
+  Fields fields;
+  from_json(json, fields);
+  record = fields;
+}
+
+std::optional<CampaignRecord> record_of_line(const std::string& line, const SourcePlace& place) {
+  require_shallow(line, NestedText::Json, place.file);
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  try {
+    return json.get<CampaignRecord>();
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(place, "the line is no campaign of this study",
+                     "choose another folder, or delete the file to begin anew");
+  }
+}
+
+}  // namespace volcal::cli

@@ -1,0 +1,62 @@
+#include "volcal/studies/files/simulation_writer.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/campaign_writer.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/units.h"
+#include "volcal/sim/machine/datum.h"
+#include "volcal/studies/files/hidden_answer_writer.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kTruthPositions = 41;
+
+std::string truth_csv(const sim::TruthMachine& truth) {
+  const sim::TruthInDatum tables(truth);
+  std::string text = "symbol,axis,position,position_unit,value,unit\n";
+  for (const Axis& axis : truth.machine().axes) {
+    if (is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) {
+      const ErrorSymbol symbol{component, axis.name};
+      for (int i = 0; i < kTruthPositions; ++i) {
+        const double q = axis.travel_min + axis.travel() * i / (kTruthPositions - 1);
+        text += fmt::format("{},{},{},mm,{:.6f},{}\n", symbol.name(), letter_of(axis.name),
+                            edge_number(q, kMetrePerMillimetre), 1e6 * tables.value(symbol, q),
+                            edge_unit(component));
+      }
+    }
+  }
+  const auto symbols = tables.datum().squareness();
+  for (std::size_t i = 0; i < symbols.size(); ++i) {
+    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), 1e6 * tables.squareness()[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_simulation(const sim::SimulatedCampaign& simulated, const AtomicFolder& folder) {
+  folder.write("machine.toml", machine_toml(simulated.campaign.machine));
+  folder.write("model.toml", model_toml(ModelSpec{}, "machine.toml"));
+  write_campaign(simulated.campaign, folder.path(), "machine.toml");
+  const std::string truth = folder.path("truth");
+  std::filesystem::create_directories(truth);
+  write_campaign(simulated.validation, truth, "../machine.toml");
+  write_text_file(truth + "/error_functions.csv", truth_csv(simulated.truth));
+  if (simulated.unseen.setups.empty()) return;
+  write_text_file(truth + "/hidden.json", hidden_answer_json(simulated));
+  for (const auto& [name, campaign] :
+       {std::pair("/unseen", &simulated.unseen),
+        std::pair("/unseen_without_hidden", &simulated.unseen_without_hidden)}) {
+    std::filesystem::create_directories(truth + name);
+    write_campaign(*campaign, truth + name, "../../machine.toml");
+  }
+}
+
+}  // namespace volcal

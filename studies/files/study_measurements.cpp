@@ -1,0 +1,274 @@
+#include <algorithm>
+
+#include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/units.h"
+#include "volcal/studies/files/run_points.h"
+#include "volcal/studies/files/study_reader.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::int64_t kMostPoints = 1000000;
+constexpr double kMostReadings = 2e6;  // of a measurement; a simulated campaign is held in memory
+
+void read(const TomlTable& table, const char* key, double& value) {
+  if (const auto found = table.number(key, kNotNegative)) value = *found;
+}
+
+void read(const TomlTable& table, const char* key, std::optional<double>& value) {
+  if (const auto found = table.number(key, kNotNegative)) value = *found;
+}
+
+void read(const TomlTable& table, const char* key, int& value, int least) {
+  if (const auto found = table.integer(key, least, kMostPoints)) value = static_cast<int>(*found);
+}
+
+void read(const TomlTable& table, const char* key, std::string& value) {
+  if (const auto found = table.text(key)) value = *found;
+}
+
+void read(const TomlTable& table, const char* key, bool& value) {
+  if (const auto found = table.boolean(key)) value = *found;
+}
+
+void read_planes(const TomlTable& table, std::vector<std::string>& planes) {
+  if (const auto found = table.texts("planes")) planes = *found;
+}
+
+void read_axes(const TomlTable& table, std::vector<AxisName>& axes) {
+  const auto names = table.texts("axes");
+  if (!names) return;
+  axes.clear();
+  for (const std::string& name : *names) {
+    const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
+    if (!axis || is_rotary(*axis)) {
+      table.fail("axes", table.path() + ".axes names \"" + name + "\"", "list linear axes: [\"X\", \"Y\"]");
+    }
+    axes.push_back(*axis);
+  }
+}
+
+/// `readings` follow from the numbers beside `key`.
+void require_bounded(const TomlTable& table, const char* key, double readings) {
+  if (readings <= kMostReadings) return;
+  table.fail(key, table.path() + " asks for " + number_text(readings) + " readings",
+             "at most 2,000,000 a measurement; reduce " + std::string(key));
+}
+
+void read_grid(const TomlTable& table, Eigen::Vector3i& grid) {
+  const auto counts = table.numbers("grid", {2.0, 1000.0});
+  if (!counts) return;
+  const bool whole = std::ranges::all_of(*counts, [](double n) { return n == static_cast<int>(n); });
+  if (counts->size() != 3 || !whole) {
+    table.fail("grid", table.path() + ".grid is not three whole numbers",
+               "give positions along X, Y, Z: [9, 7, 6]");
+  }
+  for (int k = 0; k < 3; ++k) grid[k] = static_cast<int>((*counts)[static_cast<std::size_t>(k)]);
+  require_bounded(table, "grid", grid.cast<double>().prod());
+}
+
+/// Shares of the travel at which the other axes stand.
+void read_at(const TomlTable& table, Eigen::Vector3d& at) {
+  const auto shares = table.numbers("at", {0.0, 1.0});
+  if (!shares) return;
+  if (shares->size() != 3) {
+    table.fail("at", table.path() + ".at is not three numbers",
+               "give shares of the travel of X, Y, Z: [0.5, 0.5, 0.5]");
+  }
+  at = Eigen::Vector3d((*shares)[0], (*shares)[1], (*shares)[2]);
+}
+
+/// What the campaign file does not say; `unit` of the readings.
+void read_sealed_noise(const TomlTable& inside, const std::string& unit, sim::NoiseLevel& noise) {
+  read(inside, ("wander_" + unit).c_str(), noise.drift);
+  if (const auto time = inside.number("wander_time_s", {1e-3, 1e9})) noise.drift_time = *time;
+  read(inside, ("line_" + unit).c_str(), noise.line);
+  if (const auto share = inside.number("outlier_share", {0.0, 0.5})) noise.outlier_share = *share;
+  read(inside, "outlier_sigma", noise.outlier_size);
+}
+
+void read_length_noise(const TomlTable& table, sim::NoiseLevel& noise) {
+  if (const auto inside = table.table("noise")) {
+    read_sealed_noise(*inside, "um", noise);
+    read(*inside, "constant_um", noise.constant);
+    read(*inside, "per_metre_um", noise.per_metre);
+    read(*inside, "repeatability_um", noise.repeatability);
+  }
+}
+
+template <class Settings>
+void read_line_settings(const TomlTable& table, Settings& settings) {
+  read(table, "tool", settings.tool);
+  read_at(table, settings.at);
+  read(table, "points", settings.points, 2);
+  read(table, "runs", settings.runs, 1);
+  constexpr double kMostLines = 8;  // both directions of the diagonals of a volume
+  require_bounded(table, table.has("runs") ? "runs" : "points",
+                  kMostLines * static_cast<double>(settings.points) * static_cast<double>(settings.runs));
+  read(table, "reading_s", settings.seconds_per_reading);
+}
+
+/// Positions of a run in a file of their own: columns of the machine's axes, dir_x ..., line and run as in
+/// the readings of a campaign (run_points.h).
+std::vector<sim::CommandedPoint> read_points(const TomlTable& run) {
+  const auto file = run.text("points");
+  if (!file) return {};
+  return read_run_points(resolve_path(run.place().file, *file), run.place("points"));
+}
+
+sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string& instrument) {
+  sim::Tracking settings;
+  settings.instrument = instrument;
+  for (const TomlTable& station : table.tables("stations")) {
+    settings.stations.push_back({station.required_name("name"), station.required_vector3("position_mm")});
+  }
+  for (const TomlTable& run : table.tables("runs")) {
+    settings.runs.push_back({run.required_text("station"), run.required_text("tool"), read_points(run)});
+  }
+  read(table, "revisits", settings.revisits, 0);
+  read_grid(table, settings.grid);
+  require_bounded(table, table.has("revisits") ? "revisits" : "grid",
+                  (settings.grid.cast<double>().prod() + static_cast<double>(settings.revisits)) *
+                      static_cast<double>(std::max<std::size_t>(settings.runs.size(), 1)));
+  if (const auto jitter = table.number("jitter", {0.0, 0.5})) settings.jitter = *jitter;
+  read(table, "guess_error_mm", settings.station_guess_error);
+  read(table, "station_sigma_mm", settings.station_sigma);
+  read(table, "scale_sigma_um_per_m", settings.length_scale_sigma);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  if (instrument == "laser-tracer") {
+    read(table, "dead_path_spread_mm", settings.dead_path_spread);
+  } else {
+    read(table, "station_rotation_spread_mrad", settings.station_rotation_spread);
+    if (const auto inside = table.table("noise")) read(*inside, "angle_urad", settings.noise.angle);
+  }
+  return settings;
+}
+
+/// Runs with their positions say themselves what these keys say of circles.
+void refuse_keys_of_circles(const TomlTable& table) {
+  for (const char* key : {"planes", "tool", "at", "radius_mm", "points_per_turn", "feed_mm_min"}) {
+    if (!table.has(key)) continue;
+    table.fail(key, table.path() + " has runs with their own positions, and " + key + " of circles",
+               std::string("leave ") + key + " or the runs out");
+  }
+}
+
+void read_ball_bar_runs(const TomlTable& table, sim::BallBarCircles& settings) {
+  for (const TomlTable& run : table.tables("runs")) {
+    settings.runs.push_back({run.required_name("name"), run.required_vector3("centre_mm"),
+                             run.required_text("tool"), read_points(run), run.place()});
+  }
+  if (!settings.runs.empty()) refuse_keys_of_circles(table);
+}
+
+sim::MeasurementSettings read_ball_bar(const TomlTable& table) {
+  sim::BallBarCircles settings;
+  read_ball_bar_runs(table, settings);
+  read_planes(table, settings.planes);
+  read(table, "tool", settings.tool);
+  read_at(table, settings.at);
+  read(table, "radius_mm", settings.radius);
+  read(table, "points_per_turn", settings.points_per_turn, 8);
+  read(table, "feed_mm_min", settings.feed);
+  read(table, "record_feed", settings.records_feed);
+  read(table, "centre_error_um", settings.centre_error);
+  read(table, "length_error_um", settings.length_error);
+  read(table, "length_sigma_um", settings.length_sigma);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_diagonals(const TomlTable& table) {
+  sim::Diagonals settings;
+  if (table.choice("diagonals", {"body", "face"}).value_or("body") == "face") {
+    settings.kind = sim::Diagonals::Kind::Face;
+  }
+  read(table, "steps", settings.steps);
+  if (const auto margin = table.number("margin", {0.0, 0.45})) settings.margin = *margin;
+  read(table, "bidirectional", settings.bidirectional);
+  read(table, "offset_spread_um", settings.offset_spread);
+  read_line_settings(table, settings);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_axis_lines(const TomlTable& table) {
+  sim::AxisLines settings;
+  read_axes(table, settings.axes);
+  settings.offset_per_line = table.choice("offset_per", {"setup", "line"}).value_or("setup") == "line";
+  read(table, "offset_spread_um", settings.offset_spread);
+  read_line_settings(table, settings);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_straightness(const TomlTable& table) {
+  sim::StraightnessLines settings;
+  read_axes(table, settings.axes);
+  read(table, "offset_spread_um", settings.offset_spread);
+  read(table, "rotation_spread_urad", settings.rotation_spread);
+  read_line_settings(table, settings);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_squares(const TomlTable& table) {
+  sim::Squares settings;
+  read_planes(table, settings.planes);
+  read(table, "offset_spread_um", settings.offset_spread);
+  read(table, "rotation_spread_urad", settings.rotation_spread);
+  read_line_settings(table, settings);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_angles(const TomlTable& table) {
+  sim::AngleLines settings;
+  read_axes(table, settings.axes);
+  if (const auto body = table.choice("body", {"relative", "tool", "table"})) settings.body = *body;
+  read(table, "offset_spread_urad", settings.offset_spread);
+  read_line_settings(table, settings);
+  if (const auto inside = table.table("noise")) {
+    read(*inside, "constant_urad", settings.noise.constant);
+    read_sealed_noise(*inside, "urad", settings.noise);
+  }
+  return settings;
+}
+
+sim::MeasurementSettings read_point_grid(const TomlTable& table) {
+  sim::PointGrid settings;
+  read_grid(table, settings.grid);
+  read(table, "tool", settings.tool);
+  settings.rigid_alignment = table.choice("alignment", {"rigid", "none"}).value_or("rigid") == "rigid";
+  read(table, "alignment_shift_um", settings.alignment_shift);
+  read(table, "alignment_rotation_urad", settings.alignment_rotation);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+}  // namespace
+
+sim::Measurement read_measurement(const TomlTable& table) {
+  const std::vector<std::string> kinds = {"laser-tracer", "laser-tracker", "ball-bar-circles",
+                                          "diagonals",    "axis-lines",    "straightness-lines",
+                                          "squares",      "angle-lines",   "point-grid"};
+  const auto kind = table.choice("kind", kinds);
+  if (!kind) table.fail_missing("kind");
+  const auto settings = [&]() -> sim::MeasurementSettings {
+    if (*kind == "ball-bar-circles") return read_ball_bar(table);
+    if (*kind == "diagonals") return read_diagonals(table);
+    if (*kind == "axis-lines") return read_axis_lines(table);
+    if (*kind == "straightness-lines") return read_straightness(table);
+    if (*kind == "squares") return read_squares(table);
+    if (*kind == "angle-lines") return read_angles(table);
+    if (*kind == "point-grid") return read_point_grid(table);
+    return read_tracking(table, *kind);
+  };
+  return {table.text("name").value_or(""), settings(), table.place(),
+          table.boolean("shuffled").value_or(false)};
+}
+
+}  // namespace volcal

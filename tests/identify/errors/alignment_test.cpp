@@ -1,0 +1,240 @@
+// Results in other machine coordinate systems: by hand, and on random machines against the functional points.
+
+#include "volcal/identify/errors/alignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/support/identified_machines.h"
+#include "tests/support/machines.h"
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/sim/machine/transforms.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::result_with;
+using testing_support::machine_of;
+
+double location_of(const FitResult& result, const char* symbol) {
+  const ParameterBlock* block = result.layout.find_location(*LocationSymbol::parse(symbol));
+  return block == nullptr ? std::nan("") : result.parameters[block->offset];
+}
+
+double function_of(const FitResult& result, const char* symbol, double q) {
+  const ErrorSymbol wanted = *ErrorSymbol::parse(symbol);
+  const auto place = result.layout.find(wanted);
+  return result.layout.groups[static_cast<std::size_t>(place->group)].basis->value(
+      q, result.layout.coefficients(wanted, result.parameters));
+}
+
+Alignment to_datum(AxisName primary, AxisName secondary) {
+  Alignment alignment;
+  alignment.datum = {primary, secondary};
+  return alignment;
+}
+
+// Y leans by 30 urad towards -x (u_Y = e_Y - EC0Y e_X). With Y as the primary axis the frame turns by 30 urad
+// about z, and X then leans by 30 urad towards -y: u_X = e_X + EC0X e_Y.
+TEST(Alignment, SquarenessOfXToYIsMinusThatOfYToX) {
+  const FitResult result = result_with(machine_of("w X' b Y Z t"), {.locations = {{"EC0Y", 30e-6}}}, 4);
+  const AlignedResult aligned = align_result(result, to_datum(AxisName::Y, AxisName::X));
+  EXPECT_NEAR(location_of(aligned.result, "EC0X"), -30e-6, 1e-18);
+  EXPECT_NEAR(location_of(aligned.result, "EB0Z"), 0.0, 1e-18);
+  EXPECT_NEAR(aligned.frame_rotation.z(), 30e-6, 1e-18);
+  EXPECT_EQ(aligned.result.machine.datum.primary, AxisName::Y);
+}
+
+// EBY = 12 urad/m y. Zero at y = 0.5 m it was 6 urad there, which Z, carried by Y, took part in: 6 urad
+// towards +x, EB0Z.
+TEST(Alignment, AnglesAtTheNewOriginBecomeSquarenessOfTheAxesCarried) {
+  const FitResult result = result_with(
+      machine_of("w X' b Y Z t"),
+      {.functions = {{"EBY", [](double q) { return 12e-6 * q; }}}, .locations = {{"EB0Z", 0.0}}}, 4);
+  Alignment alignment = to_datum(AxisName::X, AxisName::Y);
+  alignment.origin = AxisPosition{0.0, 0.5, 0.0};
+  const FitResult aligned = align_result(result, alignment).result;
+  EXPECT_NEAR(function_of(aligned, "EBY", 0.5), 0.0, 1e-18);
+  EXPECT_NEAR(function_of(aligned, "EBY", 1.0), 6e-6, 1e-17);
+  EXPECT_NEAR(location_of(aligned, "EB0Z"), 6e-6, 1e-17);
+  EXPECT_EQ(aligned.machine.axis(AxisName::Y).home, 0.5);
+}
+
+// Z leans by 20 urad towards +x and the spindle by 5 urad more: along the spindle Z moves by 5 urad towards
+// -x, which EXZ keeps; X, which was along x, is turned by 25 urad about y against the frame.
+TEST(Alignment, AlongTheSpindleTheSlopeOfZStaysInItsStraightness) {
+  FitResult result =
+      result_with(machine_of("w X' b Y Z t"),
+                  {.functions = {{"EXZ", [](double) { return 0.0; }}, {"EYZ", [](double) { return 0.0; }}},
+                   .locations = {{"EB0Z", 20e-6}}},
+                  4);
+  Alignment alignment = to_datum(AxisName::Z, AxisName::X);
+  alignment.spindle_tilt = Eigen::Vector2d(0.0, 5e-6);
+  const AlignedResult aligned = align_result(result, alignment);
+  EXPECT_NEAR(function_of(aligned.result, "EXZ", 1.0), -5e-6, 1e-17);
+  EXPECT_NEAR(function_of(aligned.result, "EYZ", 1.0), 0.0, 1e-18);
+  EXPECT_NEAR(aligned.frame_rotation.y(), 25e-6, 1e-17);
+  // u_X = e_X - phi x e_X = e_X + 25 urad e_Z; u_s = e_s + EB0X e_Y x e_X = e_X - EB0X e_Z
+  EXPECT_NEAR(location_of(aligned.result, "EB0X"), -25e-6, 1e-17);
+  EXPECT_THAT(aligned.result.alignment, HasSubstr("along the spindle"));
+}
+
+FitResult random_result(std::mt19937_64& random, const std::string& code) {
+  Machine machine = machine_of(code);
+  for (Axis& axis : machine.axes) axis.reference_point = testing_support::random_vector(random, 0.5);
+  machine.tools = {{"short", {0.0, 0.0, -0.15}, 0.0}, {"side", {0.11, 0.05, -0.24}, 0.0}};
+  testing::GivenErrors given;
+  for (const AxisName axis : kLinearAxes) {
+    for (const Component component : kAllComponents)
+      given.functions[ErrorSymbol{component, axis}.name()] = [&random](double) {
+        return testing_support::uniform(random, 20e-6);
+      };
+  }
+  for (const LocationSymbol symbol : machine.datum.squareness())
+    given.locations[symbol.name()] = testing_support::uniform(random, 50e-6);
+  given.reversals["EXX"] = 3e-6;
+  FitResult result = result_with(machine, given, 3);
+  Eigen::MatrixXd factor(result.layout.size, result.layout.size);
+  for (double& element : factor.reshaped()) element = testing_support::uniform(random, 1e-6);
+  result.covariance = factor * factor.transpose();
+  return result;
+}
+
+/// Points of one tool, what takes a rigid motion off their errors, and the errors with their derivatives.
+struct PointSet {
+  std::vector<AxisPosition> positions;
+  Eigen::MatrixXd rest;
+};
+
+PointSet random_points(std::mt19937_64& random, Eigen::Index count) {
+  PointSet set;
+  Eigen::MatrixXd motions(3 * count, 6);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    AxisPosition position{};
+    Eigen::Vector3d p;
+    for (std::size_t k = 0; k < 3; ++k)
+      p[static_cast<Eigen::Index>(k)] = position[k] = 0.5 + testing_support::uniform(random, 0.5);
+    set.positions.push_back(position);
+    for (int k = 0; k < 3; ++k) {
+      motions.block<3, 1>(3 * i, k) = Eigen::Vector3d::Unit(k);
+      motions.block<3, 1>(3 * i, 3 + k) = Eigen::Vector3d::Unit(k).cross(p);
+    }
+  }
+  const Eigen::MatrixXd q = motions.householderQr().householderQ() * Eigen::MatrixXd::Identity(3 * count, 6);
+  set.rest = Eigen::MatrixXd::Identity(3 * count, 3 * count) - q * q.transpose();
+  return set;
+}
+
+Eigen::MatrixXd error_rows(const FitResult& result, const PointSet& set, const Tool& tool) {
+  Eigen::MatrixXd rows(3 * static_cast<Eigen::Index>(set.positions.size()), result.layout.size);
+  for (std::size_t i = 0; i < set.positions.size(); ++i)
+    rows.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+        volumetric_error_rows(result, set.positions[i], tool).topRows<3>();
+  return rows;
+}
+
+TEST(Alignment, ErrorsAndTheirCovarianceAreTheSameUpToARigidMotion) {
+  std::mt19937_64 random(17);
+  for (const char* code : {"w X b Y Z t", "w X' Y' b Z t", "w b X Y Z t", "w Y' b Z X t"}) {
+    const FitResult result = random_result(random, code);
+    for (const AxisName primary : kLinearAxes) {
+      for (const AxisName secondary : kLinearAxes) {
+        if (primary == secondary) continue;
+        Alignment alignment = to_datum(primary, secondary);
+        alignment.origin = AxisPosition{0.3, 0.8, 0.6};
+        if (primary == AxisName::Z) alignment.spindle_tilt = Eigen::Vector2d(40e-6, -25e-6);
+        const FitResult aligned = align_result(result, alignment).result;
+        const PointSet set = random_points(random, 12);
+        for (const Tool& tool : result.machine.tools) {
+          const Eigen::MatrixXd before = set.rest * error_rows(result, set, tool);
+          const Eigen::MatrixXd after = set.rest * error_rows(aligned, set, tool);
+          EXPECT_LT((before * result.parameters - after * aligned.parameters).norm(), 1e-17) << code;
+          const Eigen::MatrixXd u2 = before * result.covariance * before.transpose();
+          const Eigen::MatrixXd u2_after = after * aligned.covariance * after.transpose();
+          EXPECT_LT((u2 - u2_after).norm(), 1e-12 * u2.norm()) << code;
+        }
+      }
+    }
+  }
+}
+
+/// Where the frame has gone and came back, nothing has changed but by rounding.
+TEST(Alignment, ThereAndBackIsTheSameResult) {
+  std::mt19937_64 random(5);
+  const FitResult raw = random_result(random, "w X' b Y Z t");
+  const FitResult first = align_result(raw, to_datum(AxisName::X, AxisName::Y)).result;
+  Alignment alignment = to_datum(AxisName::Z, AxisName::Y);
+  alignment.origin = AxisPosition{0.5, 0.25, 1.0};
+  Alignment back = to_datum(AxisName::X, AxisName::Y);
+  back.origin = AxisPosition{0.0, 0.0, 0.0};
+  const FitResult again = align_result(align_result(first, alignment).result, back).result;
+  EXPECT_LT((again.parameters - first.parameters).norm(), 1e-17);
+  EXPECT_LT((again.covariance - first.covariance).norm(), 1e-12 * first.covariance.norm());
+  for (std::size_t i = 0; i < first.machine.tools.size(); ++i)
+    EXPECT_LT((again.machine.tools[i].offset - first.machine.tools[i].offset).norm(), 1e-8);
+}
+
+/// Points of two tools keep their distances: what the frame turns, it turns for all tools.
+TEST(Alignment, ToolsTurnWithTheFrame) {
+  std::mt19937_64 random(23);
+  const FitResult result = random_result(random, "w X' b Y Z t");
+  Alignment alignment = to_datum(AxisName::Z, AxisName::Y);
+  alignment.origin = AxisPosition{0.4, 0.7, 0.2};
+  const FitResult aligned = align_result(result, alignment).result;
+  std::vector<Eigen::Vector3d> points, changes;
+  for (std::size_t tool = 0; tool < 2; ++tool) {
+    for (const AxisPosition& position : random_points(random, 8).positions) {
+      const Tool& before = result.machine.tools[tool];
+      const Tool& after = aligned.machine.tools[tool];
+      points.emplace_back(Eigen::Vector3d(position[0], position[1], position[2]) + before.offset);
+      changes.emplace_back(after.offset + volumetric_error(aligned, position, before).value.head<3>() -
+                           before.offset - volumetric_error(result, position, before).value.head<3>());
+    }
+  }
+  EXPECT_GT(changes.front().norm(), 1e-6);
+  EXPECT_LT(sim::rms_after_alignment(points, changes), 1e-15);
+}
+
+std::string refusal(const FitResult& result, const Alignment& alignment) {
+  try {
+    align_result(result, alignment);
+  } catch (const InputError& error) {
+    EXPECT_FALSE(error.remedy().empty());
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Alignment, SaysWhatCannotBeDone) {
+  const FitResult result = result_with(machine_of("w X' b Y Z t"), {.locations = {{"EC0Y", 30e-6}}}, 4);
+  EXPECT_THAT(refusal(result, to_datum(AxisName::X, AxisName::X)), HasSubstr("the same"));
+  Alignment alignment = to_datum(AxisName::X, AxisName::Y);
+  alignment.origin = AxisPosition{2.0, 0.0, 0.0};
+  EXPECT_THAT(refusal(result, alignment), HasSubstr("outside the travel of X"));
+  alignment = to_datum(AxisName::X, AxisName::Y);
+  alignment.spindle_tilt = Eigen::Vector2d(0.0, 0.0);
+  EXPECT_THAT(refusal(result, alignment), HasSubstr("parallel to Z"));
+  alignment.datum = {AxisName::Z, AxisName::X};
+  EXPECT_EQ(refusal(result, alignment), "");
+  alignment.spindle_tilt = Eigen::Vector2d(1e-6, 0.0);
+  EXPECT_THAT(refusal(result, alignment), HasSubstr("EXZ is switched off"));
+  alignment.spindle_tilt = Eigen::Vector2d(0.5, 0.0);
+  EXPECT_THAT(refusal(result, alignment), HasSubstr("10 mrad"));
+  EXPECT_THAT(refusal(result_with(machine_of("w X' b Y t"), {}, 4), to_datum(AxisName::X, AxisName::Y)),
+              HasSubstr("no axis Z"));
+  FitResult thermal = result;
+  thermal.layout.blocks[0].kind = ParameterKind::Effect;
+  thermal.layout.blocks[0].name = "thermal EXX";
+  thermal.layout.blocks[0].location.reset();
+  alignment = to_datum(AxisName::X, AxisName::Y);
+  alignment.origin = AxisPosition{0.5, 0.0, 0.0};
+  EXPECT_THAT(refusal(thermal, alignment), HasSubstr("thermal EXX refers to the origin"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -34,6 +34,7 @@ struct DiagnoseArguments {
   bool climb = false;
   bool list = false;
   bool json = false;
+  bool verbose = false;
   std::vector<std::string> separate;
   std::size_t readings = PlanningOptions{}.readings;
 };
@@ -123,10 +124,11 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
-    fmt::print("{}", diagnosis_text(diagnosis));
-    if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
-    if (!arguments.output.empty() && !report_available())
-      fmt::print("no report.html: {}\n", how_to_get_report());
+    const bool kept = !arguments.output.empty();
+    fmt::print("{}",
+               kept && !arguments.verbose ? diagnosis_summary_text(diagnosis) : diagnosis_text(diagnosis));
+    if (kept) fmt::print("written: {} (all of it: diagnosis.txt)\n", arguments.output);
+    if (kept && !report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
   return kDone;
 }
@@ -140,9 +142,9 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(number_of_threads());
   app.add_flag("--auto", arguments->climb,
-               "tell everything that was found, one effect after another, not the first alone");
+               "add everything that is found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,
-                 "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
+                 "KIND:TARGET,KIND:TARGET: which measurement would separate these effects, or show them")
       ->delimiter(',');
   app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
       ->check(CLI::Range(8, 10000))
@@ -152,6 +154,9 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_flag(
       "--list", arguments->list,
       "print every kind, target, driver and shape of effects, and what could act in CAMPAIGN, and stop");
+  app.add_flag(
+      "-v,--verbose", arguments->verbose,
+      "print all of diagnosis.txt: ranked evidence, nearly collinear effects, detection limits, noise");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
   return [arguments] { return run_diagnose(*arguments); };
 }

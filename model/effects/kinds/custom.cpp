@@ -381,9 +381,11 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
   specs.back().options.set("p", 250.0);
   specs.back().options.set("p_sigma", 50.0);
   for (const Setup& setup : campaign.setups) {
-    if (setup.instrument != "laser-tracer") continue;
+    if (traits_of(setup).laser_length != LaserLength::Distance) continue;
+    const Instrument& instrument = *find_instrument(setup.instrument);
     add("station " + station_of(setup) + " x", setup.readings.time.empty() ? axis : "t / 3600");
-    add("length_mm of " + setup.name, "sin(2 * pi * length / 500)");
+    add(instrument.schema().column_sets[setup.readings.column_set].front().column + " of " + setup.name,
+        "sin(2 * pi * length / 500)");
     break;
   }
   return specs;

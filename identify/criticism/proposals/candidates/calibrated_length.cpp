@@ -8,6 +8,7 @@
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -41,7 +42,7 @@ void set_noise(const Campaign& campaign, Setup& setup) {
   for (const Setup& each : campaign.setups) {
     setup.repeatability = std::max(setup.repeatability, each.repeatability);
   }
-  const auto bar = std::ranges::find(campaign.setups, "ball-bar", &Setup::instrument);
+  const auto bar = std::ranges::find(campaign.setups, instrument_with_bar(), &Setup::instrument);
   if (bar == campaign.setups.end() || !bar->has_noise) return;
   setup.noise = bar->noise;
   setup.repeatability = bar->repeatability;
@@ -52,7 +53,7 @@ Setup circle(const CandidateContext& context, const Plane& plane, double radius,
   const AxisPosition centre = middle(machine);
   Setup setup;
   setup.name = std::string("calibrated ball-bar ") + plane.name;
-  setup.instrument = "ball-bar";
+  setup.instrument = instrument_with_bar();
   setup.options.set("centre", context.chain.nominal_point_w(centre, machine.tools.front().offset));
   setup.options.set("length_sigma", 0.0);
   set_noise(context.campaign, setup);

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/reversal_label.h"
 
 namespace volcal {
@@ -346,7 +347,7 @@ std::string alignment_words(const FitResult& result) {
   std::string text = "primary " + std::string(1, letter_of(result.machine.datum.primary)) + ", secondary " +
                      letter_of(result.machine.datum.secondary) + ", origin";
   for (const AxisName axis : kLinearAxes) {
-    std::string value = std::to_string(result.machine.axis(axis).home * 1e3);
+    std::string value = std::to_string(result.machine.axis(axis).home * kPerMilli);
     value.erase(value.find_last_not_of('0') + 1);
     if (value.back() == '.') value.pop_back();
     text += std::string(" ") + letter_of(axis) + "=" + value;

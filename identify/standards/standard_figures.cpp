@@ -64,7 +64,7 @@ std::string place_of(const Campaign& campaign, const Setup& setup, const Straigh
     if (is_rotary(axis.name) || axis.name == path.moving.front()) continue;
     const double position = setup.readings.position[index_of(axis.name)][path.rows.front()];
     place += fmt::format("{}{} {:g}", place.empty() ? "" : ", ", letter_of(axis.name),
-                         std::round(position * 1e6) / 1e3);
+                         std::round(position * kPerMicro) / kPerMilli);
   }
   return place.empty() ? place : place + " mm";
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 
@@ -42,7 +43,7 @@ std::optional<Recorded> recorded(const Campaign& campaign, const std::string& va
   for (const AxisName axis : kAllAxes) {
     const std::string letter(1, lower_letter_of(axis));
     if (variable != letter && variable != "dir_" + letter) continue;
-    Recorded found{variable == letter ? letter + (is_rotary(axis) ? "_deg" : "_mm") : variable, {}};
+    Recorded found{variable == letter ? position_column(axis) : variable, {}};
     for (const Setup& setup : campaign.setups) {
       if (variable == letter) {
         found.range.add(setup.readings.position[index_of(axis)]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {
@@ -248,7 +249,7 @@ Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& cha
   if (found == view.setup.readings.temperature.end()) {
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
   }
-  return mapped(found->second).array() - kEffectReferenceTemperature_degC;
+  return mapped(found->second).array() - kReferenceTemperature_degC;
 }
 
 EffectSpec effect_spec(const std::string& kind,

@@ -11,8 +11,6 @@
 
 namespace volcal {
 
-inline constexpr double kEffectReferenceTemperature_degC = 20.0;
-
 /// What an effect reads its table from: the keys' values, and the place that messages name.
 struct EffectTable {
   const EffectSpec& spec;

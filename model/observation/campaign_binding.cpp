@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -52,7 +53,7 @@ ParameterBlock tool_block(const Tool& tool) {
   block.name = "tool " + tool.name;
   block.labels = {"x", "y", "z"};
   block.units = {"um", "um", "um"};
-  block.si_per_unit = {1e-6, 1e-6, 1e-6};
+  block.si_per_unit = {kMetrePerMicrometre, kMetrePerMicrometre, kMetrePerMicrometre};
   block.guess = block.prior_mean = Eigen::VectorXd::Zero(3);
   block.prior_sigma = Eigen::VectorXd::Constant(3, tool.offset_sigma);
   return block;
@@ -72,7 +73,7 @@ ParameterBlock nuisance_block(const NuisanceBlock& nuisance) {
   for (int k = 0; k < nuisance.size(); ++k) {
     const bool angle = nuisance.is_angle[static_cast<std::size_t>(k)];
     block.units.emplace_back(is_scale ? "ppm" : angle ? "urad" : "mm");
-    block.si_per_unit.push_back(angle ? 1e-6 : 1e-3);
+    block.si_per_unit.push_back(angle ? kRadianPerMicroradian : kMetrePerMillimetre);
   }
   return block;
 }
@@ -195,7 +196,8 @@ class CampaignBinder {
 
   void add_location(LocationSymbol symbol) {
     const bool angle = is_rotation(symbol.component);
-    ParameterBlock block = scalar_block(ParameterKind::Location, symbol.name(), angle ? "urad" : "um", 1e-6);
+    ParameterBlock block =
+        scalar_block(ParameterKind::Location, symbol.name(), angle ? "urad" : "um", kMicro);
     block.location = symbol;
     const int parameter = add_block(std::move(block));
 
@@ -249,7 +251,7 @@ class CampaignBinder {
     int parameter = -1;
     if (axis.expansion->per_kelvin_sigma > 0.0) {
       ParameterBlock block = scalar_block(ParameterKind::Expansion,
-                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", 1e-6);
+                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", kMicro);
       block.prior_sigma[0] = axis.expansion->per_kelvin_sigma;
       parameter = add_block(std::move(block));
     }

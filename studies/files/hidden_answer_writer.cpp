@@ -12,7 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPerMicro = 1e6;
 constexpr int kFirstRow = 2;  ///< below the header
 
 /// Twelve digits: what the study said comes back as it was written.

@@ -19,6 +19,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/standards/comparison.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
@@ -158,8 +159,9 @@ std::string size_text(const Comparison& without, const Comparison& with) {
   std::string text;
   const auto add = [&](const ResidualSize& before, const ResidualSize& after, const char* unit) {
     if (before.count == 0) return;
-    text += fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", short_number(before.rms * 1e6, 3),
-                        short_number(after.rms * 1e6, 3), unit);
+    text +=
+        fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", short_number(before.rms * kPerMicro, 3),
+                    short_number(after.rms * kPerMicro, 3), unit);
   };
   add(without.total.lengths, with.total.lengths, "um");
   add(without.total.angles, with.total.angles, "urad");
@@ -217,8 +219,8 @@ std::string tried_text(const TryArguments& arguments, const Tried& tried) {
 nlohmann::ordered_json judged_json(const Comparison& comparison) {
   return {{"observations", comparison.total.observations},
           {"chi2", comparison.total.chi2},
-          {"rms_um", comparison.total.lengths.rms * 1e6},
-          {"rms_urad", comparison.total.angles.rms * 1e6}};
+          {"rms_um", comparison.total.lengths.rms * kPerMicro},
+          {"rms_urad", comparison.total.angles.rms * kPerMicro}};
 }
 
 std::string tried_json(const TryArguments& arguments, const Tried& tried) {

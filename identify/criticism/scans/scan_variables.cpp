@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/instruments/registry.h"
 
@@ -58,12 +59,11 @@ class ScanVariables {
       return setup.readings.time.empty() ? start : setup.readings.time[row];
     });
     for (const std::string& channel : temperature_channels(campaign_)) {
-      add({.kind = Kind::Temperature, .subject = channel},
-          [&channel](const Setup& setup, std::size_t, std::size_t row) {
-            const auto found = setup.readings.temperature.find(channel);
-            return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
-                                                             : found->second[row];
-          });
+      add({.kind = Kind::Temperature, .subject = channel}, [&channel](const Setup& setup, std::size_t,
+                                                                      std::size_t row) {
+        const auto found = setup.readings.temperature.find(channel);
+        return found == setup.readings.temperature.end() ? kReferenceTemperature_degC : found->second[row];
+      });
     }
   }
 

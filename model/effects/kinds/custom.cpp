@@ -15,7 +15,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr std::array<const char*, 2> kParameters = {"p", "q"};
 
 /// What the effect acts on. `owner`: tool, station or setup; empty = all.
@@ -149,7 +148,7 @@ std::optional<Eigen::VectorXd> recorded(const SetupView& view, const std::string
     return scaled(direction, 1.0);
   }
   if (const auto axis = axis_of(name)) {
-    return scaled(readings.position[index_of(*axis)], is_rotary(*axis) ? kRadianPerDegree : kMillimetre);
+    return scaled(readings.position[index_of(*axis)], position_unit(*axis).si_per_unit);
   }
   if (name == "t") {
     if (readings.time.empty()) return std::nullopt;
@@ -159,8 +158,8 @@ std::optional<Eigen::VectorXd> recorded(const SetupView& view, const std::string
     if (readings.feed.empty()) return std::nullopt;
     return scaled(readings.feed, unit_of_key("feed_mm_min").si_per_unit);
   }
-  if (name == "length") return view.length / kMillimetre;
-  const Eigen::Vector3d offset = view.campaign.machine.tools[view.setup.tool].offset / kMillimetre;
+  if (name == "length") return view.length / kMetrePerMillimetre;
+  const Eigen::Vector3d offset = view.campaign.machine.tools[view.setup.tool].offset / kMetrePerMillimetre;
   return Eigen::VectorXd::Constant(rows, name == "tool_length" ? offset.norm() : offset[name.back() - 'x']);
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/instruments/registry.h"
 
@@ -92,7 +93,7 @@ std::vector<ExtraMeasurement> calibrated_lengths(const CandidateContext& context
     if (!machine.has_axis(plane.first) || !machine.has_axis(plane.second)) continue;
     ExtraMeasurement extra;
     extra.words = fmt::format("measure a circle of {:.0f} mm in {} with a ball-bar of calibrated length",
-                              radius * 1e3, plane.name);
+                              radius * kPerMilli, plane.name);
     extra.setups.push_back(circle(context, plane, radius, end_of(context.campaign) + kPause));
     all.push_back(std::move(extra));
   }

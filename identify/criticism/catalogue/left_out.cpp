@@ -11,8 +11,9 @@
 namespace volcal {
 namespace {
 
-constexpr int kDegrees = 6;        // of one function
-constexpr int kSharedDegrees = 4;  // of each of several
+constexpr int kDegrees = 6;                  // of one function
+constexpr int kSharedDegrees = 4;            // of each of several
+constexpr const char* kHeldAtZero = "zero";  // a basis without functions
 
 using Polynomials = std::array<double, kDegrees + 1>;  // by degree
 
@@ -135,13 +136,20 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
   return errors;
 }
 
+bool is_left_out(const std::string& symbol, const ModelSpec& model) {
+  if (const auto location = LocationSymbol::parse(symbol))
+    return std::ranges::find(model.locations_off, *location) != model.locations_off.end();
+  const auto function = ErrorSymbol::parse(symbol);
+  return function && model.function(*function).basis == kHeldAtZero;
+}
+
 bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {
   if (spec.kind != kLeftOut) return false;
   for (const std::string& name : left_out_symbols(spec)) {
     if (const auto location = LocationSymbol::parse(name)) std::erase(model.locations_off, *location);
     const auto symbol = ErrorSymbol::parse(name);
-    if (!symbol) continue;
-    if (model.default_function.basis == "zero") {
+    if (!symbol || !is_left_out(name, model)) continue;
+    if (model.default_function.basis == kHeldAtZero) {
       model.functions[*symbol] = FunctionSpec{};
     } else {
       model.functions.erase(*symbol);

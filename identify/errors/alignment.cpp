@@ -106,7 +106,7 @@ class Realignment {
   }
   /// Least-squares slope over the travel (datum.h); of straightness functions alone.
   Functional slope(ErrorSymbol symbol) const {
-    if (!symbol.is_straightness()) return Functional::Zero(columns());
+    if (has_free_slope(symbol)) return Functional::Zero(columns());
     const Axis& axis = machine_.axis(symbol.axis);
     const double middle = 0.5 * (axis.travel_min + axis.travel_max), length = axis.travel();
     return of_coefficients(symbol, [=](const Basis& basis) {
@@ -171,7 +171,7 @@ class Realignment {
 
   /// What is left between the primary axis and the direction of the frame; zero but for a tilted spindle.
   Functional kept_slope(ErrorSymbol symbol) const {
-    if (!to_.spindle_tilt || symbol.axis != machine_.datum.primary || !symbol.is_straightness())
+    if (!to_.spindle_tilt || symbol.axis != machine_.datum.primary || has_free_slope(symbol))
       return Functional::Zero(columns());
     return turned_direction(symbol.axis).row(direction_of(symbol.component));
   }
@@ -184,7 +184,7 @@ class Realignment {
       rows(group.index(j, slot), group.index(j, slot)) += 1.0;
       rows.row(group.index(j, slot)) -= one[j] * constant;
     }
-    if (!symbol.is_straightness()) return;
+    if (has_free_slope(symbol)) return;
     const Eigen::VectorXd line = straight_line(*group.basis, symbol, 0.0, 1.0, home);
     const Functional change = kept_slope(symbol) - slope(symbol);
     for (int j = 0; j < group.basis->size(); ++j) rows.row(group.index(j, slot)) += line[j] * change;

@@ -80,22 +80,6 @@ std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> part
   return keys;
 }
 
-std::vector<AxisName> linear_axes(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
-    if (machine.has_axis(axis)) axes.push_back(axis);
-  }
-  return axes;
-}
-
-std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine) {
-  std::vector<ErrorSymbol> symbols;
-  for (const AxisName axis : linear_axes(machine)) {
-    for (const Component component : kAllComponents) symbols.push_back({component, axis});
-  }
-  return symbols;
-}
-
 std::vector<std::string> temperature_channels(const Campaign& campaign) {
   std::vector<std::string> channels;
   for (const Setup& setup : campaign.setups) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
 
@@ -129,8 +130,8 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
         {left_out_spec(names), functions(campaign, rotations, kSharedDegrees,
                                          {kLeftOut, names, "position", "functions"}, "rotations left out")});
   }
-  for (const LocationSymbol& location : campaign.machine.datum.squareness()) {
-    if (!campaign.machine.has_axis(location.axis) || model.layout().find_location(location)) continue;
+  for (const LocationSymbol& location : squareness_errors(campaign.machine)) {
+    if (model.layout().find_location(location)) continue;
     errors.push_back({left_out_spec(location.name()), squareness(location)});
   }
   return errors;

@@ -38,7 +38,7 @@ std::string sentence(const UnknownFinding& unknown) {
   const std::string variables =
       unknown.variables.empty() ? "nothing recorded that was tried" : unknown.dependence();
   return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings", variables,
-                     unknown.action(), unknown.rms * 1e6);
+                     unknown.action(), unknown.rms * kPerMicro);
 }
 
 void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {

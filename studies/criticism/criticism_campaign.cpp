@@ -14,6 +14,7 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
 #include "volcal/studies/criticism/criticism_names.h"
@@ -55,7 +56,7 @@ Eigen::VectorXd difference(const Campaign& a, const Campaign& b) {
 }
 
 double square_um(const Eigen::VectorXd& metres) {
-  return (1e6 * metres).squaredNorm() / static_cast<double>(metres.size());
+  return (kPerMicro * metres).squaredNorm() / static_cast<double>(metres.size());
 }
 
 sim::Study hiding(sim::Study study, const std::vector<sim::HiddenEffect>& effects) {
@@ -235,7 +236,7 @@ class CampaignRun {
     HiddenRecord record;
     record.signal = visible.signal * factor;
     record.visible_fraction = visible.fraction;
-    record.rms_um = *effect.rms * factor * 1e6;
+    record.rms_um = *effect.rms * factor * kPerMicro;
     effect.rms.reset();
     effect.amplitude = amplitude * factor;
     record.text = text_of(effect);

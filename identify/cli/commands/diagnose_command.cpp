@@ -9,8 +9,8 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
@@ -56,9 +56,12 @@ int print_list(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
+ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis) {
   for (const EffectFinding& effect : diagnosis.effects) {
-    if (!restore_left_out(effect.spec, model)) model.effects.push_back(effect.spec);
+    extend_model({model, campaign.machine, &campaign}, effect.spec,
+                 {.label = effect.label,
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }
   return model;
 }
@@ -83,7 +86,7 @@ void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, 
     folder.write("report.html", report_html(diagnosis, campaign, report_options()));
   }
   folder.write("machine.toml", machine_toml(campaign.machine));
-  folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
+  folder.write("extended.toml", model_toml(extended(model, campaign, diagnosis), "machine.toml",
                                            "the given model with the effects that volcal diagnose added"));
   folder.commit();
 }

@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 
 std::string to_string(Verdict verdict) {
@@ -41,7 +43,7 @@ std::string UnknownFinding::dependence() const {
 
 std::string UnknownFinding::action() const {
   if (!rotation.empty()) return direction + ", as " + rotation;
-  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * 1e3) : direction;
+  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * kPerMilli) : direction;
 }
 
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {
@@ -57,7 +59,7 @@ std::string screening_sentence(const Screening& screening) {
       "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
       "tests "
       "counted)",
-      screening.leading, screening.rms * 1e6, screening.log10_p, screening.tests);
+      screening.leading, screening.rms * kPerMicro, screening.log10_p, screening.tests);
 }
 
 }  // namespace volcal

@@ -9,12 +9,11 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/units.h"
 #include "volcal/studies/planning.h"
 
 namespace volcal::cli {
 namespace {
-
-constexpr double kMicrometresPerMetre = 1e6;
 
 struct PlanningStudyArguments {
   PlanningStudyOptions options;
@@ -31,7 +30,7 @@ std::string planning_text(const PlanningStudyOptions& options, const std::vector
        {"true error [um]"},
        {"fits with an invisible error"}},
       "Volumetric, RMS of the vector over the volume and three tools; true error after rigid alignment");
-  const auto um = [](double value) { return fixed_number(value * kMicrometresPerMetre, 3); };
+  const auto um = [](double value) { return fixed_number(value * kPerMicro, 3); };
   const auto less = [](double plan, double textbook) {
     return fmt::format("-{:.1f} %", 100.0 * (1.0 - plan / textbook));
   };
@@ -55,10 +54,10 @@ nlohmann::ordered_json planning_json(const std::vector<PlannedMachine>& machines
     for (const LayoutFigures* each : {&machine.textbook, &machine.plan}) {
       json["layouts"].push_back({{"structure", machine.structure},
                                  {"layout", each->name},
-                                 {"predicted_u_um", each->predicted_u * kMicrometresPerMetre},
-                                 {"fitted_u_um", each->fitted_u * kMicrometresPerMetre},
-                                 {"montecarlo_u_um", each->montecarlo_u * kMicrometresPerMetre},
-                                 {"true_error_um", each->true_error * kMicrometresPerMetre},
+                                 {"predicted_u_um", each->predicted_u * kPerMicro},
+                                 {"fitted_u_um", each->fitted_u * kPerMicro},
+                                 {"montecarlo_u_um", each->montecarlo_u * kPerMicro},
+                                 {"true_error_um", each->true_error * kPerMicro},
                                  {"fits_with_invisible_error", each->invisible}});
     }
   }

@@ -20,8 +20,9 @@ class SampleCosines final : public Basis {
   int roughness_order() const override { return 0; }
   std::vector<double> pieces() const override {
     std::vector<double> ends;
-    for (int i = 0; i <= 2 * waves_; ++i)
+    for (int i = 0; i < 2 * waves_; ++i)
       ends.push_back(travel_min_ + (travel_max_ - travel_min_) * i / (2 * waves_));
+    ends.push_back(travel_max_);
     return ends;
   }
   int quadrature_order() const override { return 16; }

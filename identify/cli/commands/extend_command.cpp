@@ -222,7 +222,7 @@ const Command& extend_command() {
       "  volcal extend model.toml --diagnosis diagnosis --accepted -o model-1.toml\n"
       "  volcal extend model.toml --custom \"EZX: abs(x) / 400 * dir_x\" -o model-1.toml\n"
       "  volcal extend model.toml --effect axis-coupling:EAY:z:linear -o model-1.toml\n"
-      "  volcal extend model.toml --effect thermal-drift:EAZ:T_column --campaign campaign.toml -o "
+      "  volcal extend model.toml --effect thermal-drift:EAZ:T_air --campaign campaign.toml -o "
       "model-1.toml\n",
       define_extend};
   return command;

@@ -88,9 +88,10 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("identify/solve/a.h", '#include "volcal/identify/criticism/diagnosis.h"',
                              "solve may not include criticism")
 
-    def test_statistics_in_noise(self):
-        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/statistics/normal.h"',
-                             "noise may not include statistics")
+    def test_results_in_noise(self):
+        self.assert_accepted("identify/noise/a.h", '#include "volcal/identify/statistics/normal.h"')
+        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/result/result.h"',
+                             "noise may not include result")
 
     def test_noise_in_dense_matrices(self):
         self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',

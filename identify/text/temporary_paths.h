@@ -1,5 +1,5 @@
 #pragma once
-/// Files and folders that are being written under a temporary name. A program that is told to end removes
+/// Files and folders that are being written under a temporary name. A program that gets a signal to end removes
 /// them, so that nothing half-written stays behind.
 
 #include <mutex>

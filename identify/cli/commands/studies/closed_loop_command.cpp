@@ -7,10 +7,10 @@
 #include <numeric>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/closed_loop.h"
 
@@ -199,17 +199,12 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
   if (arguments.small) arguments.options.grid = {6, 5, 4};
   arguments.options.correlated_noise = arguments.noise == "correlated";
   ProgressBar bar("closed loop");
-  arguments.options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
-  };
+  arguments.options.progress = counted_on(bar, "campaigns");
   const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 2));
-  } else {
-    fmt::print("{}", closed_loop_text(arguments, campaigns));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return json_of(arguments, campaigns); },
+      [&] { return closed_loop_text(arguments, campaigns); });
 }
 
 std::function<int()> define_closed_loop_study(CLI::App& app) {
@@ -234,9 +229,7 @@ std::function<int()> define_closed_loop_study(CLI::App& app) {
       "with a scale of the laser (0.3 um/m) and offsets of the tools (3 um) that are wrong by what the "
       "campaign states, drawn anew for every campaign");
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_closed_loop_study(*arguments); };
 }
 

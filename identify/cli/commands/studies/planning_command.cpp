@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/planning.h"
 
@@ -69,12 +69,9 @@ int run_planning_study(PlanningStudyArguments arguments) {
   arguments.options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
   const std::vector<PlannedMachine> machines = planning_study(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(planning_json(machines), 2));
-  } else {
-    fmt::print("{}", planning_text(arguments.options, machines));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return planning_json(machines); },
+      [&] { return planning_text(arguments.options, machines); });
 }
 
 std::function<int()> define_planning_study(CLI::App& app) {
@@ -90,9 +87,7 @@ std::function<int()> define_planning_study(CLI::App& app) {
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_planning_study(*arguments); };
 }
 

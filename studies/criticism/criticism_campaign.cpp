@@ -377,12 +377,12 @@ class CampaignRun {
   void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
     record_.recovery = true;
     record_.ms_given = unseen_square(simulated, given);
-    ModelSpec reported, named;
+    ModelSpec oracle, named;
     for (const RightAnswer& right : right_) {
-      if (right.spec) reported.effects.push_back(*right.spec);
+      if (right.spec) oracle.effects.push_back(*right.spec);
     }
     for (const EffectFinding& finding : diagnosis.effects) named.effects.push_back(finding.spec);
-    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, reported));
+    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, oracle));
     record_.ms_named = named.effects.empty() ? record_.ms_given
                                              : unseen_square(simulated, fitted(simulated.campaign, named));
     record_.ms_told = record_.ms_named;

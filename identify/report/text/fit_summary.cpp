@@ -11,6 +11,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/solve/noise_words.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/observation/channels.h"
 
@@ -40,23 +41,39 @@ std::string reference_line(const FitResult& result) {
          temperature + ".\n";
 }
 
-/// Range of a function and its largest uncertainty where it was measured.
-void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
-                      const Observability& error, TextTable& text) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  double low = kNone, high = kNone, largest_u = kNone;
+/// Values of an error where it was measured, SI; NaN where nothing was.
+struct ErrorRange {
+  double low = std::nan(""), high = std::nan("");
+  double expanded = std::nan("");  ///< largest U95
+
+  double magnitude() const { return std::fmax(std::abs(low), std::abs(high)); }
+};
+
+ErrorRange range_of(const FitResult& result, const std::vector<ErrorTableRow>& table,
+                    const Observability& error) {
+  if (const ParameterBlock* block = result.layout.find_block(error.symbol)) {
+    const double value = result.parameters[block->offset];
+    return {value, value, result.coverage_factor * error.u_rms};
+  }
+  ErrorRange range;
   for (const ErrorTableRow& row : table) {
     if (row.symbol != error.symbol || row.extrapolated) continue;
-    low = std::fmin(low, row.value);
-    high = std::fmax(high, row.value);
-    largest_u = std::fmax(largest_u, row.u);
+    range.low = std::fmin(range.low, row.value);
+    range.high = std::fmax(range.high, row.value);
+    range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
   }
+  return range;
+}
+
+void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
+                      const Observability& error, TextTable& text) {
+  const ErrorRange range = range_of(result, table, error);
   const auto symbol = ErrorSymbol::parse(error.symbol);
   const bool rotation = symbol && is_rotation(symbol->component);
-  const auto value = [](double si) { return fixed_number(si * 1e6, 2); };
-  text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(low) : "-",
-                error.visible ? value(high) : "-", value(result.coverage_factor * error.u_rms),
-                value(result.coverage_factor * largest_u), fixed_number(error.visible_fraction, 2),
+  const auto value = [](double si) { return fixed_number(si * kPerMicro, 2); };
+  text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(range.low) : "-",
+                error.visible ? value(range.high) : "-", value(result.coverage_factor * error.u_rms),
+                value(range.expanded), fixed_number(error.visible_fraction, 2),
                 fixed_number(error.effective_parameters, 1), error.visible ? "" : "NOT VISIBLE"});
 }
 
@@ -186,25 +203,6 @@ struct ErrorExtremes {
   double expanded = 0.0;       ///< its largest U95 where it was measured, edge unit
 };
 
-/// Range of an error where it was measured and its largest U95, SI.
-struct ErrorRange {
-  double magnitude = 0.0;
-  double expanded = 0.0;
-};
-
-ErrorRange range_of(const FitResult& result, const std::vector<ErrorTableRow>& table,
-                    const Observability& error) {
-  if (const ParameterBlock* block = result.layout.find_block(error.symbol))
-    return {std::abs(result.parameters[block->offset]), result.coverage_factor * error.u_rms};
-  ErrorRange range;
-  for (const ErrorTableRow& row : table) {
-    if (row.symbol != error.symbol || row.extrapolated) continue;
-    range.magnitude = std::fmax(range.magnitude, std::abs(row.value));
-    range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
-  }
-  return range;
-}
-
 bool is_angle(const FitResult& result, const std::string& symbol) {
   if (const ParameterBlock* block = result.layout.find_block(symbol)) return block->units[0] == "urad";
   const auto parsed = ErrorSymbol::parse(symbol);
@@ -217,12 +215,12 @@ bool is_effect(const FitResult& result, const Observability& error) {
 }
 
 void extend_extremes(const Observability& error, const ErrorRange& range, ErrorExtremes& extremes) {
-  if (range.magnitude * 1e6 >= extremes.value) {
-    extremes.value = range.magnitude * 1e6;
+  if (range.magnitude() * kPerMicro >= extremes.value) {
+    extremes.value = range.magnitude() * kPerMicro;
     extremes.largest = error.symbol;
   }
-  if (range.expanded * 1e6 >= extremes.expanded) {
-    extremes.expanded = range.expanded * 1e6;
+  if (range.expanded * kPerMicro >= extremes.expanded) {
+    extremes.expanded = range.expanded * kPerMicro;
     extremes.most_uncertain = error.symbol;
   }
 }
@@ -332,9 +330,8 @@ std::string rank_text(const FitResult& result) {
   if (rest == 0) return text + ".";
   if (std::ranges::any_of(result.functions, &FunctionSummary::smoothed)) {
     text += fmt::format(
-        "; with automatic knots, which are finer than the data, the other {} are detail between the readings "
-        "that "
-        "the smoothing prior holds: resolution, not invisibility",
+        "; with automatic knots, which are finer than the data, the other {} are detail between the "
+        "readings that the smoothing prior holds: resolution, not invisibility",
         rest);
     return text + (result.rank.invisible.empty() ? "." : ", except for the errors named here.");
   }

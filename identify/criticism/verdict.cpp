@@ -41,6 +41,20 @@ std::string sentence(const UnknownFinding& unknown) {
                      unknown.action(), unknown.rms * kPerMicro);
 }
 
+/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310, z = -120. It cannot say ..."
+std::string sentence(const SurfaceFinding& surface) {
+  std::string place;
+  for (std::size_t i = 0; i < surface.at.size(); ++i)
+    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", surface.drivers[i], surface.at[i]);
+  std::string text = fmt::format(
+      "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it "
+      "and the error falls.",
+      surface.label, surface.largest / surface.si_per_unit,
+      kCoverageFactor * surface.largest_u / surface.si_per_unit, surface.unit, place);
+  for (const std::string& free : surface.free) text += " These readings leave open " + free + ".";
+  return text;
+}
+
 void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
   const auto sets = sets_of_alternatives(diagnosis);
   const bool more = !diagnosis.unknown.empty();
@@ -92,6 +106,7 @@ void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
   auto& words = diagnosis.words;
   for (const auto& [label, reason] : remarks.rejected)
     words.push_back("Not named " + label + ": " + reason + ".");
+  for (const SurfaceFinding& surface : diagnosis.surfaces) words.push_back(sentence(surface));
   if (const std::size_t back = remarks.removed_by_fit - diagnosis.removed_readings.size(); back > 0) {
     words.push_back(
         fmt::format("{} of {} readings that the outlier test had removed agree with the model "

@@ -177,7 +177,7 @@ void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& 
     for (const Setup& setup : campaign.setups)
       unrecorded += effect.effect->unrecorded({campaign, setup, {}, {}});
     if (unrecorded == 0) continue;
-    result.messages.push_back(effect.effect->amplitudes().front().label + ": " + std::to_string(unrecorded) +
+    result.messages.push_back(effect_label(*effect.effect) + ": " + std::to_string(unrecorded) +
                               " readings do not record " + effect.effect->name().driver +
                               " and carry nothing of the effect");
   }

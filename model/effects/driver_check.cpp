@@ -95,8 +95,8 @@ void check_drivers_vary(const Campaign& campaign, const Effect& effect, const So
   const std::vector<std::string> constant = constant_columns(campaign, effect.name());
   if (constant.empty()) return;
   throw InputError(place,
-                   fmt::format("{} depends on {}: the same in all readings",
-                               effect.amplitudes().front().label, fmt::join(constant, " and ")),
+                   fmt::format("{} depends on {}: the same in all readings", effect_label(effect),
+                               fmt::join(constant, " and ")),
                    "remove the effect, or measure where that changes");
 }
 

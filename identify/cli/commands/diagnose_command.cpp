@@ -63,6 +63,12 @@ ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& d
                   .remedy_if_known = "diagnose the campaign with a model without it",
                   .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }
+  for (const SurfaceFinding& surface : diagnosis.surfaces) {
+    extend_model({model, campaign.machine, &campaign}, surface.spec,
+                 {.label = surface.label,
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
+  }
   return model;
 }
 

@@ -64,6 +64,34 @@ struct UnknownFinding {
   std::string action() const;
 };
 
+/// A surface or curve as it is drawn: places of its first one or two drivers, values with the last of these
+/// next to each other. Not kept in files.
+struct SurfaceFigure {
+  std::vector<std::vector<double>> places;  ///< per driver, in its unit
+  Eigen::VectorXd value;                    ///< SI
+  Eigen::VectorXd u;
+  std::vector<std::vector<double>> dots;  ///< where readings stand, per driver; a part of them
+  double third = std::numeric_limits<double>::quiet_NaN();  ///< value of a third driver
+};
+
+/// A function without a formula that was drawn for what has no name, an effect of the kind `empirical`.
+struct SurfaceFinding {
+  EffectName name;
+  std::string label;
+  EffectSpec spec;  ///< with its coefficients: can be put into a model file
+  std::vector<std::string> drivers;
+  std::string unit;  ///< edge, of its values
+  double si_per_unit = 1.0;
+  double log_evidence = 0.0;          ///< natural, over the model without it
+  double effective_parameters = 0.0;  ///< that the readings determine
+  double rms = 0.0;                   ///< SI, over the readings
+  double largest = 0.0;               ///< SI, of the largest magnitude at a reading
+  double largest_u = 0.0;
+  std::vector<double> at;         ///< there, one value per driver, in its unit
+  std::vector<std::string> free;  ///< what the readings do not tell from the rest of the model, in words
+  SurfaceFigure figure;
+};
+
 /// One step of the ladder, all against the noise model at the last step. SI.
 struct LadderStep {
   std::string model;  ///< "0", "1" ...
@@ -135,6 +163,7 @@ struct Diagnosis {
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
   std::vector<UnknownFinding> unknown;                     ///< leading first
+  std::vector<SurfaceFinding> surfaces;                    ///< drawn for what has no name
   std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order

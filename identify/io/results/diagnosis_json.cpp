@@ -107,6 +107,25 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }
 
+Json surface_json(const SurfaceFinding& surface) {
+  return {{"kind", surface.name.kind},
+          {"target", surface.name.target},
+          {"driver", surface.name.driver},
+          {"shape", surface.name.shape},
+          {"label", surface.label},
+          {"drivers", surface.drivers},
+          {"unit", surface.unit},
+          {"largest", finite_or_null(surface.largest / surface.si_per_unit)},
+          {"u", finite_or_null(surface.largest_u / surface.si_per_unit)},
+          {"at", surface.at},
+          {"rms", finite_or_null(surface.rms / surface.si_per_unit)},
+          {"log_evidence", finite_or_null(surface.log_evidence)},
+          {"effective_parameters", finite_or_null(surface.effective_parameters)},
+          {"free", surface.free},
+          {"model_toml", effect_toml(surface.spec)},
+          {"spec", json_parts::effect(surface.spec)}};
+}
+
 Json names_json(const std::vector<EffectName>& names) {
   Json json = Json::array();
   for (const EffectName& name : names) json.push_back(full_name(name));
@@ -179,6 +198,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
+  json["surfaces"] = Json::array();
+  for (const SurfaceFinding& surface : diagnosis.surfaces) json["surfaces"].push_back(surface_json(surface));
   json["not_visible"] = list_json(diagnosis.not_visible);
   json["next_measurement"] = Json::array();
   for (const MeasurementProposal& proposal : diagnosis.proposals) {

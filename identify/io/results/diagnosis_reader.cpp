@@ -72,6 +72,24 @@ EffectFinding effect_from(const Json& json) {
   return effect;
 }
 
+SurfaceFinding surface_from(const Json& json) {
+  SurfaceFinding surface;
+  surface.name = name_from(json);
+  surface.label = text(json, "label");
+  surface.drivers = json.at("drivers").get<std::vector<std::string>>();
+  surface.unit = text(json, "unit");
+  surface.si_per_unit = si_per_unit(surface.unit);
+  surface.largest = number_or_nan(json, "largest") * surface.si_per_unit;
+  surface.largest_u = number_or_nan(json, "u") * surface.si_per_unit;
+  surface.at = json.at("at").get<std::vector<double>>();
+  surface.rms = number_or_nan(json, "rms") * surface.si_per_unit;
+  surface.log_evidence = number_or_nan(json, "log_evidence");
+  surface.effective_parameters = number_or_nan(json, "effective_parameters");
+  surface.free = json.at("free").get<std::vector<std::string>>();
+  surface.spec = json_parts::effect_from(json.at("spec"));
+  return surface;
+}
+
 std::vector<EffectFinding> list_from(const Json& json) {
   std::vector<EffectFinding> effects;
   for (const Json& each : json) effects.push_back(effect_from(each));
@@ -191,6 +209,8 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
+  for (const Json& each : json.value("surfaces", Json::array()))
+    diagnosis.surfaces.push_back(surface_from(each));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
                                  each.value("with_one_of", std::vector<std::string>{}),

@@ -109,7 +109,7 @@ TEST_F(EffectContract, IdentifiedValuesSurviveInTheOptions) {
   for (const auto& [kind, spec, effect] : candidates_) {
     EffectSpec identified = spec;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-      identified.options.set(std::string(stem_of_key(amplitude.key)), 3.0 * amplitude.si_per_unit());
+      amplitude.keep(3.0 * amplitude.si_per_unit(), identified.options);
     }
     for (const EffectShape& shape : effect->shapes()) {
       identified.options.set(std::string(stem_of_key(shape.key)), 1.1 * shape.value);
@@ -151,7 +151,7 @@ TEST_F(EffectContract, DerivativesAreThoseOfThePrediction) {
     spec_with.effects.push_back(spec);
     EffectSpec& added = spec_with.effects.back();
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-      added.options.set(std::string(stem_of_key(amplitude.key)), 5.0 * amplitude.si_per_unit());
+      amplitude.keep(5.0 * amplitude.si_per_unit(), added.options);
     }
     const MeasurementModel model(campaign_, spec_with);
     const Eigen::VectorXd at = model.initial_parameters();

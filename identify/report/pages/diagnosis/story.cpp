@@ -163,6 +163,8 @@ Json story_page(const DiagnosisInput& input) {
   const Diagnosis& diagnosis = input.diagnosis;
   Json ladder = Json::array();
   for (const LadderStep& step : diagnosis.ladder) ladder.push_back(step_json(step));
+  Json surfaces = Json::array();
+  for (const SurfaceFinding& surface : diagnosis.surfaces) surfaces.push_back(surface_json(surface));
   Json one_of = Json::array();
   for (const auto* set : sets_of_alternatives(diagnosis)) {
     Json alternatives = Json::array();
@@ -175,6 +177,7 @@ Json story_page(const DiagnosisInput& input) {
           {"words", diagnosis.words},
           {"before", Json::array({before_text(diagnosis.ladder.front())})},
           {"missing", missing_json(diagnosis)},
+          {"surfaces", std::move(surfaces)},
           {"one_of", std::move(one_of)},
           {"after", after_json(diagnosis)},
           {"next_measurement", diagnosis.next_measurement},

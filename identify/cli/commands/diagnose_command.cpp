@@ -83,8 +83,8 @@ int show(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
-                  const Diagnosis& diagnosis, const std::string& json) {
+void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
+                     const Diagnosis& diagnosis, const std::string& json) {
   AtomicFolder folder(arguments.output);
   folder.write("diagnosis.json", json);
   folder.write("diagnosis.txt", diagnosis_text(diagnosis));
@@ -129,7 +129,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   const Diagnosis diagnosis = diagnose(campaign, result, options);
   bar.finish();
   const std::string json = diagnosis_json(diagnosis);
-  if (!arguments.output.empty()) write_folder(arguments, campaign, model, diagnosis, json);
+  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosis, json);
   if (arguments.json) {
     fmt::print("{}", json);
   } else {

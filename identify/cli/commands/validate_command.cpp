@@ -76,7 +76,7 @@ std::string warning(const FittedReadings& fitted) {
                      remedy);
 }
 
-std::string figures_text(const Validation& validation, const FittedReadings& fitted) {
+std::string validation_text(const Validation& validation, const FittedReadings& fitted) {
   const ValidationFigures& figures = validation.figures;
   TextTable totals({{"", Align::Left},
                     {"readings"},
@@ -134,7 +134,7 @@ int run_validate(const ValidateArguments& arguments) {
     if (!campaign.notes.empty()) json["notes"] = campaign.notes;
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    fmt::print("{}", figures_text(validation, fitted));
+    fmt::print("{}", validation_text(validation, fitted));
     for (const std::string& note : campaign.notes) fmt::print("! {}\n", note);
   }
   const bool exceeded =

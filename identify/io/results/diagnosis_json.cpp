@@ -171,7 +171,7 @@ Json step_json(const LadderStep& step) {
           {"heldout_loglik_gain", finite_or_null(step.heldout_loglik_gain)}};
 }
 
-Json noise_json(const Diagnosis& diagnosis) {
+Json noise_rows_json(const Diagnosis& diagnosis) {
   Json json = Json::array();
   for (const NoiseRow& row : diagnosis.noise) {
     json.push_back({{"instrument", diagnosis.noise_instruments[row.instrument]},
@@ -209,7 +209,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["ladder"] = Json::array();
   for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
   json["model_changes"] = list_json(diagnosis.model_changes);
-  json["noise"] = noise_json(diagnosis);
+  json["noise"] = noise_rows_json(diagnosis);
   json["removed_readings"] = Json::array();
   for (const RemovedReading& removed : diagnosis.removed_readings) {
     json["removed_readings"].push_back(

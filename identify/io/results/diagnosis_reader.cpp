@@ -23,7 +23,7 @@ double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 double number_or_nan(const Json& json, const char* key) { return number_or_nan(json.at(key)); }
-double micro(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
+double metres_of(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
 std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
 /// Of a unit as it is printed: "um/m/K" stands for the suffix um_per_m_K.
@@ -106,7 +106,7 @@ DetectableEffect detectable_from(const Json& json) {
   effect.visible = json.at("visible").get<bool>();
   effect.visible_fraction = number_or_nan(json, "visible_fraction");
   effect.mdb = number_or_nan(json, "mdb") * effect.si_per_unit;
-  effect.volumetric = micro(json, "volumetric_um");
+  effect.volumetric = metres_of(json, "volumetric_um");
   return effect;
 }
 
@@ -169,13 +169,13 @@ LadderStep step_from(const Json& json) {
   LadderStep step;
   step.model = text(json, "model");
   step.added = text(json, "added");
-  step.rms_fit = micro(json, "rms_fit_um");
-  step.rms_heldout = micro(json, "rms_heldout_um");
+  step.rms_fit = metres_of(json, "rms_fit_um");
+  step.rms_heldout = metres_of(json, "rms_heldout_um");
   step.reduced_chi2 = number_or_nan(json, "reduced_chi2");
-  step.noise_floor = micro(json, "noise_floor_um");
-  step.systematic = micro(json, "systematic_um");
-  step.systematic_low = micro(json, "systematic_low_um");
-  step.systematic_high = micro(json, "systematic_high_um");
+  step.noise_floor = metres_of(json, "noise_floor_um");
+  step.systematic = metres_of(json, "systematic_um");
+  step.systematic_low = metres_of(json, "systematic_low_um");
+  step.systematic_high = metres_of(json, "systematic_high_um");
   step.heldout_loglik_gain = number_or_nan(json, "heldout_loglik_gain");
   return step;
 }
@@ -214,8 +214,9 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
                                  each.value("with_one_of", std::vector<std::string>{}),
-                                 text(each, "direction"), each.value("rotation", ""), micro(each, "rms_um"),
-                                 number_or_nan(each, "log10_p"), wave_period(each)});
+                                 text(each, "direction"), each.value("rotation", ""),
+                                 metres_of(each, "rms_um"), number_or_nan(each, "log10_p"),
+                                 wave_period(each)});
   }
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {

@@ -146,7 +146,7 @@ std::string unknown_table(const Diagnosis& diagnosis, std::size_t most) {
 }
 
 /// By kind; diagnosis.json and report.html have every effect.
-std::string detectable_table(const Diagnosis& diagnosis) {
+std::string detected_effects_table(const Diagnosis& diagnosis) {
   TextTable table({{"kind", Align::Left},
                    {"effects"},
                    {"not visible"},
@@ -242,7 +242,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
   }
   if (!diagnosis.detectable.empty()) {
-    text += "\n" + detectable_table(diagnosis) +
+    text += "\n" + detected_effects_table(diagnosis) +
             "  in the volume: root mean square displacement of the functional point by the one found first\n";
   }
   text += "\n" + noise_text(diagnosis);

@@ -42,7 +42,7 @@ std::string level(Verdict verdict) {
   return "bad";
 }
 
-std::string headline(Verdict verdict) {
+std::string headline_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::Named:
       return "Named: the missing effect is known";
@@ -173,7 +173,7 @@ Json story_page(const DiagnosisInput& input) {
   }
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
-          {"headline", headline(diagnosis.verdict)},
+          {"headline", headline_of(diagnosis.verdict)},
           {"words", diagnosis.words},
           {"before", Json::array({before_text(diagnosis.ladder.front())})},
           {"missing", missing_json(diagnosis)},

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "volcal/identify/criticism/formulas/formula_search.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/functions/tensor_basis.h"
@@ -191,8 +192,10 @@ std::vector<SurfaceFinding> surface_findings(const ModelState& reached) {
   std::vector<SurfaceFinding> findings;
   if (reached.surfaces().empty()) return findings;
   const auto projector = reached.projector_of_all_readings();
-  for (const AddedSurface& surface : reached.surfaces())
-    findings.push_back(SurfaceSummary(reached, surface, *projector).run());
+  for (std::size_t i = 0; i < reached.surfaces().size(); ++i) {
+    findings.push_back(SurfaceSummary(reached, reached.surfaces()[i], *projector).run());
+    findings.back().formulas = formulas_for(reached, i);
+  }
   return findings;
 }
 

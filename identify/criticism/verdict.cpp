@@ -51,6 +51,13 @@ std::string sentence(const SurfaceFinding& surface) {
       "and the error falls.",
       surface.label, surface.largest / surface.si_per_unit,
       kCoverageFactor * surface.largest_u / surface.si_per_unit, surface.unit, place);
+  for (const FormulaFinding& formula : surface.formulas) {
+    text += fmt::format(" {} {}{}, {:.3g} +- {:.2g} {}.",
+                        &formula == &surface.formulas.front() ? "A law that explains as much:" : "Or:",
+                        formula.label, formula.shape_text.empty() ? "" : " with " + formula.shape_text,
+                        formula.amplitude / formula.si_per_unit,
+                        kCoverageFactor * formula.u / formula.si_per_unit, formula.unit);
+  }
   for (const std::string& free : surface.free) text += " These readings leave open " + free + ".";
   return text;
 }

@@ -64,8 +64,8 @@ ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& d
                   .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }
   for (const SurfaceFinding& surface : diagnosis.surfaces) {
-    extend_model({model, campaign.machine, &campaign}, surface.spec,
-                 {.label = surface.label,
+    extend_model({model, campaign.machine, &campaign}, surface.accepted_spec(),
+                 {.label = surface.accepted_label(),
                   .remedy_if_known = "diagnose the campaign with a model without it",
                   .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }

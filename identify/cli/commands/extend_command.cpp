@@ -55,8 +55,8 @@ std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
     for (const SurfaceFinding& surface : diagnosis.surfaces) {
       EffectFinding& found = accepted.emplace_back();
       found.name = surface.name;
-      found.label = surface.label;
-      found.spec = surface.spec;
+      found.label = surface.accepted_label();
+      found.spec = surface.accepted_spec();
     }
     if (!accepted.empty()) return accepted;
     throw InputError({arguments.diagnosis, 0},

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,18 @@ struct SurfaceFigure {
   double third = std::numeric_limits<double>::quiet_NaN();  ///< value of a third driver
 };
 
+/// A law that explains what a surface was drawn for, an effect of the kind `custom`.
+struct FormulaFinding {
+  std::string label;       ///< "EAY by y * z^2"
+  EffectSpec spec;         ///< with its amplitude: can be put into a model file
+  double amplitude = 0.0;  ///< SI
+  double u = 0.0;
+  std::string unit;  ///< edge
+  double si_per_unit = 1.0;
+  std::string shape_text;  ///< "p = 120.3"; empty without parameters of its shape
+  double log_evidence = -std::numeric_limits<double>::infinity();  ///< natural, over the model without it
+};
+
 /// A function without a formula that was drawn for what has no name, an effect of the kind `empirical`.
 struct SurfaceFinding {
   EffectName name;
@@ -89,7 +102,12 @@ struct SurfaceFinding {
   double largest_u = 0.0;
   std::vector<double> at;         ///< there, one value per driver, in its unit
   std::vector<std::string> free;  ///< what the readings do not tell from the rest of the model, in words
+  std::vector<FormulaFinding> formulas;  ///< laws of as much evidence, best first; none: no law was found
   SurfaceFigure figure;
+
+  /// What enters a model for it: the leading law, or the surface where there is none.
+  const EffectSpec& accepted_spec() const { return formulas.empty() ? spec : formulas.front().spec; }
+  const std::string& accepted_label() const { return formulas.empty() ? label : formulas.front().label; }
 };
 
 /// One step of the ladder, all against the noise model at the last step. SI.
@@ -162,9 +180,9 @@ struct Diagnosis {
   std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
-  std::vector<UnknownFinding> unknown;                     ///< leading first
-  std::vector<SurfaceFinding> surfaces;                    ///< drawn for what has no name
-  std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40
+  std::vector<UnknownFinding> unknown;   ///< what surfaces were drawn for, in their order; then leading first
+  std::vector<SurfaceFinding> surfaces;  ///< drawn for what has no name
+  std::vector<EffectFinding> ranking;    ///< families by gain, at the model reached; at most 40
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
   std::vector<EffectFinding> model_changes;
@@ -181,6 +199,9 @@ struct Diagnosis {
   std::size_t generic_tests = 0;
   DiagnosisFigures figures;  ///< not kept in files
 };
+
+/// Of `unknown`, what no surface was drawn for.
+std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);

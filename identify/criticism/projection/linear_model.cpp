@@ -99,6 +99,27 @@ LinearModel LinearModel::with_surface(const Effect& effect) const {
   return other;
 }
 
+LinearModel LinearModel::without_surface(std::size_t term) const {
+  LinearModel other = *this;
+  const int first = smoothing_[term].offset, count = static_cast<int>(smoothing_[term].precision().rows());
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < reduced_.size(); ++i) {
+    if (i < first || i >= first + count) kept.push_back(i);
+  }
+  other.base_prior_.precision = base_prior_.precision(kept, kept);
+  other.base_prior_.mean = base_prior_.mean(kept);
+  other.reduced_ = reduced_(kept);
+  const auto problem = std::make_shared<NoiseProblem>(*problem_);
+  problem->jacobian = problem_->jacobian(Eigen::all, kept);
+  std::vector<SmoothingTerm> smoothing = smoothing_;
+  smoothing.erase(smoothing.begin() + static_cast<std::ptrdiff_t>(term));
+  for (SmoothingTerm& each : smoothing) {
+    if (each.offset > first) each.offset -= count;
+  }
+  other.set_smoothing(std::move(smoothing), problem);
+  return other;
+}
+
 LinearModel LinearModel::with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const {
   const Eigen::Index count = gram.rows() - 1;
   std::vector<SmoothingTerm> smoothing = smoothing_;

@@ -51,6 +51,8 @@ class LinearModel {
   LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const;
   /// With the coefficients of a surface as further parameters, the last, under its prior (surface_prior.h).
   LinearModel with_surface(const Effect& effect) const;
+  /// Without the surface of a term of smoothing().
+  LinearModel without_surface(std::size_t term) const;
   /// What the rest of the model, and effects that were added to it, can imitate of surfaces is theirs. `gram`
   /// as for smoothed().
   LinearModel with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const;

@@ -131,6 +131,17 @@ std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParam
   return make_projector(without(model_.problem().data, setting_->heldout), noise);
 }
 
+std::unique_ptr<Projector> ModelState::projector_without_surface(const AddedSurface& surface) const {
+  const LinearModel model = model_.without_surface(surface.term);
+  auto projector =
+      std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise_,
+                                  setting_->threads, model.parts());
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
+  for (const AddedEffect& effect : added_) append_columns(effect.columns, columns);
+  if (columns.cols() > 0) projector->accept(columns);
+  return projector;
+}
+
 std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,
                                                       const std::vector<NoiseParameters>& noise,
                                                       const std::set<std::size_t>& left_out) const {

@@ -81,6 +81,8 @@ class ModelState {
   NoiseProblem problem() const;
   /// Without some of the added effects, by their places.
   std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
+  /// At the same noise and smoothing.
+  std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface) const;
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
   /// From all readings, those that are held out as well.
   std::unique_ptr<Projector> projector_of_all_readings() const;

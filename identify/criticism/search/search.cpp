@@ -10,7 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
-#include "volcal/identify/criticism/unknown_findings.h"
+#include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/statistics/chi_squared.h"
 
 namespace volcal {

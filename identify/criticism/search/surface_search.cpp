@@ -26,31 +26,30 @@ struct Table {
   bool complete = true;  ///< every variable has its place
 
   void add(const Variable& variable) {
-    using Kind = Variable::Kind;
     switch (variable.kind) {
-      case Kind::Position:
-      case Kind::Length:
-      case Kind::Feed:
+      case Variable::Kind::Position:
+      case Variable::Kind::Length:
+      case Variable::Kind::Feed:
         return drivers.push_back(variable.name());
-      case Kind::Direction:
+      case Variable::Kind::Direction:
         factor += (factor.empty() ? "" : " ") + variable.name();
         return;
-      case Kind::Time:
+      case Variable::Kind::Time:
         return drivers.push_back("t");
-      case Kind::Temperature:
+      case Variable::Kind::Temperature:
         return drivers.push_back(channel_variable(variable.subject));
-      case Kind::Tool:
+      case Variable::Kind::Tool:
         only = variable.name();
         return;
-      case Kind::Station:
+      case Variable::Kind::Station:
         only = variable.name();
         station = variable.subject;
         return;
-      case Kind::Speed:
-      case Kind::Elevation:
-      case Kind::Run:
-      case Kind::Instrument:
-      case Kind::TravelSinceTurning:
+      case Variable::Kind::Speed:
+      case Variable::Kind::Elevation:
+      case Variable::Kind::Run:
+      case Variable::Kind::Instrument:
+      case Variable::Kind::TravelSinceTurning:
         complete = false;
     }
   }
@@ -122,15 +121,14 @@ std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFind
   return specs;
 }
 
-double surface_evidence(const ModelState& state, const Effect& surface) {
-  const LinearModel& model = state.model();
+double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface) {
   const auto count = static_cast<Eigen::Index>(surface.amplitudes().size());
   const ProjectedColumns projected =
-      state.projector().project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
-                                   model.columns(surface, surface.shape_values(), part, rows);
-                                 }});
+      projector.project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
+                           model.columns(surface, surface.shape_values(), part, rows);
+                         }});
   const NoiseGroupEquations equations{projected.gram(0, count), -projected.score, 0.0,
-                                      static_cast<double>(state.projector().observations())};
+                                      static_cast<double>(projector.observations())};
   std::vector<SmoothingTerm> terms = {surface_term(*surface.surface(), 0)};
   return maximise_evidence({equations}, Eigen::VectorXd::Zero(count),
                            GaussianPrior::none(static_cast<int>(count)), {.variance_components = false},
@@ -148,7 +146,7 @@ std::optional<SurfaceTest> best_surface(const ModelState& state,
       if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
         continue;
       tried.push_back(effect->name());
-      const double evidence = surface_evidence(state, *effect);
+      const double evidence = surface_evidence(state.model(), state.projector(), *effect);
       if (evidence < kThresholds.surface_evidence || (best && evidence <= best->log_evidence)) continue;
       best = SurfaceTest{std::move(spec), std::move(effect), findings[i], evidence};
     }

@@ -26,8 +26,8 @@ struct SurfaceTest {
 /// Effects that might explain a finding: by all of its variables, and by each alone.
 std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFinding& finding);
 
-/// At the noise of the state.
-double surface_evidence(const ModelState& state, const Effect& surface);
+/// Over the model of a projector, which has not got the surface.
+double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface);
 
 /// Nothing where none has an evidence above the threshold (thresholds.h).
 std::optional<SurfaceTest> best_surface(const ModelState& state, const std::vector<UnknownFinding>& findings);

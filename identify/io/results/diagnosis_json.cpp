@@ -107,7 +107,20 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }
 
+Json formula_json(const FormulaFinding& formula) {
+  return {{"label", formula.label},
+          {"amplitude", finite_or_null(formula.amplitude / formula.si_per_unit)},
+          {"u", finite_or_null(formula.u / formula.si_per_unit)},
+          {"unit", formula.unit},
+          {"shape_value", formula.shape_text},
+          {"log_evidence", finite_or_null(formula.log_evidence)},
+          {"model_toml", effect_toml(formula.spec)},
+          {"spec", json_parts::effect(formula.spec)}};
+}
+
 Json surface_json(const SurfaceFinding& surface) {
+  Json formulas = Json::array();
+  for (const FormulaFinding& formula : surface.formulas) formulas.push_back(formula_json(formula));
   return {{"kind", surface.name.kind},
           {"target", surface.name.target},
           {"driver", surface.name.driver},
@@ -122,6 +135,7 @@ Json surface_json(const SurfaceFinding& surface) {
           {"log_evidence", finite_or_null(surface.log_evidence)},
           {"effective_parameters", finite_or_null(surface.effective_parameters)},
           {"free", surface.free},
+          {"formulas", std::move(formulas)},
           {"model_toml", effect_toml(surface.spec)},
           {"spec", json_parts::effect(surface.spec)}};
 }

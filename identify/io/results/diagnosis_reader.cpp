@@ -72,6 +72,19 @@ EffectFinding effect_from(const Json& json) {
   return effect;
 }
 
+FormulaFinding formula_from(const Json& json) {
+  FormulaFinding formula;
+  formula.label = text(json, "label");
+  formula.unit = text(json, "unit");
+  formula.si_per_unit = si_per_unit(formula.unit);
+  formula.amplitude = number_or_nan(json, "amplitude") * formula.si_per_unit;
+  formula.u = number_or_nan(json, "u") * formula.si_per_unit;
+  formula.shape_text = text(json, "shape_value");
+  formula.log_evidence = number_or_nan(json, "log_evidence");
+  formula.spec = json_parts::effect_from(json.at("spec"));
+  return formula;
+}
+
 SurfaceFinding surface_from(const Json& json) {
   SurfaceFinding surface;
   surface.name = name_from(json);
@@ -86,6 +99,7 @@ SurfaceFinding surface_from(const Json& json) {
   surface.log_evidence = number_or_nan(json, "log_evidence");
   surface.effective_parameters = number_or_nan(json, "effective_parameters");
   surface.free = json.at("free").get<std::vector<std::string>>();
+  for (const Json& each : json.at("formulas")) surface.formulas.push_back(formula_from(each));
   surface.spec = json_parts::effect_from(json.at("spec"));
   return surface;
 }

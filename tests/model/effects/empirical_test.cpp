@@ -30,7 +30,7 @@ EffectSpec stated(const std::string& target, const std::string& drivers, std::ve
   return spec;
 }
 
-std::unique_ptr<Effect> made(const EffectSpec& spec) {
+std::unique_ptr<Effect> effect_of(const EffectSpec& spec) {
   return find_effect("empirical")->make(spec, "model.toml");
 }
 
@@ -74,7 +74,7 @@ class Empirical : public ::testing::Test {
 };
 
 TEST_F(Empirical, IsTheFunctionOfItsDrivers) {
-  const auto effect = made(stated("EAY", "y T_spindle", {0.0, 15.0}, {500.0, 30.0}, {3, 2}));
+  const auto effect = effect_of(stated("EAY", "y T_spindle", {0.0, 15.0}, {500.0, 30.0}, {3, 2}));
   EXPECT_EQ(effect_label(*effect), "surface EAY by y T_spindle");
   EXPECT_EQ(effect->name(), (EffectName{"empirical", "EAY", "y T_spindle", "surface"}));
   const Readings& readings = campaign_.setups[1].readings;
@@ -86,7 +86,7 @@ TEST_F(Empirical, IsTheFunctionOfItsDrivers) {
 TEST_F(Empirical, AFactorMultipliesIt) {
   EffectSpec spec = stated("EXX", "x", {0.0}, {500.0}, {4});
   spec.options.set("factor", std::string("dir_y"));
-  const auto effect = made(spec);
+  const auto effect = effect_of(spec);
   EXPECT_EQ(effect_label(*effect), "curve EXX by dir_y x");
   const Readings& readings = campaign_.setups[0].readings;
   const Eigen::VectorXd values = straight(*effect, 0);
@@ -99,7 +99,7 @@ TEST_F(Empirical, AFactorMultipliesIt) {
 TEST_F(Empirical, ActsOnlyWhereItIsSaidTo) {
   EffectSpec spec = stated("EXX", "x", {0.0}, {500.0}, {4});
   spec.options.set("only", std::string("tool side"));
-  const auto effect = made(spec);
+  const auto effect = effect_of(spec);
   for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
     const bool acts = !effect->drivers(views_[setup], effect->shape_values()).isZero(0.0);
     EXPECT_EQ(acts, campaign_.setups[setup].tool == 1) << campaign_.setups[setup].name;
@@ -108,7 +108,7 @@ TEST_F(Empirical, ActsOnlyWhereItIsSaidTo) {
 
 TEST_F(Empirical, IsNothingWhereADriverWasNotRecorded) {
   campaign_.setups[2].readings.temperature.erase("spindle");
-  const auto effect = made(stated("EXX", "T_spindle", {15.0}, {30.0}, {4}));
+  const auto effect = effect_of(stated("EXX", "T_spindle", {15.0}, {30.0}, {4}));
   EXPECT_TRUE(effect->drivers(views_[2], effect->shape_values()).isZero(0.0));
   EXPECT_EQ(effect->unrecorded(views_[2]), testing_support::kEffectRows);
   EXPECT_EQ(effect->unrecorded(views_[0]), 0u);
@@ -125,7 +125,7 @@ TEST_F(Empirical, TakesItsRangeAndPiecesFromTheReadings) {
   EXPECT_NEAR(from[0], 600.0, 1e-9);  // 0.010 to 0.014 m/s in mm/min
   EXPECT_NEAR(to[0], 840.0, 1e-9);
   double low = 1.0, high = 0.0;
-  for (const Setup& setup : campaign_.setups) {
+  for (const auto& setup : campaign_.setups) {
     low = std::min(low, std::ranges::min(setup.readings.position[0]));
     high = std::max(high, std::ranges::max(setup.readings.position[0]));
   }
@@ -137,17 +137,17 @@ TEST_F(Empirical, TakesItsRangeAndPiecesFromTheReadings) {
 TEST_F(Empirical, IdentifiedCoefficientsComeBack) {
   const EffectSpec spec = stated("EAY", "x y", {0.0, 0.0}, {500.0, 500.0}, {1, 2});
   EffectSpec identified = spec;
-  const auto effect = made(spec);
+  const auto effect = effect_of(spec);
   ASSERT_EQ(effect->amplitudes().size(), 20u);
   EXPECT_EQ(effect->amplitudes().front().key, "coefficients_urad");
   for (std::size_t k = 0; k < 20; ++k)
     effect->amplitudes()[k].keep(1e-6 * static_cast<double>(k), identified.options);
-  const auto again = made(identified);
+  const auto again = effect_of(identified);
   for (std::size_t k = 0; k < 20; ++k) EXPECT_EQ(again->amplitudes()[k].guess, 1e-6 * static_cast<double>(k));
 }
 
 TEST_F(Empirical, RefusesWhatItCannotBe) {
-  const auto refused = [](const EffectSpec& spec) { return problem([&] { made(spec); }); };
+  const auto refused = [](const EffectSpec& spec) { return problem([&] { effect_of(spec); }); };
   EXPECT_EQ(refused(stated("EAY", "x q", {0, 0}, {1, 1}, {2, 2})), "drivers: \"q\" is no variable");
   EXPECT_EQ(refused(stated("EAY", "x y z a", {0}, {1}, {2})), "4 drivers");
   EXPECT_EQ(refused(stated("EAY", "x y", {0}, {1, 1}, {2, 2})), "from holds 1 numbers for 2 drivers");
@@ -167,7 +167,7 @@ TEST_F(Empirical, RefusesWhatItCannotBe) {
 TEST_F(Empirical, AnOpenRangeCannotBeEvaluated) {
   EffectSpec open = effect_spec("empirical", {{"target", std::string("EXX")}, {"drivers", std::string("x")}});
   open.source_line = 7;
-  const auto effect = made(open);
+  const auto effect = effect_of(open);
   EXPECT_EQ(problem([&] { effect->drivers(views_[0], {}); }), "curve EXX by x has no range");
 }
 

@@ -119,7 +119,8 @@ Json after_json(const Diagnosis& diagnosis) {
       lines.push_back("The noise was estimated beside what remains, and its floor may hold part of that.");
     }
   } else if (std::isfinite(last.rms_heldout)) {
-    const bool only_alternative = diagnosis.effects.empty() && diagnosis.model_changes.empty();
+    const bool only_alternative =
+        diagnosis.effects.empty() && diagnosis.model_changes.empty() && diagnosis.surfaces.empty();
     const std::string with =
         only_alternative ? fmt::format("With {}, one of the alternatives, the", last.added) : "The";
     lines.push_back(
@@ -128,7 +129,7 @@ Json after_json(const Diagnosis& diagnosis) {
                     with, micrometres(first.systematic), interval(last), micrometres(first.rms_heldout),
                     micrometres(last.rms_heldout), micrometres(last.noise_floor)));
   }
-  for (const UnknownFinding& unknown : diagnosis.unknown) {
+  for (const UnknownFinding& unknown : remaining_unknown(diagnosis)) {
     lines.push_back(
         fmt::format("Still seen by the scan without a catalogue: something that depends on {}, along {}, "
                     "about {} RMS (log10 p {:.1f}).",

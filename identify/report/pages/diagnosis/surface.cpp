@@ -33,6 +33,14 @@ Json surface_json(const SurfaceFinding& surface) {
                     {"dots", i < surface.figure.dots.size() ? rounded_array(surface.figure.dots[i], 1.0, 4)
                                                             : Json::array()}});
   }
+  Json formulas = Json::array();
+  for (const FormulaFinding& formula : surface.formulas) {
+    formulas.push_back({{"label", formula.label},
+                        {"shape", formula.shape_text},
+                        {"amplitude", rounded(formula.amplitude / formula.si_per_unit, 4)},
+                        {"U95", rounded(kCoverageFactor * formula.u / formula.si_per_unit, 2)},
+                        {"unit", shown_unit(formula.unit)}});
+  }
   return {{"label", surface.label},
           {"target", surface.name.target},
           {"factor", surface.spec.options.text("factor").value_or("")},
@@ -45,8 +53,10 @@ Json surface_json(const SurfaceFinding& surface) {
           {"at", rounded_array(surface.at, 1.0, 4)},
           {"third", surface.drivers.size() > 2 ? Json(surface.drivers[2]) : Json()},
           {"third_at", rounded(surface.figure.third, 4)},
+          {"log_evidence", rounded(surface.log_evidence, 3)},
           {"rms", rounded(surface.rms * factor, 3)},
           {"effective_parameters", rounded(surface.effective_parameters, 2)},
+          {"formulas", std::move(formulas)},
           {"free", surface.free}};
 }
 

@@ -64,12 +64,15 @@ function heatMap(data) {
       },
       { x: x.dots, y: y.dots, type: 'scatter', mode: 'markers', name: 'readings', marker: { size: 2.5, color: color('muted'), opacity: 0.7 }, hoverinfo: 'skip' },
       {
-        x: [data.at[0]], y: [data.at[1]], type: 'scatter', mode: 'markers+text', name: 'largest', marker: { size: 11, symbol: 'circle-open', line: { width: 2 }, color: color('text') },
-        text: [`${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${plain(data.unit)}`], textposition: 'top center', textfont: { size: 12, color: color('text') }, hoverinfo: 'skip', cliponaxis: false,
+        x: [data.at[0]], y: [data.at[1]], type: 'scatter', mode: 'markers', name: 'largest', marker: { size: 11, symbol: 'circle-open', line: { width: 2 }, color: color('text') }, hoverinfo: 'skip',
       },
     ],
     layout: layout2d({
-      height: 380, margin: { r: 70, t: 24 }, hovermode: 'closest',
+      height: 560, margin: { r: 70, t: 24 }, hovermode: 'closest',
+      annotations: [{
+        x: data.at[0], y: data.at[1], ax: 0, ay: -26, arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
+        text: `${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${plain(data.unit)}`,
+      }],
       x: { title: plain(x.title), range: ends(x), showgrid: false, zeroline: false }, y: { title: plain(y.title), range: ends(y), showgrid: false, zeroline: false },
       images: [{ source: picture(data, limit), xref: 'x', yref: 'y', x: ends(x)[0], y: ends(y)[1], sizex: ends(x)[1] - ends(x)[0], sizey: ends(y)[1] - ends(y)[0], sizing: 'stretch', layer: 'below' }],
     }),
@@ -136,9 +139,12 @@ export function renderSurface(body, data) {
   } else {
     body.append(el('div', { class: 'pair' }, [
       plotOf(() => heatMap(data), `What has no name, as the readings show it${data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : ''}`),
-      el('div', {}, [plotOf(() => cuts(data, 0), `Cuts along ${data.axes[0].name}, 95 % bands`), plotOf(() => cuts(data, 1), `Cuts along ${data.axes[1].name}, 95 % bands`)]),
+      el('div', { class: 'cuts' }, [plotOf(() => cuts(data, 0), `Cuts along ${data.axes[0].name}, 95 % bands`), plotOf(() => cuts(data, 1), `Cuts along ${data.axes[1].name}, 95 % bands`)]),
     ]));
   }
+  for (const [k, formula] of data.formulas.entries()) {
+    body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${significant(formula.amplitude, 4)} ± ${significant(formula.U95, 2)} ${formula.unit}.`]));
+  }
   const open = data.free.length > 0 ? ` These readings leave open ${data.free.join('; ')}.` : '';
-  body.append(note(`A smooth function found by the readings alone: they determine about ${significant(data.effective_parameters, 2)} of its parameters.${open} It is in extended.toml as an effect of the kind empirical.`));
+  body.append(note(`A smooth function found by the readings alone: they determine about ${significant(data.effective_parameters, 2)} of its parameters.${open} ${data.formulas.length > 0 ? 'extended.toml holds the law as an effect of the kind custom.' : 'extended.toml holds it as an effect of the kind empirical.'}`));
 }

@@ -19,7 +19,8 @@ constexpr double kMinimumRedundancy = 5.0;  // fewer excess readings say nothing
 constexpr int kSettlingSteps = 30;
 constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
-constexpr double kSettled = 0.02;  // of log evidence in one step
+constexpr double kRounding = 1e-10;  // of a precision that holds what a surface may not imitate at zero
+constexpr double kSettled = 0.02;    // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
@@ -120,7 +121,12 @@ class AxisEvidence {
     cost_.gradient = all.gradient(mine);
     if (others.empty()) return;
     const Eigen::MatrixXd across = all.precision(others, mine);
-    const auto factor = cholesky_lower(all.precision(others, others));
+    Eigen::MatrixXd precision = all.precision(others, others);
+    auto factor = cholesky_lower(precision);
+    if (!factor) {
+      precision.diagonal() *= 1.0 + kRounding;
+      factor = cholesky_lower(precision);
+    }
     if (!factor)
       throw std::runtime_error("maximise_evidence: the posterior precision is not positive definite");
     const Eigen::MatrixXd half = factor->triangularView<Eigen::Lower>().solve(across);

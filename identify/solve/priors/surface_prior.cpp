@@ -14,7 +14,7 @@ const std::vector<double> kLengthsOfCurve = {0.05, 0.1, 0.2, 0.4, 0.8};
 const std::vector<double> kLengthsOfSurface = {0.15, 0.35, 0.8};
 constexpr double kNuggetOfCoefficients =
     1e-3;                            // of a coefficient's variance, so that the product can be inverted
-constexpr double kHeldWeight = 1e6;  // of what is imitated, in units of the prior
+constexpr double kHeldWeight = 1e4;  // of what is imitated, in units of the prior: a hundredth of its size
 constexpr double kImitatedShare = 0.99;
 constexpr double kSeen = 0.01;  // of the prior's information: less, and the readings say nothing
 

@@ -32,7 +32,8 @@ endfunction()
 # With VOLCAL_UNITY_BUILD neighbouring files of a target are compiled together, as many as `most` and all groups of
 # one size, so that the headers they share are read once and a template is instantiated once. Names in unnamed
 # namespaces are therefore unique within a target. A file that renames what it includes (VOLCAL_VECTOR_LOOPS), or is
-# for one instruction set, is compiled alone.
+# for one instruction set, is compiled alone, and so is one that lists what is registered: another list can then take
+# its place when a program is linked.
 function(volcal_unity_build target)
   if(NOT VOLCAL_UNITY_BUILD)
     return()
@@ -46,6 +47,10 @@ function(volcal_unity_build target)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
       list(APPEND together ${source})
+    endif()
+    file(STRINGS ${source} lists REGEX "^#define VOLCAL_[A-Z_]+\\(" LIMIT_COUNT 1)
+    if(lists)
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)

@@ -64,4 +64,15 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
   return effect;
 }
 
+std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
+  std::vector<EffectFinding> accepted = diagnosis.effects;
+  for (const SurfaceFinding& surface : diagnosis.surfaces) {
+    EffectFinding& found = accepted.emplace_back();
+    found.name = surface.name;
+    found.label = surface.accepted_label();
+    found.spec = surface.accepted_spec();
+  }
+  return accepted;
+}
+
 }  // namespace volcal

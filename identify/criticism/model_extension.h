@@ -3,7 +3,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/model_spec.h"
@@ -34,5 +36,9 @@ struct ExtensionWords {
 ///   the campaign lacks what the effect is about, or the effect's drivers never change there.
 std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
                                      const ExtensionWords& words);
+
+/// What a diagnosis adds to a model: its effects, and for every surface the leading law or the surface
+/// itself.
+std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis);
 
 }  // namespace volcal

@@ -111,18 +111,20 @@ class SurfaceSummary {
     Eigen::RowVectorXd largest_row;
     for (const SetupView& view : state_.model().views()) {
       const Eigen::MatrixXd rows = surface_.effect->drivers(view, surface_.effect->shape_values());
+      if (rows.isZero(0.0)) continue;
+      std::vector<Eigen::VectorXd> drivers;
+      for (const std::string& driver : out_.drivers) drivers.push_back(*recorded_variable(view, driver));
       for (Eigen::Index row = 0; row < rows.rows(); ++row) {
         if (rows.row(row).isZero(0.0)) continue;
         const double value = rows.row(row).dot(coefficients_);
         squares += value * value;
         ++count;
-        keep_dot(view, row);
+        keep_dot(drivers, row);
         if (std::abs(value) <= std::abs(out_.largest)) continue;
         out_.largest = value;
         largest_row = rows.row(row);
         out_.at.clear();
-        for (const std::string& driver : out_.drivers)
-          out_.at.push_back((*recorded_variable(view, driver))[row]);
+        for (const Eigen::VectorXd& driver : drivers) out_.at.push_back(driver[row]);
       }
     }
     if (count == 0) return;
@@ -130,12 +132,10 @@ class SurfaceSummary {
     if (largest_row.size() > 0) out_.largest_u = uncertainty(largest_row)[0];
   }
 
-  void keep_dot(const SetupView& view, Eigen::Index row) {
+  void keep_dot(const std::vector<Eigen::VectorXd>& drivers, Eigen::Index row) {
     if (++seen_ % stride() != 0) return;
-    for (std::size_t i = 0; i < std::min<std::size_t>(2, out_.drivers.size()); ++i) {
-      if (out_.figure.dots.size() <= i) out_.figure.dots.emplace_back();
-      out_.figure.dots[i].push_back((*recorded_variable(view, out_.drivers[i]))[row]);
-    }
+    out_.figure.dots.resize(std::min<std::size_t>(2, drivers.size()));
+    for (std::size_t i = 0; i < out_.figure.dots.size(); ++i) out_.figure.dots[i].push_back(drivers[i][row]);
   }
 
   std::size_t stride() const { return 1 + state_.model().size() / kMostDots; }

@@ -57,15 +57,9 @@ int print_list(const DiagnoseArguments& arguments) {
 }
 
 ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis) {
-  for (const EffectFinding& effect : diagnosis.effects) {
+  for (const EffectFinding& effect : accepted_effects(diagnosis)) {
     extend_model({model, campaign.machine, &campaign}, effect.spec,
                  {.label = effect.label,
-                  .remedy_if_known = "diagnose the campaign with a model without it",
-                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
-  }
-  for (const SurfaceFinding& surface : diagnosis.surfaces) {
-    extend_model({model, campaign.machine, &campaign}, surface.accepted_spec(),
-                 {.label = surface.accepted_label(),
                   .remedy_if_known = "diagnose the campaign with a model without it",
                   .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }

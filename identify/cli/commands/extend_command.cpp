@@ -51,13 +51,7 @@ std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
   const Diagnosis diagnosis = read_diagnosis(arguments.diagnosis);
   const std::string again = "volcal diagnose --show " + arguments.diagnosis + " prints the ranking";
   if (arguments.accepted) {
-    std::vector<EffectFinding> accepted = diagnosis.effects;
-    for (const SurfaceFinding& surface : diagnosis.surfaces) {
-      EffectFinding& found = accepted.emplace_back();
-      found.name = surface.name;
-      found.label = surface.accepted_label();
-      found.spec = surface.accepted_spec();
-    }
+    std::vector<EffectFinding> accepted = accepted_effects(diagnosis);
     if (!accepted.empty()) return accepted;
     throw InputError({arguments.diagnosis, 0},
                      "the diagnosis added no effect, its verdict is " + to_string(diagnosis.verdict),

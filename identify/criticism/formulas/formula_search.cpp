@@ -96,12 +96,8 @@ class FormulaSearch {
 
  private:
   void score_surface() {
-    const auto count = static_cast<Eigen::Index>(surface_.effect->amplitudes().size());
-    const ProjectedColumns projected =
-        projector_->project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
-                               model_.columns(*surface_.effect, surface_.effect->shape_values(), part, rows);
-                             }});
-    scores_ = {projected.gram(0, count), projected.score};
+    const ProjectedColumns projected = projected_effect(model_, *projector_, *surface_.effect);
+    scores_ = {projected.gram(0, projected.count()), projected.score};
   }
 
   /// Of the spline that follows a function of one driver best.
@@ -232,11 +228,7 @@ class FormulaSearch {
       }
     }
     const std::unique_ptr<Effect> effect = find_effect("custom")->make(finding.spec, {});
-    const ProjectedColumns projected =
-        projector_->project({1, {1}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
-                               model_.columns(*effect, effect->shape_values(), part, rows);
-                             }});
-    const ScoreTest score = score_test(projected, 0, 1);
+    const ScoreTest score = score_test(projected_effect(model_, *projector_, *effect), 0, 1);
     const EffectAmplitude& amplitude = effect->amplitudes().front();
     finding.label = amplitude.label;
     finding.unit = amplitude.unit();

@@ -13,7 +13,7 @@
 ///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
 ///   4. while a scan exceeds, a surface or curve is drawn for it (surface_search.h), and the climb goes on
 ///   with
-///      it in the model; in the end names are tried in the place of every surface.
+///      it in the model; in the end, where other surfaces or names came in, names are tried in its place.
 ///
 /// A search for one step climbs as well, so that what it names stands beside all the rest, and then keeps the
 /// first. Margins: thresholds.h. Valid as long as effects act linearly about the fit. Results do not depend

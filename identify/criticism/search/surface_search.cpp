@@ -122,12 +122,17 @@ std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFind
   return specs;
 }
 
+ProjectedColumns projected_effect(const LinearModel& model, const Projector& projector,
+                                  const Effect& effect) {
+  const auto count = static_cast<Eigen::Index>(effect.amplitudes().size());
+  return projector.project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
+                              model.columns(effect, effect.shape_values(), part, rows);
+                            }});
+}
+
 double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface) {
   const auto count = static_cast<Eigen::Index>(surface.amplitudes().size());
-  const ProjectedColumns projected =
-      projector.project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
-                           model.columns(surface, surface.shape_values(), part, rows);
-                         }});
+  const ProjectedColumns projected = projected_effect(model, projector, surface);
   const NoiseGroupEquations equations{projected.gram(0, count), -projected.score, 0.0,
                                       static_cast<double>(projector.observations())};
   std::vector<SmoothingTerm> terms = {surface_term(*surface.surface(), 0)};

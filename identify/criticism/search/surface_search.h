@@ -26,6 +26,8 @@ struct SurfaceTest {
 /// Effects that might explain a finding: by all of its variables, and by each alone.
 std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFinding& finding);
 
+/// Columns of an effect off the model of a projector, one group.
+ProjectedColumns projected_effect(const LinearModel& model, const Projector& projector, const Effect& effect);
 /// Over the model of a projector, which has not got the surface.
 double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -231,11 +232,12 @@ class EmpiricalEffect final : public Effect {
 };
 
 /// What readings of a driver say about its range.
-class DriverRange {
+class ValuesOfDriver {
  public:
   void add(const Eigen::VectorXd& values) { values_.insert(values_.end(), values.begin(), values.end()); }
 
-  /// As many pieces as values can be told apart, at most those asked for; nothing where all are the same.
+  /// As many pieces as there are values that differ, less one, at most those asked for; nothing where all are
+  /// the same.
   std::optional<TensorBasis::Side> side(int most_pieces) {
     if (values_.empty()) return std::nullopt;
     std::ranges::sort(values_);
@@ -351,9 +353,9 @@ class EmpiricalKind final : public EffectKind {
   }
 
  private:
-  static DriverRange range_of(const Statement& stated, const std::vector<SetupView>& views,
-                              const std::string& driver) {
-    DriverRange range;
+  static ValuesOfDriver range_of(const Statement& stated, const std::vector<SetupView>& views,
+                                 const std::string& driver) {
+    ValuesOfDriver range;
     for (const SetupView& view : views) {
       if (!stated.acts_on(view.campaign, view.setup)) continue;
       if (const auto values = recorded_variable(view, driver)) range.add(*values);

@@ -113,7 +113,10 @@ TEST(SurfaceFindings, ALawIsFoundInWordsThatCanBeRead) {
   std::vector<std::string> labels;
   for (const FormulaFinding& formula : surface.formulas) labels.push_back(formula.label);
   EXPECT_THAT(labels, ::testing::Contains(::testing::HasSubstr("dir_x * (T_column - 20)")));
-  EXPECT_EQ(surface.accepted_spec().kind, "custom");
+  const std::vector<EffectFinding> accepted = accepted_effects(diagnosis);
+  ASSERT_EQ(accepted.size(), diagnosis.effects.size() + 1);
+  EXPECT_EQ(accepted.back().spec.kind, "custom");
+  EXPECT_EQ(accepted.back().label, surface.formulas.front().label);
 }
 
 TEST(SurfaceFindings, NothingIsDrawnWhereNothingIsHidden) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal::testing {
 
@@ -26,7 +27,9 @@ inline EffectFinding found_effect(const std::string& kind, const std::string& sy
 inline Diagnosis hand_made_diagnosis() {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::NamedMoreRemains;
-  diagnosis.words = {"The missing effect is: reversal EXX"};
+  diagnosis.findings = {
+      verbatim("The missing effect is: reversal EXX"),
+      {FindingCode::DiagnosisMoreOneOf, {{"effects", std::vector<std::string>{"reversal EYY"}}}}};
   EffectFinding reversal = found_effect("reversal", "EXX", 4e-6);
   reversal.name = {"reversal", "EXX", "dir_x", "step"};
   EffectFinding other = found_effect("reversal", "EYY", 1e-6);

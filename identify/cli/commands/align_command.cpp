@@ -16,6 +16,7 @@
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -108,12 +109,12 @@ int run_align(const AlignArguments& arguments) {
                                          {"frame_rotation", angles_json(frame_of(aligned))},
                                          {"squareness_before", angles_json(squareness_of(before))},
                                          {"squareness", angles_json(squareness_of(aligned.result))},
-                                         {"invisible", before.rank.invisible}};
+                                         {"invisible", sentences(before.rank.invisible)}};
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);
-    for (const std::string& invisible : before.rank.invisible) fmt::print("! {}\n", invisible);
+    for (const std::string& invisible : sentences(before.rank.invisible)) fmt::print("! {}\n", invisible);
   }
   return before.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -15,6 +15,7 @@
 #include "volcal/identify/report/text/error_budget_text.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::cli {
 namespace {
@@ -64,13 +65,13 @@ int run_budget(const BudgetArguments& arguments) {
     nlohmann::ordered_json json = error_budget_json(budget);
     json["tool"] = tool.name;
     json["conditions"] = conditions_json(result, conditions);
-    json["invisible"] = result.rank.invisible;
+    json["invisible"] = sentences(result.rank.invisible);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}{}", conditions_text(result, conditions),
                error_budget_text(budget, tool.name, result.coverage_factor, arguments.verbose));
     for (const std::string& sentence : unmeasured_travel(result)) fmt::print("! {}\n", sentence);
-    for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+    for (const std::string& invisible : sentences(result.rank.invisible)) fmt::print("! {}\n", invisible);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

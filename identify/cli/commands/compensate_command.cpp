@@ -16,6 +16,7 @@
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -106,7 +107,7 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   if (done.check) fmt::print("{}", program_check_text(*done.check));
   fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
   for (const std::string& sentence : errors_in_no_table(result)) fmt::print("! {}\n", sentence);
-  for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+  for (const std::string& invisible : sentences(result.rank.invisible)) fmt::print("! {}\n", invisible);
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -118,7 +119,7 @@ int run_compensate(const CompensateArguments& arguments) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
     json["effects_not_compensated"] = errors_in_no_table(result);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
-    json["invisible"] = result.rank.invisible;
+    json["invisible"] = sentences(result.rank.invisible);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {

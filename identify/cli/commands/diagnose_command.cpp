@@ -44,7 +44,8 @@ ModelSpec given_model(const DiagnoseArguments& arguments, const Campaign& campai
 
 /// Of a campaign also by name.
 int print_list(const DiagnoseArguments& arguments) {
-  std::vector<std::string> testable, notes;
+  std::vector<std::string> testable;
+  std::vector<Finding> notes;
   if (!arguments.campaign.empty()) {
     const Campaign campaign = read_campaign(arguments.campaign);
     testable = testable_effects(campaign, given_model(arguments, campaign));

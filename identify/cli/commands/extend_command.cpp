@@ -22,6 +22,7 @@
 #include "volcal/identify/report/text/diagnosis_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
@@ -179,11 +180,11 @@ void require_no_input(const std::string& output, const std::vector<std::string>&
 }
 
 void report(const Changes& changes, const std::string& output, std::size_t effects,
-            const std::vector<std::string>& notes, bool as_json) {
+            const std::vector<Finding>& notes, bool as_json) {
   if (as_json) {
     nlohmann::ordered_json json = {
         {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
-    if (!notes.empty()) json["notes"] = notes;
+    add_notes(notes, json);
     fmt::print("{}\n", json_text(json, 2));
     return;
   }

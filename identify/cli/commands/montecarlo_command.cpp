@@ -251,7 +251,7 @@ int tell_interrupted(const MonteCarloArguments& arguments, const MonteCarloResul
 
 /// Ends as fit does, and writes nothing.
 int tell_undetermined(const MonteCarloArguments& arguments, const FitResult& fit_result,
-                      const std::vector<std::string>& notes) {
+                      const std::vector<Finding>& notes) {
   if (is_first(arguments))
     fmt::print("{}", arguments.json ? undetermined_json(fit_result, notes)
                                     : undetermined_text(fit_result) + campaign_notes_text(notes));

@@ -19,6 +19,7 @@
 #include "volcal/identify/report/text/volumetric_text.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/files/control_tables.h"
@@ -275,7 +276,7 @@ int run_tables(const TablesArguments& arguments) {
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
-    json["invisible"] = result.rank.invisible;
+    json["invisible"] = sentences(result.rank.invisible);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     json["beyond_readings"] = unmeasured_travel(result);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
@@ -289,7 +290,7 @@ int run_tables(const TablesArguments& arguments) {
       fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
       print_tables(*made, arguments, result);
     }
-    for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+    for (const std::string& invisible : sentences(result.rank.invisible)) fmt::print("! {}\n", invisible);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -5,11 +5,13 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/model/description/finding.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
@@ -130,7 +132,7 @@ struct RemovedReading {
 
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
-  std::vector<std::string> words;                          ///< the verdict in plain sentences
+  std::vector<Finding> findings;                           ///< what the verdict says, "diagnosis..."
   std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
@@ -145,8 +147,8 @@ struct Diagnosis {
   Confounding confounding;
   std::vector<std::string> next_measurement;  ///< in words
   std::vector<MeasurementProposal> proposals;
-  std::vector<std::string> not_looked_for;       ///< sentences: what no file records, and which kinds need it
-  std::vector<std::string> notes;                ///< of the campaign
+  std::vector<Finding> not_looked_for;           ///< what no file records, and which kinds need it
+  std::vector<Finding> notes;                    ///< of the campaign
   std::vector<RemovedReading> removed_readings;  ///< outliers of the model reached, by setup and line
   std::size_t families = 0;
   std::size_t generic_tests = 0;
@@ -165,7 +167,7 @@ struct Screening {
   double rms = 0.0;          ///< SI: root mean square over the readings of what it would explain
 };
 
-/// The sentence for it; empty where nothing contradicts.
-std::string screening_sentence(const Screening& screening);
+/// "model.contradicted"; nothing where nothing contradicts.
+std::optional<Finding> finding_of(const Screening& screening);
 
 }  // namespace volcal

@@ -9,6 +9,7 @@
 #include "volcal/identify/io/results/result_json_parts.h"
 #include "volcal/identify/text/json_input.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -187,7 +188,8 @@ Diagnosis diagnosis_from(const Json& json) {
   }
   Diagnosis diagnosis;
   diagnosis.verdict = verdict_from(text(json, "verdict"));
-  diagnosis.words = json.at("words").get<std::vector<std::string>>();
+  diagnosis.findings =
+      findings_from(value_or_null(json, "findings"), json.at("words").get<std::vector<std::string>>());
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
@@ -206,8 +208,10 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
   diagnosis.model_changes = list_from(json.at("model_changes"));
   read_noise(json.at("noise"), diagnosis);
-  diagnosis.not_looked_for = json.value("not_looked_for", std::vector<std::string>{});
-  diagnosis.notes = json.value("notes", std::vector<std::string>{});
+  diagnosis.not_looked_for = findings_from(value_or_null(json, "not_looked_for_findings"),
+                                           json.value("not_looked_for", std::vector<std::string>{}));
+  diagnosis.notes =
+      findings_from(value_or_null(json, "notes_findings"), json.value("notes", std::vector<std::string>{}));
   for (const Json& each : json.at("removed_readings")) {
     diagnosis.removed_readings.push_back({each.at("setup").get<std::string>(),
                                           each.at("line").get<std::int64_t>(),

@@ -4,12 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/words/sentences.h"
+
 namespace volcal {
 
 /// One line each, "! SENTENCE"; empty without notes.
-inline std::string campaign_notes_text(const std::vector<std::string>& notes) {
+inline std::string campaign_notes_text(const std::vector<Finding>& notes) {
   std::string text;
-  for (const std::string& note : notes) text += "! " + note + "\n";
+  for (const std::string& note : sentences(notes)) text += "! " + note + "\n";
   return text;
 }
 

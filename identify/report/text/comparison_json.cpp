@@ -2,6 +2,7 @@
 
 #include "volcal/identify/report/text/comparison_report.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
@@ -189,7 +190,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
   Json list = Json::array();
   for (const ComparedModel& model : models) list.push_back(model_json(campaign, model));
   Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
-  if (!campaign.notes.empty()) json["notes"] = campaign.notes;
+  add_notes(campaign.notes, json);
   if (!heldout.empty()) json["held_out"] = Json::array();
   for (const HeldOutModel& model : heldout) {
     json["held_out"].push_back({{"name", model.name},

@@ -10,7 +10,8 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -195,7 +196,7 @@ std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
   std::string text = to_string(diagnosis.verdict) + "\n";
-  for (const std::string& words : diagnosis.words) text += words + "\n";
+  for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
@@ -223,8 +224,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(),
       diagnosis.removed_readings.size());
   text += removed_text(diagnosis);
-  for (const std::string& words : diagnosis.not_looked_for) text += words + "\n";
-  for (const std::string& note : diagnosis.notes) text += "! " + note + "\n";
+  for (const std::string& words : sentences(diagnosis.not_looked_for)) text += words + "\n";
+  for (const std::string& note : sentences(diagnosis.notes)) text += "! " + note + "\n";
   return text;
 }
 

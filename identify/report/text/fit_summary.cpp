@@ -9,7 +9,8 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -178,8 +179,8 @@ std::string outliers_table(const FitResult& result, const Campaign& campaign) {
 
 std::string notes(const FitResult& result) {
   std::string text = rank_text(result) + "\n";
-  for (const std::string& message : result.messages) text += "! " + message + "\n";
-  for (const std::string& held : result.rank.held_by_prior) text += "  " + held + "\n";
+  for (const std::string& message : sentences(result.findings)) text += "! " + message + "\n";
+  for (const std::string& held : sentences(result.rank.held_by_prior)) text += "  " + held + "\n";
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/quantity_groups.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
@@ -165,7 +166,7 @@ std::string montecarlo_text(const MonteCarloResult& result) {
 std::string undetermined_text(const FitResult& fit) {
   std::string text =
       "Monte Carlo: nothing is drawn, the readings do not determine every error.\n" + rank_text(fit) + "\n";
-  for (const std::string& invisible : fit.rank.invisible) text += "! " + invisible + "\n";
+  for (const std::string& invisible : sentences(fit.rank.invisible)) text += "! " + invisible + "\n";
   return text +
          "Do what is named here, or switch these errors off in the model (EAX = { basis = \"zero\" }, "
          "EC0Y = \"zero\"), and draw again.\n";

@@ -6,6 +6,7 @@
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
@@ -204,7 +205,8 @@ std::string detectable_table(const CampaignPlan& plan) {
 
 std::string invisible_text(const CampaignPlan& plan) {
   std::string text;
-  for (const std::string& sentence : plan.plan.result.rank.invisible) text += "  " + sentence + "\n";
+  for (const std::string& sentence : sentences(plan.plan.result.rank.invisible))
+    text += "  " + sentence + "\n";
   return text.empty() ? "" : "\nWhat this budget cannot determine\n" + text;
 }
 

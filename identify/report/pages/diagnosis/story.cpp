@@ -8,6 +8,7 @@
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/values/detectable_groups.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -172,7 +173,7 @@ Json story_page(const DiagnosisInput& input) {
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
           {"headline", headline(diagnosis.verdict)},
-          {"words", diagnosis.words},
+          {"words", sentences(diagnosis.findings)},
           {"before", Json::array({before_text(diagnosis.ladder.front())})},
           {"missing", missing_json(diagnosis)},
           {"one_of", std::move(one_of)},

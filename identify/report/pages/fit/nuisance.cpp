@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -53,7 +54,8 @@ Json nuisance_page(const PageInput& input) {
       if (++count <= kListedParameters) rows.push_back(parameter_row(result, block, i));
     }
   }
-  return {{"count", count}, {"held_by_prior", result.rank.held_by_prior}, {"rows", std::move(rows)}};
+  return {
+      {"count", count}, {"held_by_prior", sentences(result.rank.held_by_prior)}, {"rows", std::move(rows)}};
 }
 
 }  // namespace volcal::report

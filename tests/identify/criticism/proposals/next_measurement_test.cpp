@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -76,7 +77,7 @@ TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
   sim::Study study = one_tool_per_station();
   study.hidden = {drift};
   const Diagnosis before = diagnosed_next(study);
-  ASSERT_EQ(before.verdict, Verdict::OneOf) << before.words.front();
+  ASSERT_EQ(before.verdict, Verdict::OneOf) << sentence(before.findings.front());
   ASSERT_FALSE(before.proposals.empty());
   const MeasurementProposal& proposal = before.proposals.front();
   EXPECT_EQ(proposal.action, "revisit");
@@ -88,7 +89,7 @@ TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
   study = one_tool_per_station({"P1"});
   study.hidden = {drift};
   const Diagnosis after = diagnosed_next(study);
-  ASSERT_EQ(after.verdict, Verdict::Named) << after.words.front();
+  ASSERT_EQ(after.verdict, Verdict::Named) << sentence(after.findings.front());
   EXPECT_EQ(after.effects.front().name, kDrift);
 
   study = one_tool_per_station({"P3"});

@@ -16,10 +16,6 @@
 namespace volcal {
 namespace {
 
-std::string_view position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
-
-double position_factor(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }
-
 double sign_of(TableContent content) { return content == TableContent::Errors ? 1.0 : -1.0; }
 
 /// -0 would be written with its sign.
@@ -46,7 +42,7 @@ std::vector<AxisName> axes_of_grid(const Machine& machine) {
 std::string grid_header(const Machine& machine, TableContent content) {
   std::string header;
   for (const AxisName axis : axes_of_grid(machine))
-    header += fmt::format("{}_{},", lower_letter_of(axis), position_unit(axis));
+    header += fmt::format("{}_{},", lower_letter_of(axis), position_unit(axis).suffix);
   header += "tool";
   for (const Component component : kAllComponents) header += "," + component_column(component, content);
   for (const Component component : kAllComponents)
@@ -82,10 +78,10 @@ int direction_in(const CsvRow& row, std::size_t column) {
 void read_motion_place(const CsvRow& row, ErrorSymbol symbol, ErrorTableRow& result) {
   if (row.cells[1] != std::string(1, letter_of(symbol.axis)))
     fail_cell(row, "axis", row.cells[1], "write the axis that moves, the last letter of the symbol");
-  if (row.cells[3] != position_unit(symbol.axis))
+  if (row.cells[3] != position_unit(symbol.axis).suffix)
     fail_cell(row, "position_unit", row.cells[3], "positions are in mm, of rotary axes in deg");
   result.axis = symbol.axis;
-  result.position = csv_number(row, 2, "position") * position_factor(symbol.axis);
+  result.position = csv_number(row, 2, "position") * position_unit(symbol.axis).si_per_unit;
   result.rotation = is_rotation(symbol.component);
 }
 
@@ -123,8 +119,8 @@ std::string function_table_csv(const std::vector<ErrorTableRow>& rows, TableCont
   for (const ErrorTableRow& row : rows) {
     fmt::format_to(out, "{},", row.symbol);
     if (row.axis) {
-      fmt::format_to(out, "{},{:.10g},{},", letter_of(*row.axis), row.position / position_factor(*row.axis),
-                     position_unit(*row.axis));
+      fmt::format_to(out, "{},{:.10g},{},", letter_of(*row.axis),
+                     row.position / position_unit(*row.axis).si_per_unit, position_unit(*row.axis).suffix);
     } else {
       fmt::format_to(out, ",,,");
     }
@@ -160,7 +156,8 @@ class GridRows {
 
   void append(const VolumetricError& point) {
     for (const AxisName axis : axes_) {
-      append_decimal(point.position[index_of(axis)] / position_factor(axis), kDecimalsOfPosition, text_);
+      append_decimal(point.position[index_of(axis)] / position_unit(axis).si_per_unit, kDecimalsOfPosition,
+                     text_);
       text_.push_back(',');
     }
     append_cell(point.tool);
@@ -223,7 +220,8 @@ std::vector<VolumetricError> read_spatial_grid(const TableFile& file, const Mach
     VolumetricError point;
     std::size_t column = 0;
     for (const AxisName axis : axes)
-      point.position[index_of(axis)] = csv_number(row, column++, "the position") * position_factor(axis);
+      point.position[index_of(axis)] =
+          csv_number(row, column++, "the position") * position_unit(axis).si_per_unit;
     point.tool = row.cells[column++];
     if (!machine.tool_index(point.tool))
       fail_cell(row, "tool", point.tool, "write a tool that metadata.csv lists");

@@ -42,8 +42,7 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
   out.add("datum.secondary", std::string(1, letter_of(machine.datum.secondary)));
   for (const Axis& axis : machine.axes) {
     const std::string key = fmt::format("axis.{}", letter_of(axis.name));
-    const double factor = is_rotary(axis.name) ? kRadianPerDegree : kMetrePerMillimetre;
-    const char* unit = is_rotary(axis.name) ? "deg" : "mm";
+    const auto [unit, factor] = position_unit(axis.name);
     out.add_number(fmt::format("{}.travel_min_{}", key, unit), axis.travel_min / factor);
     out.add_number(fmt::format("{}.travel_max_{}", key, unit), axis.travel_max / factor);
     out.add_number(fmt::format("{}.home_{}", key, unit), axis.home / factor);
@@ -138,8 +137,7 @@ class MetadataReader {
     Axis axis;
     axis.name = name;
     const std::string key = fmt::format("axis.{}", letter_of(name));
-    const double factor = is_rotary(name) ? kRadianPerDegree : kMetrePerMillimetre;
-    const char* unit = is_rotary(name) ? "deg" : "mm";
+    const auto [unit, factor] = position_unit(name);
     const std::string travel_max = fmt::format("{}.travel_max_{}", key, unit);
     axis.travel_min = number(fmt::format("{}.travel_min_{}", key, unit)) * factor;
     axis.travel_max = number(travel_max) * factor;

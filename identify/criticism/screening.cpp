@@ -11,6 +11,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -48,7 +49,7 @@ std::string words_of(const GenericTest& test) {
   std::string text = fmt::format("something that depends on {}, along {}",
                                  fmt::join(names_of(test.variables), " and "), test.direction);
   if (!test.rotation.empty()) text += ", as " + test.rotation;
-  if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * 1e3);
+  if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * kPerMilli);
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/reversal_label.h"
 
 namespace volcal {
@@ -105,7 +106,7 @@ class Realignment {
   }
   /// Least-squares slope over the travel (datum.h); of straightness functions alone.
   Functional slope(ErrorSymbol symbol) const {
-    if (!symbol.is_straightness()) return Functional::Zero(columns());
+    if (has_free_slope(symbol)) return Functional::Zero(columns());
     const Axis& axis = machine_.axis(symbol.axis);
     const double middle = 0.5 * (axis.travel_min + axis.travel_max), length = axis.travel();
     return of_coefficients(symbol, [=](const Basis& basis) {
@@ -170,7 +171,7 @@ class Realignment {
 
   /// What is left between the primary axis and the direction of the frame; zero but for a tilted spindle.
   Functional kept_slope(ErrorSymbol symbol) const {
-    if (!to_.spindle_tilt || symbol.axis != machine_.datum.primary || !symbol.is_straightness())
+    if (!to_.spindle_tilt || symbol.axis != machine_.datum.primary || has_free_slope(symbol))
       return Functional::Zero(columns());
     return turned_direction(symbol.axis).row(direction_of(symbol.component));
   }
@@ -183,7 +184,7 @@ class Realignment {
       rows(group.index(j, slot), group.index(j, slot)) += 1.0;
       rows.row(group.index(j, slot)) -= one[j] * constant;
     }
-    if (!symbol.is_straightness()) return;
+    if (has_free_slope(symbol)) return;
     const Eigen::VectorXd line = straight_line(*group.basis, symbol, 0.0, 1.0, home);
     const Functional change = kept_slope(symbol) - slope(symbol);
     for (int j = 0; j < group.basis->size(); ++j) rows.row(group.index(j, slot)) += line[j] * change;
@@ -346,7 +347,7 @@ std::string alignment_words(const FitResult& result) {
   std::string text = "primary " + std::string(1, letter_of(result.machine.datum.primary)) + ", secondary " +
                      letter_of(result.machine.datum.secondary) + ", origin";
   for (const AxisName axis : kLinearAxes) {
-    std::string value = std::to_string(result.machine.axis(axis).home * 1e3);
+    std::string value = std::to_string(result.machine.axis(axis).home * kPerMilli);
     value.erase(value.find_last_not_of('0') + 1);
     if (value.back() == '.') value.pop_back();
     text += std::string(" ") + letter_of(axis) + "=" + value;

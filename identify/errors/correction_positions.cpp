@@ -4,6 +4,7 @@
 #include <string>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -16,7 +17,7 @@ constexpr int kMostPositions = 100000;
 std::vector<double> correction_positions(const Axis& axis, double step, bool equidistant) {
   if (!(step > 0.0) || axis.travel() / step > kMostPositions)
     throw InputError({},
-                     "a step of " + std::to_string(step * 1e3) + " mm over the travel of " +
+                     "a step of " + std::to_string(step * kPerMilli) + " mm over the travel of " +
                          letter_of(axis.name) + " is out of range",
                      "give a --step that divides the travel into at most " + std::to_string(kMostPositions));
   const double below = (axis.home - axis.travel_min) / step;

@@ -79,7 +79,7 @@ std::vector<double> variance_shares(bool has_slope) {
 class DesignLayout {
  public:
   void add_function(const Axis& axis, ErrorSymbol symbol, double width) {
-    const bool has_slope = !symbol.is_straightness();
+    const bool has_slope = has_free_slope(symbol);
     FunctionGroup group;
     group.axis = axis.name;
     group.basis = std::make_shared<const ToleranceShape>(axis, has_slope);

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/errors/linear_axis_errors.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {

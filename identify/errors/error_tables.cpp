@@ -8,6 +8,7 @@
 #include "volcal/identify/errors/correction_positions.h"
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -27,7 +28,7 @@ std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& o
     }
     return table;
   }
-  const double edge = is_rotary(axis.name) ? 3.14159265358979323846 / 180.0 : 1e-3;
+  const double edge = position_unit(axis.name).si_per_unit;
   const double coarsest = axis.travel() / edge / 20.0;
   const double decade = std::pow(10.0, std::floor(std::log10(coarsest)));
   double step = decade;

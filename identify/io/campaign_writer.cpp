@@ -63,8 +63,7 @@ std::vector<CsvColumn> columns_of(const Setup& setup, const Machine& machine) {
     return std::string(1, static_cast<char>(std::tolower(letter_of(axis))));
   };
   for (const Axis& axis : machine.axes) {
-    const std::string name = letter(axis.name) + (is_rotary(axis.name) ? "_deg" : "_mm");
-    columns.push_back(measured_column(name, readings.position[index_of(axis.name)]));
+    columns.push_back(measured_column(position_column(axis.name), readings.position[index_of(axis.name)]));
   }
   for (const Axis& axis : machine.axes) {
     const auto& direction = readings.direction[index_of(axis.name)];

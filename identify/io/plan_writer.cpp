@@ -2,15 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "volcal/identify/io/campaign/toml_writer.h"
@@ -20,6 +16,7 @@
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -173,19 +170,21 @@ std::string not_simulated(const CampaignPlan& plan) {
   return comments;
 }
 
-/// First lines of a measurement; `more`: of its noise.
-std::string measurement_toml(const std::string& kind, const PlanSettings& settings, const std::string& more) {
+/// First lines of a measurement.
+std::string measurement_toml(const PlanSettings& settings, const InstrumentTraits& traits) {
   const PlanNoise& noise = settings.noise;
+  const std::string angle =
+      traits.encoders.empty() ? "" : ", angle_urad = " + edge_number(noise.angle, kRadianPerMicroradian);
   return fmt::format(
       "[[measurements]]\nkind = \"{}\"\nreading_s = {}\n"
       "noise = {{ constant_um = {}, per_metre_um = {}, repeatability_um = {}{} }}\n",
-      kind, edge_number(settings.costs.reading, 1.0), edge_number(noise.constant, kMicro),
-      edge_number(noise.per_metre, kMicro), edge_number(noise.repeatability, kMicro), more);
+      plan_instrument_of(settings).study_kind(), edge_number(settings.costs.reading, 1.0),
+      edge_number(noise.constant, kMicro), edge_number(noise.per_metre, kMicro),
+      edge_number(noise.repeatability, kMicro), angle);
 }
 
-/// `more_noise`: beside constant, proportional and repeatability.
-std::string tracking_toml(const CampaignPlan& plan, const std::string& more_noise) {
-  const PlanSettings& settings = plan.settings;
+/// Stations, and runs that name them.
+std::string station_runs_toml(const CampaignPlan& plan) {
   std::string stations, runs;
   std::set<std::string> known;
   for (const Setup& setup : plan.plan.campaign.setups) {
@@ -197,21 +196,15 @@ std::string tracking_toml(const CampaignPlan& plan, const std::string& more_nois
     }
     runs +=
         fmt::format("[[measurements.runs]]\nstation = {}\ntool = {}\npoints = {}\n", toml_text(place->name),
-                    toml_text(settings.machine.tools[setup.tool].name), points_of(setup));
+                    toml_text(plan.settings.machine.tools[setup.tool].name), points_of(setup));
   }
-  return measurement_toml(settings.instrument, settings, more_noise) + stations + runs;
+  return stations + runs;
 }
 
-std::string laser_tracer_toml(const CampaignPlan& plan) { return tracking_toml(plan, ""); }
-
-std::string laser_tracker_toml(const CampaignPlan& plan) {
-  return tracking_toml(plan,
-                       ", angle_urad = " + edge_number(plan.settings.noise.angle, kRadianPerMicroradian));
-}
-
-std::string ball_bar_toml(const CampaignPlan& plan) {
+/// Runs, each about a centre ball of its own.
+std::string bar_runs_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
-  std::string text = measurement_toml("ball-bar-circles", settings, "");
+  std::string text;
   if (settings.bar.length_sigma)
     text += fmt::format("length_sigma_um = {}\n", edge_number(*settings.bar.length_sigma, kMicro));
   for (const Setup& setup : plan.plan.campaign.setups) {
@@ -225,14 +218,11 @@ std::string ball_bar_toml(const CampaignPlan& plan) {
 }
 
 /// [[measurements]] of a study that takes the planned readings.
-struct StudyOfPlan {
-  std::string_view instrument;
-  std::string (*measurement_toml)(const CampaignPlan& plan);
-};
-
-constexpr std::array kStudies = {StudyOfPlan{"laser-tracer", &laser_tracer_toml},
-                                 StudyOfPlan{"laser-tracker", &laser_tracker_toml},
-                                 StudyOfPlan{"ball-bar", &ball_bar_toml}};
+std::string planned_measurement_toml(const CampaignPlan& plan) {
+  const InstrumentTraits& traits = find_instrument(plan.settings.instrument)->schema().traits;
+  return measurement_toml(plan.settings, traits) +
+         (traits.has_bar ? bar_runs_toml(plan) : station_runs_toml(plan));
+}
 
 }  // namespace
 
@@ -264,14 +254,11 @@ std::string plan_json(const CampaignPlan& plan) {
 
 std::string plan_study_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
-  const auto* const study = std::ranges::find(kStudies, settings.instrument, &StudyOfPlan::instrument);
-  if (study == kStudies.end())
-    throw std::logic_error("no study is written for plans of " + settings.instrument);
   return fmt::format(
       "# The plan measured on a random machine: volcal simulate study.toml -o simulated\n"
       "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n{}",
       settings.seed, edge_number(settings.costs.run, 1.0), not_simulated(plan),
-      study->measurement_toml(plan));
+      planned_measurement_toml(plan));
 }
 
 void write_plan_campaign(const CampaignPlan& plan, const AtomicFolder& folder) {

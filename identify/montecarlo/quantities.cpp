@@ -146,10 +146,6 @@ bool add_volume(const FitResult& result, QuantitySet::Volume& volume, int per_ax
   return true;
 }
 
-double edge_position(AxisName axis, double q) {
-  return q / (is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre);
-}
-
 }  // namespace
 
 std::string_view to_string(QuantityKind kind) {
@@ -170,8 +166,8 @@ std::string_view to_string(QuantityKind kind) {
 
 std::string Quantity::words() const {
   if (axis) {
-    return fmt::format("{} at {:.6g} {}{}", name, edge_position(*axis, position),
-                       is_rotary(*axis) ? "deg" : "mm",
+    return fmt::format("{} at {:.6g} {}{}", name, position / position_unit(*axis).si_per_unit,
+                       position_unit(*axis).suffix,
                        direction > 0   ? " +"
                        : direction < 0 ? " -"
                                        : "");

@@ -35,7 +35,7 @@ Eigen::MatrixXd scaled_covariance_root(const Eigen::MatrixXd& covariance) {
   return scale.asDiagonal() * covariance_root(inverse.asDiagonal() * covariance * inverse.asDiagonal());
 }
 
-/// Of what the fit is told of everything but the error functions; each parameter by itself.
+/// Of what is stated to the fit of everything but the error functions; each parameter by itself.
 Eigen::VectorXd stated_precision(const DatumSpace& datum, const Eigen::MatrixXd& precision) {
   Eigen::VectorXd stated = Eigen::VectorXd::Zero(precision.rows());
   for (const auto& block : datum.blocks())

@@ -136,7 +136,7 @@ class RepeatedCampaign {
   NoiseSampler sampler_;
   Eigen::MatrixXd whitened_;  ///< L^-1 J, observations x parameters
   Eigen::MatrixXd gain_;      ///< C
-  Eigen::VectorXd stated_;    ///< precision of what the fit is told of stations, tools, scales
+  Eigen::VectorXd stated_;    ///< precision of what is stated of stations, tools, scales
   Eigen::VectorXd fixed_statement_;
   Eigen::MatrixXd roughness_root_;        ///< R
   Eigen::MatrixXd disturbance_columns_;   ///< G, observations x amplitudes

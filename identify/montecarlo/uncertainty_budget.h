@@ -1,6 +1,6 @@
 #pragma once
 /// Which source contributes what to which uncertainty, by linear propagation (GUM, JCGM 100:2008, 5.1 and
-/// appendix H): the noise of every instrument, what the fit is told of tools, stations and scales, how rough
+/// appendix H): the noise of every instrument, what is stated of tools, stations and scales, how rough
 /// error functions may be between and beside the readings, and disturbances that the fit knows nothing of.
 /// Sources are independent; the squares of their contributions add up to u^2.
 

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/noise/noise_search.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/statistics/normal.h"
 
 namespace volcal {
 namespace {
@@ -88,7 +89,7 @@ std::string remark(const TermEvidence& evidence, const std::string& missing) {
 
 NoiseRow row(std::size_t instrument, std::string term, std::string unit, double value, double log_uncertainty,
              double likelihood_ratio, std::string text) {
-  const double factor = std::exp(1.96 * log_uncertainty);
+  const double factor = std::exp(kCoverageFactor * log_uncertainty);
   return {instrument,     std::move(term), std::move(unit),  value,
           value / factor, value * factor,  likelihood_ratio, std::move(text)};
 }

@@ -18,9 +18,8 @@ constexpr int kReportedVolume = 5;  // points per axis
 
 std::string place_of(const ErrorTableRow& row) {
   if (!row.axis) return row.symbol;
-  const bool rotary = is_rotary(*row.axis);
-  return fmt::format("{} at {:.0f} {}", row.symbol,
-                     row.position / (rotary ? kRadianPerDegree : kMetrePerMillimetre), rotary ? "deg" : "mm");
+  const Unit unit = position_unit(*row.axis);
+  return fmt::format("{} at {:.0f} {}", row.symbol, row.position / unit.si_per_unit, unit.suffix);
 }
 
 void find_worst_values(ExpectedCampaign& expected) {

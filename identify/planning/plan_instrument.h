@@ -54,6 +54,8 @@ class PlanInstrument {
   /// As in model/instruments/registry.h.
   virtual std::string name() const = 0;
   virtual InstrumentWords words() const = 0;
+  /// Kind of the measurement of a study file that simulates what is planned.
+  virtual std::string study_kind() const = 0;
   /// Those options of `volcal plan` that this instrument has and not every other.
   virtual std::vector<std::string> own_options() const = 0;
   /// s, where the user says nothing.

@@ -12,6 +12,7 @@
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -30,19 +31,16 @@ bool uses_automatic_knots(const FunctionSpec& function) {
 
 /// Breakpoints only: the functions stay smoothed.
 ModelSpec with_few_knots(ModelSpec model, const Machine& machine) {
-  for (const Axis& axis : machine.axes) {
-    for (const Component component : kAllComponents) {
-      const ErrorSymbol symbol{component, axis.name};
-      if (is_rotary(axis.name) && !model.functions.contains(symbol)) continue;
-      FunctionSpec function = model.function(symbol);
-      const BasisKind* kind = find_basis(function.basis);
-      if (uses_automatic_knots(function)) {
-        function.breakpoints = uniform_breakpoints(axis, kSearchIntervals);
-      } else if (kind != nullptr && kind->uses_knots && function.knots == KnotChoice::IntervalCount) {
-        function.breakpoints = uniform_breakpoints(axis, function.intervals);
-      }
-      model.functions[symbol] = function;
+  for (const ErrorSymbol symbol : modelled_motions(machine, model)) {
+    const Axis& axis = machine.axis(symbol.axis);
+    FunctionSpec function = model.function(symbol);
+    const BasisKind* kind = find_basis(function.basis);
+    if (uses_automatic_knots(function)) {
+      function.breakpoints = uniform_breakpoints(axis, kSearchIntervals);
+    } else if (kind != nullptr && kind->uses_knots && function.knots == KnotChoice::IntervalCount) {
+      function.breakpoints = uniform_breakpoints(axis, function.intervals);
     }
+    model.functions[symbol] = function;
   }
   return model;
 }

@@ -74,11 +74,14 @@ struct FunctionRoughnessGuess {
 
 enum class PlanTarget { Volumetric, Worst, Symbol, Separate };
 
+/// Name of the instrument that is planned with where nothing else is said: the first of registry.h.
+std::string usual_plan_instrument();
+
 struct PlanSettings {
   Machine machine;
   std::size_t imagined_tools = 0;  ///< the last of the machine's: not there yet, no part of its volume
   ModelSpec model;
-  std::string instrument = "laser-tracer";
+  std::string instrument = usual_plan_instrument();
   PlanNoise noise;
   PlannedBar bar;
   InstrumentLimits limits;

@@ -23,6 +23,8 @@ std::span<const PlanInstrument* const> plan_instruments() {
   return kInstruments;
 }
 
+std::string usual_plan_instrument() { return plan_instruments().front()->name(); }
+
 const PlanInstrument* find_plan_instrument(std::string_view name) {
   const auto found = std::ranges::find_if(plan_instruments(),
                                           [&](const PlanInstrument* each) { return each->name() == name; });

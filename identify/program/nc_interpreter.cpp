@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "volcal/identify/program/nc_cycles.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
 constexpr int kRapid = 0, kFeed = 10, kClockwise = 20, kCounterClockwise = 30, kCancel = 800;
 constexpr int kMostTurns = 1000;
-constexpr double kSecondsPerMinute = 60.0;
 
 bool is_arc(int motion) { return motion == kClockwise || motion == kCounterClockwise; }
 

@@ -40,11 +40,7 @@ Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits) {
           rounded(vector.z() * factor, digits)};
 }
 
-const char* position_unit(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
-
-double position_factor(AxisName axis) {
-  return is_rotary(axis) ? 1.0 / kRadianPerDegree : 1.0 / kMetrePerMillimetre;
-}
+double position_factor(AxisName axis) { return 1.0 / position_unit(axis).si_per_unit; }
 
 std::string axis_letter(AxisName axis) { return std::string(1, letter_of(axis)); }
 

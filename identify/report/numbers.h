@@ -4,11 +4,9 @@
 #include <vector>
 
 #include "volcal/identify/report/page.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::report {
-
-inline constexpr double kPerMicro = 1e6;  ///< um per m, urad per rad
-inline constexpr double kPerMilli = 1e3;  ///< mm per m
 
 /// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
 Json rounded(double value, int digits = 5);
@@ -17,8 +15,7 @@ Json rounded_array(const std::vector<double>& values, double factor, int digits 
 Json rounded_triangle(const Eigen::MatrixXd& symmetric, int digits, bool with_diagonal);
 Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5);
 
-/// Unit and factor of an axis's position at the edge: mm or deg.
-const char* position_unit(AxisName axis);
+/// Edge units of an axis's position per m or rad.
 double position_factor(AxisName axis);
 std::string axis_letter(AxisName axis);
 /// Unit as printed: "um/m/K" becomes "µm/(m K)", "urad/m2" becomes "µrad/m²".

@@ -29,7 +29,7 @@ constexpr std::array kDiagnosisPages = {
     DiagnosisPage{"residual_variables", "Residuals against what was recorded", residual_variables_page},
     DiagnosisPage{"residual_vectors", "Residuals in the work volume", residual_vectors_page},
     DiagnosisPage{"generic_map", "Scan without a catalogue", generic_map_page},
-    DiagnosisPage{"autocorrelation", "Memory of the residuals", autocorrelation_page},
+    DiagnosisPage{"autocorrelation", "Autocorrelation of the residuals", autocorrelation_page},
     DiagnosisPage{"detectable", "Smallest detectable effects", detectable_page},
     DiagnosisPage{"noise_model", "Noise model", noise_model_page},
 };

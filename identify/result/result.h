@@ -11,14 +11,14 @@
 #include <vector>
 
 #include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/identify/statistics/normal.h"
 #include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/parameters.h"
 
 namespace volcal {
-
-inline constexpr double kCoverageFactor = 1.96;  ///< U95 = 1.96 u: 95 % of a normal distribution
 
 enum class FitStatus { Ok, LackOfFit, RankDeficient, NotConverged };
 std::string_view to_string(FitStatus status);
@@ -146,7 +146,7 @@ struct FitResult {
   ParameterLayout layout;
   Eigen::VectorXd parameters;  ///< SI
   Eigen::MatrixXd covariance;  ///< of `parameters`, SI; singular by the datum
-  double reference_temperature_degC = 20.0;
+  double reference_temperature_degC = kReferenceTemperature_degC;
   bool temperature_is_campaign_mean = false;
   RecordedConditions conditions;
   std::string active_compensations;  ///< while the campaign was measured, in words; empty = not stated

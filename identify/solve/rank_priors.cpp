@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/identify/solve/priors/basis_prior.h"
 #include "volcal/identify/solve/rank.h"
 
 namespace volcal {
@@ -14,8 +15,6 @@ constexpr double kWideRotation = 1e-3;
 constexpr double kWideSquareness = 1e-3;
 constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
 constexpr double kWideNuisance = 1.0;
-constexpr double kCurvatureShare =
-    1e-3;  // wide functions are smooth: n half waves have (n pi)^2 sqrt(share) less room
 
 /// Standard deviations of the wide prior.
 class WideSigma {
@@ -59,12 +58,8 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
     if (function.size() == 0) continue;
     const Basis& basis =
         *model.layout().groups[static_cast<std::size_t>(model.layout().find(function.symbol)->group)].basis;
-    const double travel = model.campaign().machine.axis(function.symbol.axis).travel();
-    Eigen::MatrixXd roughness = gram(basis, 0) / travel;
-    if (basis.roughness_order() > 0) {
-      roughness += kCurvatureShare * std::pow(travel, 2 * basis.roughness_order() - 1) *
-                   gram(basis, basis.roughness_order());
-    }
+    const Eigen::MatrixXd roughness =
+        wide_precision(basis, model.campaign().machine.axis(function.symbol.axis));
     prior.precision.block(function.offset, function.offset, function.size(), function.size()) =
         function.basis.transpose() * roughness * function.basis / std::pow(wide_sigma.of(function.symbol), 2);
     prior.mean.segment(function.offset, function.size()).setZero();

@@ -1,5 +1,5 @@
 #pragma once
-/// What a finished adjustment shows.
+/// What is reported of a finished adjustment.
 
 #include "volcal/identify/result/result.h"
 #include "volcal/model/observation/campaign_binding.h"

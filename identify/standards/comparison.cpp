@@ -93,9 +93,6 @@ struct Bins {
   }
 };
 
-double edge_unit_of(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }
-std::string_view edge_unit_name(AxisName axis) { return is_rotary(axis) ? "deg" : "mm"; }
-
 const std::vector<double>& positions(const Campaign& campaign, std::size_t setup, AxisName axis) {
   return campaign.setups[setup].readings.position[index_of(axis)];
 }
@@ -124,8 +121,9 @@ Classifier by_position(const Campaign& campaign, AxisName name, int count) {
   const Bins bins = Bins::over(axis.travel_min, axis.travel_max, count);
   Classifier classifier{{letter_of(name)}, {}, {}};
   for (int bin = 0; bin < count; ++bin) {
-    classifier.labels.push_back(
-        fmt::format("{} {} {}", letter_of(name), bins.label(bin, edge_unit_of(name)), edge_unit_name(name)));
+    classifier.labels.push_back(fmt::format("{} {} {}", letter_of(name),
+                                            bins.label(bin, position_unit(name).si_per_unit),
+                                            position_unit(name).suffix));
   }
   classifier.cell = [&campaign, bins, name](std::size_t setup, std::size_t row) {
     return bins.of(positions(campaign, setup, name)[row]);

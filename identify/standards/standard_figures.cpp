@@ -13,6 +13,7 @@
 #include "volcal/identify/standards/test_paths.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
+#include "volcal/model/instruments/registry.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -63,7 +64,7 @@ std::string place_of(const Campaign& campaign, const Setup& setup, const Straigh
     if (is_rotary(axis.name) || axis.name == path.moving.front()) continue;
     const double position = setup.readings.position[index_of(axis.name)][path.rows.front()];
     place += fmt::format("{}{} {:g}", place.empty() ? "" : ", ", letter_of(axis.name),
-                         std::round(position * 1e6) / 1e3);
+                         std::round(position * kPerMicro) / kPerMilli);
   }
   return place.empty() ? place : place + " mm";
 }
@@ -299,9 +300,11 @@ StandardFigures standard_figures(const Campaign& campaign, std::span<const Resid
   StandardFigures result;
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Setup& setup = campaign.setups[i];
-    if (setup.instrument == "displacement") evaluate_displacement(campaign, setup, values[i], result);
-    if (setup.instrument == "ball-bar") evaluate_ball_bar(campaign, setup, values[i], result);
-    if (setup.instrument == "volumetric-points") evaluate_points(campaign, setup, values[i], result);
+    const InstrumentTraits& traits = traits_of(setup);
+    if (traits.laser_length == LaserLength::Displacement)
+      evaluate_displacement(campaign, setup, values[i], result);
+    if (traits.has_bar) evaluate_ball_bar(campaign, setup, values[i], result);
+    if (traits.reads_error_vectors) evaluate_points(campaign, setup, values[i], result);
   }
   summarise_diagonals(result);
   return result;

@@ -1,6 +1,6 @@
 #pragma once
-/// Files and folders that are being written under a temporary name. A program that is told to end removes
-/// them, so that nothing half-written stays behind.
+/// Files and folders that are being written under a temporary name. A program that gets a signal to end
+/// removes them, so that nothing half-written stays behind.
 
 #include <mutex>
 #include <string>

@@ -142,7 +142,7 @@ void write_text_file(const std::string& path, const std::string& text) {
   if (!file || failure) {
     std::filesystem::remove(temporary, ignored);
     throw InputError({path, 0}, "the file cannot be written",
-                     "choose a folder that exists, is writable and has room");
+                     "choose a folder that exists and is writable, and check the free space");
   }
   placing.done();
 }

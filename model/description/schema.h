@@ -63,8 +63,40 @@ class Options {
   std::map<Key, OptionValue> values_;
 };
 
+/// What of an instrument's lengths is in proportion to the wavelength of its laser.
+enum class LaserLength {
+  None,         ///< it has no laser
+  Distance,     ///< the distance from its station (key `station_mm`)
+  Displacement  ///< the displacement along its beam (key `direction`) from the first reading
+};
+
+/// An angle encoder that reads a channel.
+struct AngleEncoder {
+  std::string name;  ///< "azimuth"
+  int channel = 0;
+};
+
+/// What effects, criticism, planning, figures of standards and reports ask of an instrument: none of them
+/// names one.
+struct InstrumentTraits {
+  LaserLength laser_length = LaserLength::None;
+  /// Its first column is a length that counts from a zero, which a run may lose.
+  bool length_from_zero = false;
+  /// It reads the length of a bar between a ball on the table (key `centre_mm`) and one at the tool; the
+  /// bar's length may be calibrated (key `length_sigma_um`).
+  bool has_bar = false;
+  /// It reads while the axes move; others read at rest.
+  bool reads_in_motion = false;
+  /// It reads components of the error vector at points (columns ex_um, ey_um, ez_um).
+  bool reads_error_vectors = false;
+  std::vector<AngleEncoder> encoders = {};
+  /// Whether a setup with these options refers to the floor or to gravity, so that it sees machine and
+  /// workpiece turn together.
+  bool (*stands_on_floor)(const Options& options) = [](const Options&) { return false; };
+};
+
 /// What an instrument declares: keys of its `[[setups]]` table beyond the common ones, its reading columns,
-/// keys of its `noise` table.
+/// keys of its `noise` table, its traits.
 struct InstrumentSchema {
   std::string name;      ///< "laser-tracer"
   std::string summary;   ///< one sentence for the user
@@ -75,6 +107,7 @@ struct InstrumentSchema {
   /// each other the larger counts, of others both are an error.
   std::vector<std::vector<ColumnSchema>> column_sets;
   std::vector<KeySchema> noise_keys;
+  InstrumentTraits traits = {};
 };
 
 /// What an effect declares: keys of its `[[effects]]` table besides `kind`.

@@ -43,9 +43,11 @@ struct ErrorSymbol {
 
   std::string name() const;
   /// Positioning error: EXX, EYY, EZZ, EAA, EBB, ECC.
-  bool is_positioning() const { return index_of(component) == index_of(axis); }
+  constexpr bool is_positioning() const { return index_of(component) == index_of(axis); }
   /// Straightness of a linear axis: displacement component other than its own.
-  bool is_straightness() const { return !is_rotary(axis) && !is_rotation(component) && !is_positioning(); }
+  constexpr bool is_straightness() const {
+    return !is_rotary(axis) && !is_rotation(component) && !is_positioning();
+  }
   static std::optional<ErrorSymbol> parse(std::string_view name);
   friend bool operator==(const ErrorSymbol&, const ErrorSymbol&) = default;
   friend auto operator<=>(const ErrorSymbol&, const ErrorSymbol&) = default;
@@ -62,6 +64,10 @@ struct LocationSymbol {
   friend bool operator==(const LocationSymbol&, const LocationSymbol&) = default;
   friend auto operator<=>(const LocationSymbol&, const LocationSymbol&) = default;
 };
+
+/// What the datum fixes of an error function beside its value at home, which is zero: of the straightness of
+/// a linear axis the slope, which the squareness holds; of other motions, and of rotary axes, nothing.
+constexpr bool has_free_slope(const ErrorSymbol& symbol) { return !symbol.is_straightness(); }
 
 /// Unit in which a component is printed: "um" or "urad".
 std::string_view edge_unit(Component component);

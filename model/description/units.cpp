@@ -8,26 +8,26 @@ namespace {
 
 // Longest suffix first, so that "um_per_m_K" is not taken for "K".
 constexpr std::array kUnits = std::to_array<Unit>({
-    {"um_per_m_K", 1e-6},
-    {"um_per_m_h", 1e-6 / kSecondsPerHour},
-    {"um_per_m2", 1e-6},
-    {"um_per_m3", 1e-6},
-    {"urad_per_m2", 1e-6},
-    {"urad_per_m3", 1e-6},
-    {"urad_per_m", 1e-6},
-    {"urad_per_K", 1e-6},
-    {"um_per_K", 1e-6},
-    {"urad_per_h", 1e-6 / kSecondsPerHour},
-    {"um_per_h", 1e-6 / kSecondsPerHour},
-    {"ppm_per_K", 1e-6},
-    {"ppm_per_h", 1e-6 / kSecondsPerHour},
-    {"um_per_metre", 1e-6},
-    {"um_per_m", 1e-6},
-    {"mm_min", 1e-3 / 60.0},
+    {"um_per_m_K", kMicro},
+    {"um_per_m_h", kMicro / kSecondsPerHour},
+    {"um_per_m2", kMicro},
+    {"um_per_m3", kMicro},
+    {"urad_per_m2", kMicro},
+    {"urad_per_m3", kMicro},
+    {"urad_per_m", kMicro},
+    {"urad_per_K", kMicro},
+    {"um_per_K", kMicro},
+    {"urad_per_h", kMicro / kSecondsPerHour},
+    {"um_per_h", kMicro / kSecondsPerHour},
+    {"ppm_per_K", kMicro},
+    {"ppm_per_h", kMicro / kSecondsPerHour},
+    {"um_per_metre", kMicro},
+    {"um_per_m", kMicro},
+    {"mm_min", kMetrePerMillimetre / kSecondsPerMinute},
     {"degC", 1.0},
     {"urad", kRadianPerMicroradian},
-    {"mrad", 1e-3},
-    {"ppm", 1e-6},
+    {"mrad", kRadianPerMilliradian},
+    {"ppm", kMicro},
     {"deg", kRadianPerDegree},
     {"rad", 1.0},
     {"mm", kMetrePerMillimetre},
@@ -44,6 +44,10 @@ bool ends_in_unit(std::string_view key, std::string_view suffix) {
 }
 
 }  // namespace
+
+std::string position_column(AxisName axis) {
+  return std::string(1, lower_letter_of(axis)) + "_" + std::string(position_unit(axis).suffix);
+}
 
 std::string unit_text(std::string_view suffix) {
   std::string text(suffix);

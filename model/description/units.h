@@ -4,12 +4,19 @@
 #include <string>
 #include <string_view>
 
+#include "volcal/model/description/symbols.h"
+
 namespace volcal {
 
 struct Unit {
   std::string_view suffix;  ///< as written at the end of a key: "mm", "um_per_m_K"; empty = dimensionless
   double si_per_unit;       ///< factor from the edge to SI
 };
+
+/// In which positions of an axis are written: mm, of rotary axes deg.
+constexpr Unit position_unit(AxisName axis);
+/// Column of an axis's positions: "x_mm", "c_deg".
+std::string position_column(AxisName axis);
 
 /// Unit of a key or column by its longest known suffix after an underscore; dimensionless when none fits.
 Unit unit_of_key(std::string_view key);
@@ -23,7 +30,18 @@ inline constexpr double kMetrePerMillimetre = 1e-3;
 inline constexpr double kMetrePerInch = 25.4e-3;
 inline constexpr double kMetrePerMicrometre = 1e-6;
 inline constexpr double kRadianPerMicroradian = 1e-6;
+inline constexpr double kRadianPerMilliradian = 1e-3;
+inline constexpr double kPerMicro = 1e6;  ///< um per m, urad per rad
+inline constexpr double kPerMilli = 1e3;  ///< mm per m
+inline constexpr double kSecondsPerMinute = 60.0;
 inline constexpr double kSecondsPerHour = 3600.0;
 inline constexpr double kRadianPerDegree = 3.14159265358979323846 / 180.0;
+
+constexpr Unit position_unit(AxisName axis) {
+  return is_rotary(axis) ? Unit{"deg", kRadianPerDegree} : Unit{"mm", kMetrePerMillimetre};
+}
+
+/// At which lengths are stated (ISO 1).
+inline constexpr double kReferenceTemperature_degC = 20.0;
 
 }  // namespace volcal

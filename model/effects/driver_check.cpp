@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 
@@ -42,7 +42,7 @@ std::optional<Recorded> recorded(const Campaign& campaign, const std::string& va
   for (const AxisName axis : kAllAxes) {
     const std::string letter(1, lower_letter_of(axis));
     if (variable != letter && variable != "dir_" + letter) continue;
-    Recorded found{variable == letter ? letter + (is_rotary(axis) ? "_deg" : "_mm") : variable, {}};
+    Recorded found{variable == letter ? position_column(axis) : variable, {}};
     for (const Setup& setup : campaign.setups) {
       if (variable == letter) {
         found.range.add(setup.readings.position[index_of(axis)]);
@@ -87,14 +87,17 @@ void check_drivers_vary(const Campaign& campaign, const ModelSpec& model) {
   for (const EffectSpec& spec : model.effects) {
     const EffectKind* kind = find_effect(spec.kind);
     if (kind == nullptr) continue;  // refused where the model is bound to the campaign
-    const auto effect = kind->make(spec, model.file);
-    const std::vector<std::string> constant = constant_columns(campaign, effect->name());
-    if (constant.empty()) continue;
-    throw InputError({model.file, spec.source_line},
-                     fmt::format("{} depends on {}: the same in all readings",
-                                 effect->amplitudes().front().label, fmt::join(constant, " and ")),
-                     "remove the effect, or measure where that changes");
+    check_drivers_vary(campaign, *kind->make(spec, model.file), {model.file, spec.source_line});
   }
+}
+
+void check_drivers_vary(const Campaign& campaign, const Effect& effect, const SourcePlace& place) {
+  const std::vector<std::string> constant = constant_columns(campaign, effect.name());
+  if (constant.empty()) return;
+  throw InputError(place,
+                   fmt::format("{} depends on {}: the same in all readings",
+                               effect.amplitudes().front().label, fmt::join(constant, " and ")),
+                   "remove the effect, or measure where that changes");
 }
 
 }  // namespace volcal

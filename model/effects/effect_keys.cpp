@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {
@@ -77,22 +78,6 @@ std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> part
   std::vector<KeySchema> keys;
   for (const auto& part : parts) keys.insert(keys.end(), part.begin(), part.end());
   return keys;
-}
-
-std::vector<AxisName> linear_axes(const Machine& machine) {
-  std::vector<AxisName> axes;
-  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
-    if (machine.has_axis(axis)) axes.push_back(axis);
-  }
-  return axes;
-}
-
-std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine) {
-  std::vector<ErrorSymbol> symbols;
-  for (const AxisName axis : linear_axes(machine)) {
-    for (const Component component : kAllComponents) symbols.push_back({component, axis});
-  }
-  return symbols;
 }
 
 std::vector<std::string> temperature_channels(const Campaign& campaign) {
@@ -248,7 +233,7 @@ Eigen::VectorXd temperature_excess(const SetupView& view, const std::string& cha
   if (found == view.setup.readings.temperature.end()) {
     return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
   }
-  return mapped(found->second).array() - kEffectReferenceTemperature_degC;
+  return mapped(found->second).array() - kReferenceTemperature_degC;
 }
 
 EffectSpec effect_spec(const std::string& kind,

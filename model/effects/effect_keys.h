@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
-
-inline constexpr double kEffectReferenceTemperature_degC = 20.0;
 
 /// What an effect reads its table from: the keys' values, and the place that messages name.
 struct EffectTable {
@@ -39,9 +38,6 @@ std::string motion_amplitude_key(ErrorSymbol symbol, const std::string& per,
                                  const std::string& stem = "amplitude");
 std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> parts);
 
-/// All error motions of the machine's linear axes.
-std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine);
-std::vector<AxisName> linear_axes(const Machine& machine);
 /// Every temperature channel of the campaign, every station with more than one reading, every tool in use.
 std::vector<std::string> temperature_channels(const Campaign& campaign);
 /// Name of a channel in expressions: T_ and the channel, what is no letter or digit replaced by _.

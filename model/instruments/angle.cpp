@@ -5,6 +5,8 @@
 namespace volcal {
 namespace {
 
+std::string body_of(const Options& options) { return options.text("body").value_or("relative"); }
+
 const InstrumentSchema kAngleSchema = {
     .name = "angle",
     .summary = "Electronic level or angular interferometer: rotation about one axis.",
@@ -20,14 +22,15 @@ const InstrumentSchema kAngleSchema = {
                       "(on the table it reads minus a workpiece-side error)",
               .choices = {"relative", "tool", "table"}}},
     .column_sets = {{{.column = "angle_urad", .help = "angle", .plausible_max = 1e6}}},
-    .noise_keys = {{.key = "constant_urad", .help = "standard deviation", .plausible_max = 1e3}}};
+    .noise_keys = {{.key = "constant_urad", .help = "standard deviation", .plausible_max = 1e3}},
+    .traits = {.stands_on_floor = [](const Options& options) { return body_of(options) != "relative"; }}};
 
 class AngleSetup final : public EquationBase<AngleSetup> {
  public:
   explicit AngleSetup(const SetupContext& context) {
     const Setup& setup = context.setup;
     const Eigen::Vector3d axis_w = unit_direction(context, "axis");
-    const std::string body = setup.options.text("body").value_or("relative");
+    const std::string body = body_of(setup.options);
     if (body != "table") tool_side_w_ = axis_w;
     if (body == "relative") workpiece_side_w_ = axis_w;
     if (body == "table") workpiece_side_w_ = -axis_w;

@@ -25,7 +25,8 @@ const InstrumentSchema kBallBarSchema = {
               .help = "standard uncertainty of the bar's length: 0 = calibrated, absent = free",
               .plausible_max = 1e6}},
     .column_sets = {{{.column = "length_mm", .help = "length of the bar", .plausible_max = 1e4}}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .traits = {.length_from_zero = true, .has_bar = true, .reads_in_motion = true}};
 
 class BallBarSetup final : public EquationBase<BallBarSetup> {
  public:

@@ -33,7 +33,8 @@ const InstrumentSchema kDisplacementSchema = {
          {{.column = "deviation_um",
            .help = "displacement minus commanded displacement along the beam",
            .plausible_max = 1e5}}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .traits = {.laser_length = LaserLength::Displacement, .length_from_zero = true}};
 
 class DisplacementSetup final : public EquationBase<DisplacementSetup> {
  public:

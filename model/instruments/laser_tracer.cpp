@@ -32,7 +32,10 @@ const InstrumentSchema kLaserTracerSchema = {
           return keys;
         }(),
     .column_sets = {{{.column = "length_mm", .help = "interferometer reading", .plausible_max = 1e5}}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .traits = {.laser_length = LaserLength::Distance,
+               .length_from_zero = true,
+               .stands_on_floor = [](const Options&) { return true; }}};
 
 /// `nuisance`: station and dead path; d_nuisance: their derivatives.
 VOLCAL_VECTOR_LOOPS void measure_lengths(const Lanes* __restrict point_w, const double* nuisance,

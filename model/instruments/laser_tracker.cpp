@@ -42,7 +42,11 @@ const InstrumentSchema kLaserTrackerSchema = {
                           .help = "standard deviation of azimuth and elevation",
                           .plausible_max = 1e4});
           return keys;
-        }()};
+        }(),
+    .traits = {.laser_length = LaserLength::Distance,
+               .length_from_zero = true,
+               .encoders = {{"azimuth", 1}, {"elevation", 2}},
+               .stands_on_floor = [](const Options&) { return true; }}};
 
 /// Reflector in the station's frame from one reading.
 Eigen::Vector3d cartesian(const Readings& readings, std::size_t row) {

@@ -1,5 +1,7 @@
 #include "volcal/model/instruments/registry.h"
 
+#include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "volcal/model/description/registration.h"
@@ -34,6 +36,20 @@ Registration<Instrument>& registered_instruments() {
 std::span<const Instrument* const> instruments() { return registered_instruments().all(); }
 
 const Instrument* find_instrument(std::string_view name) { return registered_instruments().find(name); }
+
+const InstrumentTraits& traits_of(const Setup& setup) {
+  static const InstrumentTraits none;
+  const Instrument* instrument = find_instrument(setup.instrument);
+  return instrument != nullptr ? instrument->schema().traits : none;
+}
+
+const std::string& instrument_with_bar() {
+  const auto all = instruments();
+  const auto found = std::ranges::find_if(
+      all, [](const Instrument* instrument) { return instrument->schema().traits.has_bar; });
+  if (found == all.end()) throw std::logic_error("no registered instrument reads the length of a bar");
+  return (*found)->schema().name;
+}
 
 const Instrument& register_instrument(std::unique_ptr<const Instrument> instrument) {
   return registered_instruments().add(std::move(instrument));

@@ -22,7 +22,8 @@ const InstrumentSchema kStraightnessSchema = {
           .help =
               "name of the artefact: setups that name it share its rotation (a square measures squareness)"}},
     .column_sets = {{{.column = "deviation_um", .help = "deviation along v", .plausible_max = 1e5}}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .traits = {.length_from_zero = true}};
 
 class StraightnessSetup final : public EquationBase<StraightnessSetup> {
  public:

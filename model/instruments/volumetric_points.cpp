@@ -40,7 +40,8 @@ const InstrumentSchema kVolumetricPointsSchema = {
                     {component(0)},
                     {component(1)},
                     {component(2)}},
-    .noise_keys = length_noise_keys()};
+    .noise_keys = length_noise_keys(),
+    .traits = {.reads_error_vectors = true}};
 
 class VolumetricPointsSetup final : public EquationBase<VolumetricPointsSetup> {
  public:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 namespace {
 

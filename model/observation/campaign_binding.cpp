@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -52,7 +54,7 @@ ParameterBlock tool_block(const Tool& tool) {
   block.name = "tool " + tool.name;
   block.labels = {"x", "y", "z"};
   block.units = {"um", "um", "um"};
-  block.si_per_unit = {1e-6, 1e-6, 1e-6};
+  block.si_per_unit = {kMetrePerMicrometre, kMetrePerMicrometre, kMetrePerMicrometre};
   block.guess = block.prior_mean = Eigen::VectorXd::Zero(3);
   block.prior_sigma = Eigen::VectorXd::Constant(3, tool.offset_sigma);
   return block;
@@ -72,7 +74,7 @@ ParameterBlock nuisance_block(const NuisanceBlock& nuisance) {
   for (int k = 0; k < nuisance.size(); ++k) {
     const bool angle = nuisance.is_angle[static_cast<std::size_t>(k)];
     block.units.emplace_back(is_scale ? "ppm" : angle ? "urad" : "mm");
-    block.si_per_unit.push_back(angle ? 1e-6 : 1e-3);
+    block.si_per_unit.push_back(angle ? kRadianPerMicroradian : kMetrePerMillimetre);
   }
   return block;
 }
@@ -127,7 +129,7 @@ class CampaignBinder {
       binding_.floor_pivot_w[direction_of(axis.name)] = 0.5 * (axis.travel_min + axis.travel_max);
     }
     add_function_groups();
-    for (const LocationSymbol& symbol : active_locations()) add_location(symbol);
+    for (const LocationSymbol& symbol : modelled_locations(machine_, spec_)) add_location(symbol);
     for (const Axis& axis : machine_.axes) add_expansion(axis);
     for (const EffectSpec& effect : spec_.effects) add_effect(effect);
     for (const Setup& setup : campaign_.setups) add_tool(setup.tool);
@@ -153,26 +155,22 @@ class CampaignBinder {
 
   /// Groups the functions of an axis that have the same basis.
   void add_function_groups() {
-    using Key = std::tuple<std::string, int, std::vector<double>>;
-    for (const Axis& axis : machine_.axes) {
-      std::map<Key, std::size_t> group_of;
-      for (const Component component : kAllComponents) {
-        const ErrorSymbol symbol{component, axis.name};
-        if (is_rotary(axis.name) && !spec_.functions.contains(symbol)) continue;
-        const FunctionSpec& function = spec_.function(symbol);
-        const BasisKind* kind = find_basis(function.basis);
-        if (kind == nullptr) throw std::invalid_argument("unknown basis " + function.basis);
-        std::shared_ptr<const Basis> basis = kind->make(function, axis);
-        if (basis->size() == 0) continue;
-        const auto [place, is_new] = group_of.try_emplace(
-            {function.basis, function.degree, function.breakpoints}, layout().groups.size());
-        if (is_new) {
-          layout().groups.push_back({axis.name, std::move(basis), {}, 0});
-          binding_.groups.push_back({axis.name, joint_of(machine_, axis.name), {}});
-        }
-        layout().groups[place->second].symbols.push_back(symbol);
-        binding_.groups[place->second].component.push_back(static_cast<int>(index_of(component)));
+    using Key = std::tuple<AxisName, std::string, int, std::vector<double>>;
+    std::map<Key, std::size_t> group_of;
+    for (const ErrorSymbol symbol : modelled_motions(machine_, spec_)) {
+      const FunctionSpec& function = spec_.function(symbol);
+      const BasisKind* kind = find_basis(function.basis);
+      if (kind == nullptr) throw std::invalid_argument("unknown basis " + function.basis);
+      std::shared_ptr<const Basis> basis = kind->make(function, machine_.axis(symbol.axis));
+      if (basis->size() == 0) continue;
+      const auto [place, is_new] = group_of.try_emplace(
+          {symbol.axis, function.basis, function.degree, function.breakpoints}, layout().groups.size());
+      if (is_new) {
+        layout().groups.push_back({symbol.axis, std::move(basis), {}, 0});
+        binding_.groups.push_back({symbol.axis, joint_of(machine_, symbol.axis), {}});
       }
+      layout().groups[place->second].symbols.push_back(symbol);
+      binding_.groups[place->second].component.push_back(static_cast<int>(index_of(symbol.component)));
     }
     for (FunctionGroup& group : layout().groups) {
       group.offset = layout().size;
@@ -181,21 +179,10 @@ class CampaignBinder {
     layout().function_size = layout().size;
   }
 
-  std::vector<LocationSymbol> active_locations() const {
-    std::vector<LocationSymbol> active;
-    for (const LocationSymbol& symbol : machine_.datum.squareness()) {
-      const bool off = std::ranges::find(spec_.locations_off, symbol) != spec_.locations_off.end();
-      if (!off && machine_.has_axis(symbol.axis)) active.push_back(symbol);
-    }
-    for (const auto& [symbol, value] : spec_.locations) {
-      if (is_rotary(symbol.axis) && machine_.has_axis(symbol.axis)) active.push_back(symbol);
-    }
-    return active;
-  }
-
   void add_location(LocationSymbol symbol) {
     const bool angle = is_rotation(symbol.component);
-    ParameterBlock block = scalar_block(ParameterKind::Location, symbol.name(), angle ? "urad" : "um", 1e-6);
+    ParameterBlock block =
+        scalar_block(ParameterKind::Location, symbol.name(), angle ? "urad" : "um", kMicro);
     block.location = symbol;
     const int parameter = add_block(std::move(block));
 
@@ -249,7 +236,7 @@ class CampaignBinder {
     int parameter = -1;
     if (axis.expansion->per_kelvin_sigma > 0.0) {
       ParameterBlock block = scalar_block(ParameterKind::Expansion,
-                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", 1e-6);
+                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", kMicro);
       block.prior_sigma[0] = axis.expansion->per_kelvin_sigma;
       parameter = add_block(std::move(block));
     }

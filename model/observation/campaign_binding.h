@@ -8,14 +8,13 @@
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect.h"
 #include "volcal/model/instruments/instrument.h"
 #include "volcal/model/kinematics/chain.h"
 #include "volcal/model/observation/parameters.h"
 
 namespace volcal {
-
-inline constexpr double kReferenceTemperature_degC = 20.0;
 
 /// A parameter that acts as an error motion: parameter x driver is added to one component of a joint.
 struct MotionTerm {

@@ -15,6 +15,9 @@
 
 namespace volcal::sim {
 
+inline constexpr const char* kLaserTracer = "laser-tracer";
+inline constexpr const char* kLaserTracker = "laser-tracker";
+
 /// Tracking interferometer or tracker at several stations: jittered grids over the whole travel, each
 /// position met from both directions; or, of a run that has them, positions as given. Without stations and
 /// runs: four stations around the volume and eight runs with the machine's first three tools (fewer if it has
@@ -29,7 +32,7 @@ struct Tracking {
     std::string tool;
     std::vector<CommandedPoint> points = {};  ///< in place of a grid
   };
-  std::string instrument = "laser-tracer";  ///< or "laser-tracker"
+  std::string instrument = kLaserTracer;  ///< or kLaserTracker
   std::vector<Station> stations;
   std::vector<Run> runs;
   int revisits = 0;                          ///< how often the list of runs is gone through again

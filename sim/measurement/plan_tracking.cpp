@@ -92,7 +92,7 @@ class TrackingPlanner {
     }
     plan.truth.station = station.position_w;
     plan.truth.length_scale = length_scale_;
-    if (settings_.instrument == "laser-tracer") {
+    if (settings_.instrument == kLaserTracer) {
       const CommandedPoint& first = plan.points.front();
       const Eigen::Vector3d start_w = nominal_.nominal_point({first.position, first.direction, 0.0, {}},
                                                              context_.machine.tools[plan.tool].offset);
@@ -129,7 +129,7 @@ class TrackingPlanner {
 }  // namespace
 
 std::vector<SetupPlan> plan_tracking(const Tracking& settings, const PlanContext& context) {
-  if (settings.instrument != "laser-tracer" && settings.instrument != "laser-tracker") {
+  if (settings.instrument != kLaserTracer && settings.instrument != kLaserTracker) {
     context.fail("\"" + settings.instrument + "\" does not track", "use laser-tracer or laser-tracker");
   }
   return TrackingPlanner(settings, context).plans();

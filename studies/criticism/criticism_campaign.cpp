@@ -14,6 +14,7 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
 #include "volcal/studies/criticism/criticism_names.h"
@@ -55,7 +56,7 @@ Eigen::VectorXd difference(const Campaign& a, const Campaign& b) {
 }
 
 double square_um(const Eigen::VectorXd& metres) {
-  return (1e6 * metres).squaredNorm() / static_cast<double>(metres.size());
+  return (kPerMicro * metres).squaredNorm() / static_cast<double>(metres.size());
 }
 
 sim::Study hiding(sim::Study study, const std::vector<sim::HiddenEffect>& effects) {
@@ -235,7 +236,7 @@ class CampaignRun {
     HiddenRecord record;
     record.signal = visible.signal * factor;
     record.visible_fraction = visible.fraction;
-    record.rms_um = *effect.rms * factor * 1e6;
+    record.rms_um = *effect.rms * factor * kPerMicro;
     effect.rms.reset();
     effect.amplitude = amplitude * factor;
     record.text = text_of(effect);
@@ -376,12 +377,12 @@ class CampaignRun {
   void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
     record_.recovery = true;
     record_.ms_given = unseen_square(simulated, given);
-    ModelSpec reported, named;
+    ModelSpec oracle, named;
     for (const RightAnswer& right : right_) {
-      if (right.spec) reported.effects.push_back(*right.spec);
+      if (right.spec) oracle.effects.push_back(*right.spec);
     }
     for (const EffectFinding& finding : diagnosis.effects) named.effects.push_back(finding.spec);
-    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, reported));
+    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, oracle));
     record_.ms_named = named.effects.empty() ? record_.ms_given
                                              : unseen_square(simulated, fitted(simulated.campaign, named));
     record_.ms_told = record_.ms_named;

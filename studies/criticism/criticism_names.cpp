@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal::cli {
 namespace {
@@ -159,7 +160,7 @@ class Answerer {
     }
     if (is({"length-scale", "air-index"})) drivers.insert("length");
     if (is({"servo-mismatch"})) drivers.insert({"dir_x", "dir_y", "speed_x", "speed_y"});
-    if (is({"bar-length"})) drivers.insert("instrument ball-bar");
+    if (is({"bar-length"})) drivers.insert("instrument " + instrument_with_bar());
     if (is({"tool-clamping", "dead-path-air"})) add_setups();
   }
 

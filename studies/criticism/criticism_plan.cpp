@@ -10,6 +10,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "volcal/model/description/units.h"
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/studies/criticism/criticism_hidden.h"
@@ -53,9 +54,9 @@ sim::Environment environment(sim::RandomStream& random) {
     sim::TemperatureChannel channel;
     channel.name = name;
     channel.start = 20.0 + random.uniform(-1.0, 1.0);
-    channel.drift = random.uniform(-0.3, 0.3) / 3600.0;
+    channel.drift = random.uniform(-0.3, 0.3) / kSecondsPerHour;
     channel.amplitude = random.uniform(0.2, 1.0);
-    channel.period = random.uniform(3600.0, 14400.0);
+    channel.period = random.uniform(kSecondsPerHour, 4.0 * kSecondsPerHour);
     channel.phase = random.uniform(0.0, 2.0 * std::numbers::pi);
     environment.channels.push_back(channel);
   }

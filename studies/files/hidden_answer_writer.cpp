@@ -5,13 +5,13 @@
 
 #include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kPerMicro = 1e6;
 constexpr int kFirstRow = 2;  ///< below the header
 
 /// Twelve digits: what the study said comes back as it was written.
@@ -46,7 +46,7 @@ Json effect_json(const sim::HiddenAnswer& answer) {
 }
 
 Json noise_json(const sim::SetupPlan& plan) {
-  const std::string unit = plan.instrument == "angle" ? "_urad" : "_um";
+  const std::string unit = "_" + noise_group_unit(plan.instrument);
   const sim::NoiseLevel& noise = plan.noise;
   return {{"setup", plan.name},
           {"wander" + unit, rounded(noise.drift * kPerMicro)},

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kFurthest = 100.0;  // m or rad: a position beyond is in another unit
 
-std::string column_of_axis(AxisName axis) {
-  return std::string(1, lower_letter_of(axis)) + (is_rotary(axis) ? "_deg" : "_mm");
-}
-
 /// What a column's numbers go into.
 struct PointColumn {
   std::size_t index = 0;
@@ -27,7 +23,7 @@ std::vector<PointColumn> point_columns(const CsvTable& table) {
   std::vector<PointColumn> columns;
   for (const AxisName axis : kAllAxes) {
     const std::size_t k = index_of(axis);
-    const std::string name = column_of_axis(axis);
+    const std::string name = position_column(axis);
     if (const auto index = table.find(name)) {
       const double unit = unit_of_key(name).si_per_unit;
       columns.push_back({*index, name, [k, unit](sim::CommandedPoint& point, double value) {

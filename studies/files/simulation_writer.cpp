@@ -27,14 +27,14 @@ std::string truth_csv(const sim::TruthMachine& truth) {
       for (int i = 0; i < kTruthPositions; ++i) {
         const double q = axis.travel_min + axis.travel() * i / (kTruthPositions - 1);
         text += fmt::format("{},{},{},mm,{:.6f},{}\n", symbol.name(), letter_of(axis.name),
-                            edge_number(q, kMetrePerMillimetre), 1e6 * tables.value(symbol, q),
+                            edge_number(q, kMetrePerMillimetre), kPerMicro * tables.value(symbol, q),
                             edge_unit(component));
       }
     }
   }
   const auto symbols = tables.datum().squareness();
   for (std::size_t i = 0; i < symbols.size(); ++i) {
-    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), 1e6 * tables.squareness()[i]);
+    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), kPerMicro * tables.squareness()[i]);
   }
   return text;
 }

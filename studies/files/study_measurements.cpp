@@ -116,9 +116,8 @@ std::vector<sim::CommandedPoint> read_points(const TomlTable& run) {
   return read_run_points(resolve_path(run.place().file, *file), run.place("points"));
 }
 
-sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string& instrument) {
+sim::Tracking read_tracking(const TomlTable& table) {
   sim::Tracking settings;
-  settings.instrument = instrument;
   for (const TomlTable& station : table.tables("stations")) {
     settings.stations.push_back({station.required_name("name"), station.required_vector3("position_mm")});
   }
@@ -136,12 +135,21 @@ sim::MeasurementSettings read_tracking(const TomlTable& table, const std::string
   read(table, "scale_sigma_um_per_m", settings.length_scale_sigma);
   read(table, "reading_s", settings.seconds_per_reading);
   read_length_noise(table, settings.noise);
-  if (instrument == "laser-tracer") {
-    read(table, "dead_path_spread_mm", settings.dead_path_spread);
-  } else {
-    read(table, "station_rotation_spread_mrad", settings.station_rotation_spread);
-    if (const auto inside = table.table("noise")) read(*inside, "angle_urad", settings.noise.angle);
-  }
+  return settings;
+}
+
+sim::MeasurementSettings read_laser_tracer(const TomlTable& table) {
+  sim::Tracking settings = read_tracking(table);
+  settings.instrument = sim::kLaserTracer;
+  read(table, "dead_path_spread_mm", settings.dead_path_spread);
+  return settings;
+}
+
+sim::MeasurementSettings read_laser_tracker(const TomlTable& table) {
+  sim::Tracking settings = read_tracking(table);
+  settings.instrument = sim::kLaserTracker;
+  read(table, "station_rotation_spread_mrad", settings.station_rotation_spread);
+  if (const auto inside = table.table("noise")) read(*inside, "angle_urad", settings.noise.angle);
   return settings;
 }
 
@@ -249,25 +257,34 @@ sim::MeasurementSettings read_point_grid(const TomlTable& table) {
   return settings;
 }
 
+struct MeasurementKind {
+  const char* name;
+  sim::MeasurementSettings (*read)(const TomlTable& table);
+};
+
+// One line per kind of measurement.
+constexpr auto kMeasurementKinds = std::to_array<MeasurementKind>({
+    {sim::kLaserTracer, read_laser_tracer},
+    {sim::kLaserTracker, read_laser_tracker},
+    {"ball-bar-circles", read_ball_bar},
+    {"diagonals", read_diagonals},
+    {"axis-lines", read_axis_lines},
+    {"straightness-lines", read_straightness},
+    {"squares", read_squares},
+    {"angle-lines", read_angles},
+    {"point-grid", read_point_grid},
+});
+
 }  // namespace
 
 sim::Measurement read_measurement(const TomlTable& table) {
-  const std::vector<std::string> kinds = {"laser-tracer", "laser-tracker", "ball-bar-circles",
-                                          "diagonals",    "axis-lines",    "straightness-lines",
-                                          "squares",      "angle-lines",   "point-grid"};
-  const auto kind = table.choice("kind", kinds);
-  if (!kind) table.fail_missing("kind");
-  const auto settings = [&]() -> sim::MeasurementSettings {
-    if (*kind == "ball-bar-circles") return read_ball_bar(table);
-    if (*kind == "diagonals") return read_diagonals(table);
-    if (*kind == "axis-lines") return read_axis_lines(table);
-    if (*kind == "straightness-lines") return read_straightness(table);
-    if (*kind == "squares") return read_squares(table);
-    if (*kind == "angle-lines") return read_angles(table);
-    if (*kind == "point-grid") return read_point_grid(table);
-    return read_tracking(table, *kind);
-  };
-  return {table.text("name").value_or(""), settings(), table.place(),
+  std::vector<std::string> names;
+  for (const MeasurementKind& kind : kMeasurementKinds) names.emplace_back(kind.name);
+  const auto name = table.choice("kind", names);
+  if (!name) table.fail_missing("kind");
+  const auto* const kind = std::ranges::find_if(
+      kMeasurementKinds, [&](const MeasurementKind& each) { return *name == each.name; });
+  return {table.text("name").value_or(""), kind->read(table), table.place(),
           table.boolean("shuffled").value_or(false)};
 }
 

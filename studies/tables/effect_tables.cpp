@@ -8,6 +8,7 @@
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/machine/transforms.h"
@@ -78,7 +79,7 @@ sim::Study study_of(const EffectTablesOptions& options, int structure, const Eff
   sim::TemperatureChannel channel;
   channel.name = kChannel;
   channel.start = 21.0;
-  channel.drift = 0.8 / 3600.0;
+  channel.drift = 0.8 / kSecondsPerHour;
   channel.amplitude = 0.5;
   channel.period = 5400.0;
   study.environment.channels.push_back(channel);

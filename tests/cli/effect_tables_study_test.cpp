@@ -1,6 +1,7 @@
 /// Tables of machines with effects that no rigid body has, in a closed loop; docs/studies.md has four
 /// structures, six effects and every format.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -35,6 +36,16 @@ TEST(EffectTablesStudy, TablesTakeTheEffectAwayAsFarAsTheirFormatHoldsIt) {
       EXPECT_LT(extended, rigid) << row;
     }
   }
+}
+
+TEST(EffectTablesStudy, PrintsARowForEveryFormat) {
+  const auto run = run_program("study effect-tables -n 1 --case reversal --format csv --format linuxcnc");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output,
+              ::testing::ContainsRegex("format +before .um. +rigid model .um. .* u .um. +printed"));
+  EXPECT_THAT(run.output, ::testing::ContainsRegex("csv( +[0-9]+[.][0-9][0-9]){6}"));
+  EXPECT_THAT(run.output, ::testing::ContainsRegex("linuxcnc( +[0-9]+[.][0-9][0-9]){6}"));
+  EXPECT_THAT(run.output, ::testing::HasSubstr("2 rows: "));
 }
 
 TEST(EffectTablesStudy, DoesNotDependOnTheNumberOfThreads) {

@@ -37,7 +37,7 @@ class FitNoiseProgram : public ::testing::Test {
 };
 
 TEST_F(FitNoiseProgram, PrintsAndWritesWhatIsFound) {
-  const auto run = fit("");
+  const auto run = fit("--verbose");
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, HasSubstr("Noise by restricted maximum likelihood"));
   EXPECT_THAT(run.output, ::testing::ContainsRegex("correlated drift of [0-9.]+ um over [0-9]+ s"));

@@ -71,7 +71,7 @@ class LeaveOutProgram : public ::testing::Test {
   }
 
   testing::ProgramRun fit(const std::string& options = "") const {
-    return simulated_.fit("--noise white " + options);
+    return simulated_.fit("--noise white --verbose " + options);
   }
   std::string judged(const std::string& command) const {
     const auto run = run_program(command);

@@ -67,7 +67,7 @@ class PartialCampaignProgram : public ::testing::TestWithParam<std::pair<std::st
 
 TEST_P(PartialCampaignProgram, SaysInWordsWhatIsNotSeenAndGivesTheRest) {
   simulate(GetParam().second);
-  const auto run = fit();
+  const auto run = fit("--verbose");
   ASSERT_EQ(run.exit_code, 1) << run.errors;
   const std::string& text = run.output;
   EXPECT_THAT(text, HasSubstr("status rank_deficient"));

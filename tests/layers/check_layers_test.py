@@ -88,9 +88,10 @@ class MadeUpTree(unittest.TestCase):
         self.assert_rejected("identify/solve/a.h", '#include "volcal/identify/criticism/diagnosis.h"',
                              "solve may not include criticism")
 
-    def test_statistics_in_noise(self):
-        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/statistics/normal.h"',
-                             "noise may not include statistics")
+    def test_results_in_noise(self):
+        self.assert_accepted("identify/noise/a.h", '#include "volcal/identify/statistics/normal.h"')
+        self.assert_rejected("identify/noise/a.h", '#include "volcal/identify/result/result.h"',
+                             "noise may not include result")
 
     def test_noise_in_dense_matrices(self):
         self.assert_rejected("identify/numeric/a.h", '#include "volcal/identify/noise/noise_model.h"',
@@ -146,6 +147,17 @@ class MadeUpTree(unittest.TestCase):
 
     def test_include_by_relative_path(self):
         self.assert_rejected("model/functions/a.cpp", '#include "../kinematics/chain.h"', "volcal/<folder>/chain.h")
+
+    def test_names_of_instruments(self):
+        self.write("model/instruments/bar.cpp", "const InstrumentSchema kBar = {", '    .name = "ball-bar",', "};")
+        self.write("model/instruments/angle.cpp", "const InstrumentSchema kAngle = {", '    .name = "angle",', "};")
+        self.assert_accepted("identify/planning/instruments/bar.cpp", 'return "ball-bar";')
+        self.assert_accepted("identify/solve/word.cpp", 'add("angle");  // as "ball-bar"', 'add("ball-bar-length");')
+        self.assert_accepted("sim/measurement/bar.cpp", 'return plan.instrument == "ball-bar";')
+        wrong = 'if (setup.instrument == "angle") return;'
+        self.assert_rejected("identify/solve/a.cpp", wrong, "names an instrument", "InstrumentTraits")
+        self.write("identify/solve/a.cpp", "")
+        self.assert_rejected("studies/a.cpp", 'find(setups, "ball-bar", &Setup::instrument)', "names an instrument")
 
     def test_folder_without_a_layer(self):
         self.write("model/elsewhere/a.h", "#pragma once")

@@ -103,7 +103,7 @@ const Command& budget_command() {
   static const Command command = {
       "budget", "which error contributes how much to the error in the volume, by cause and by error",
       "  volcal budget result\n"
-      "  volcal budget identified.toml --tool long --verbose\n"
+      "  volcal budget result/identified.toml --tool short --verbose\n"
       "  volcal budget machine.toml --tolerances tolerances.toml\n",
       define_budget};
   return command;

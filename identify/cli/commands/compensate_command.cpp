@@ -186,7 +186,8 @@ const Command& compensate_command() {
       "compensate", "rewrite an NC program so that the identified errors cancel",
       "  volcal compensate result part.ngc -o part-compensated.ngc --work-offset G54=X10,Y20,Z-300 \\\n"
       "      --tool-length H1=150\n"
-      "  volcal compensate result part.ngc --check --work-offset G54=X10,Y20,Z-300 --tool long\n",
+      "  volcal compensate result part.ngc --check --work-offset G54=X10,Y20,Z-300 \\\n"
+      "      --tool short --tool-length H1=150\n",
       define_compensate};
   return command;
 }

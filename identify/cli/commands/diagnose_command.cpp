@@ -9,8 +9,8 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
@@ -34,6 +34,7 @@ struct DiagnoseArguments {
   bool climb = false;
   bool list = false;
   bool json = false;
+  bool verbose = false;
   std::vector<std::string> separate;
   std::size_t readings = PlanningOptions{}.readings;
 };
@@ -56,9 +57,12 @@ int print_list(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-ModelSpec extended(ModelSpec model, const Diagnosis& diagnosis) {
+ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis) {
   for (const EffectFinding& effect : diagnosis.effects) {
-    if (!restore_left_out(effect.spec, model)) model.effects.push_back(effect.spec);
+    extend_model({model, campaign.machine, &campaign}, effect.spec,
+                 {.label = effect.label,
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }
   return model;
 }
@@ -83,7 +87,7 @@ void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, 
     folder.write("report.html", report_html(diagnosis, campaign, report_options()));
   }
   folder.write("machine.toml", machine_toml(campaign.machine));
-  folder.write("extended.toml", model_toml(extended(model, diagnosis), "machine.toml",
+  folder.write("extended.toml", model_toml(extended(model, campaign, diagnosis), "machine.toml",
                                            "the given model with the effects that volcal diagnose added"));
   folder.commit();
 }
@@ -124,10 +128,11 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", json);
   } else {
-    fmt::print("{}", diagnosis_text(diagnosis));
-    if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
-    if (!arguments.output.empty() && !report_available())
-      fmt::print("no report.html: {}\n", how_to_get_report());
+    const bool kept = !arguments.output.empty();
+    fmt::print("{}",
+               kept && !arguments.verbose ? diagnosis_summary_text(diagnosis) : diagnosis_text(diagnosis));
+    if (kept) fmt::print("written: {} (all of it: diagnosis.txt)\n", arguments.output);
+    if (kept && !report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
   return kDone;
 }
@@ -141,9 +146,9 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(number_of_threads());
   app.add_flag("--auto", arguments->climb,
-               "tell everything that was found, one effect after another, not the first alone");
+               "add everything that is found, one effect after another, not the first alone");
   app.add_option("--separate", arguments->separate,
-                 "KIND:TARGET,KIND:TARGET: which measurement would tell these effects apart, or show them")
+                 "KIND:TARGET,KIND:TARGET: which measurement would separate these effects, or show them")
       ->delimiter(',');
   app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
       ->check(CLI::Range(8, 10000))
@@ -153,6 +158,9 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_flag(
       "--list", arguments->list,
       "print every kind, target, driver and shape of effects, and what could act in CAMPAIGN, and stop");
+  app.add_flag(
+      "-v,--verbose", arguments->verbose,
+      "print all of diagnosis.txt: ranked evidence, nearly collinear effects, detection limits, noise");
   app.add_flag("--json", arguments->json, "print diagnosis.json on standard output and nothing else");
   return [arguments] { return run_diagnose(*arguments); };
 }

@@ -11,8 +11,8 @@
 #include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/written_effect.h"
-#include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
@@ -23,10 +23,11 @@
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/identify/words/finding_json.h"
-#include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
 namespace {
+
+const std::string kOtherMotion = "name an error motion of one of the machine's axes";
 
 struct ExtendArguments {
   std::string model;
@@ -69,67 +70,39 @@ std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
   return {all[static_cast<std::size_t>(arguments.rank) - 1]};
 }
 
-/// Throws when the model has it already.
-void require_new(const EffectName& name, const std::string& label, const std::string& remedy,
-                 const ExtendArguments& arguments, const ModelSpec& model) {
-  for (const EffectSpec& present : model.effects) {
-    if (find_effect(present.kind)->make(present, model.file)->name() != name) continue;
-    throw InputError({arguments.model, present.source_line}, "the model has " + label + " already", remedy);
-  }
+/// `candidates_of`: the campaign, or the machine alone.
+void add_named(const std::string& text, const ModelToExtend& extended, const Campaign& candidates_of,
+               Changes& changes) {
+  const EffectSpec spec = named_effect("--effect", text, candidates_of);
+  const auto effect = extend_model(
+      extended, spec,
+      {.label = text, .remedy_if_known = "leave out --effect " + text, .remedy_if_absent = kOtherMotion});
+  changes.added.push_back(full_name(effect->name()));
 }
 
-void add_named(const std::string& text, const ExtendArguments& arguments, ModelSpec& model,
-               const Campaign& campaign, Changes& changes) {
-  const EffectSpec spec = named_effect("--effect", text, campaign);
-  const auto made = find_effect(spec.kind)->make(spec, {});
-  require_new(made->name(), text, "leave out --effect " + text, arguments, model);
-  model.effects.push_back(spec);
-  changes.added.push_back(full_name(made->name()));
+void add_custom(const ExtendArguments& arguments, const ModelToExtend& extended, Changes& changes) {
+  const EffectSpec spec = written_effect("--custom", arguments.custom, arguments.parameters).spec;
+  const auto effect = extend_model(
+      extended, spec,
+      {.label = arguments.custom, .remedy_if_known = "leave out --custom", .remedy_if_absent = kOtherMotion});
+  changes.added.push_back(effect->amplitudes().front().label);
 }
 
-/// Throws when the model has it already, or the machine or the campaign, where one is given, lacks what it
-/// uses.
-void add_custom(const ExtendArguments& arguments, ModelSpec& model, const Campaign& campaign,
-                Changes& changes) {
-  const WrittenEffect effect = written_effect("--custom", arguments.custom, arguments.parameters);
-  require_new(effect.made->name(), arguments.custom, "leave out --custom", arguments, model);
-  if (arguments.campaign.empty()) {
-    require_axes(effect, campaign.machine);
+void add_found(const EffectFinding& found, const ExtendArguments& arguments, const ModelToExtend& extended,
+               Changes& changes) {
+  const bool added =
+      extend_model(extended, found.spec,
+                   {.label = found.label,
+                    .place = {arguments.diagnosis, 0},
+                    .remedy_if_known = "diagnose this model (volcal diagnose CAMPAIGN --model " +
+                                       arguments.model + " -o DIR), or choose another --rank",
+                    .remedy_if_absent = "give the model that was diagnosed, or one of the same machine"}) !=
+      nullptr;
+  if (added) {
+    changes.added.push_back(found.label + (found.shape_text.empty() ? "" : ", " + found.shape_text));
   } else {
-    effect.made->check(campaign, {});
+    changes.given_back.push_back(found.label);
   }
-  model.effects.push_back(effect.spec);
-  changes.added.push_back(effect.made->amplitudes().front().label);
-}
-
-/// Throws when the model has it already, or the machine cannot have it.
-void add_found(const EffectFinding& effect, const ExtendArguments& arguments, ModelSpec& model,
-               const Machine& machine, const Campaign& campaign, Changes& changes) {
-  require_new(effect.name, effect.label,
-              "diagnose this model (volcal diagnose CAMPAIGN --model " + arguments.model +
-                  " -o DIR), or choose another --rank",
-              arguments, model);
-  if (restore_left_out(effect.spec, model)) {
-    changes.given_back.push_back(effect.label);
-    return;
-  }
-  const EffectKind* kind = find_effect(effect.spec.kind);
-  if (kind == nullptr) {
-    throw InputError({arguments.diagnosis, 0},
-                     "\"" + printable(effect.spec.kind) + "\" is no kind of effect of this program",
-                     "run the diagnosis again");
-  }
-  const auto made = kind->make(effect.spec, arguments.diagnosis);
-  for (const EffectAmplitude& amplitude : made->amplitudes()) {
-    if (amplitude.target.kind == TargetKind::Motion && !machine.has_axis(amplitude.target.symbol.axis)) {
-      throw InputError({arguments.model, 0},
-                       effect.label + " acts on an axis that the model's machine does not have",
-                       "give the model that was diagnosed, or one of the same machine");
-    }
-  }
-  if (!arguments.campaign.empty()) made->check(campaign, {arguments.diagnosis, 0});
-  model.effects.push_back(effect.spec);
-  changes.added.push_back(effect.label + (effect.shape_text.empty() ? "" : ", " + effect.shape_text));
 }
 
 void require_one_source(const ExtendArguments& arguments) {
@@ -203,12 +176,12 @@ int run_extend(const ExtendArguments& arguments) {
   } else {
     campaign = read_campaign(arguments.campaign);
   }
+  const ModelToExtend extended{model, machine, arguments.campaign.empty() ? nullptr : &campaign};
   Changes changes;
-  for (const std::string& effect : arguments.effects) add_named(effect, arguments, model, campaign, changes);
-  if (!arguments.custom.empty()) add_custom(arguments, model, campaign, changes);
+  for (const std::string& effect : arguments.effects) add_named(effect, extended, campaign, changes);
+  if (!arguments.custom.empty()) add_custom(arguments, extended, changes);
   if (!arguments.diagnosis.empty()) {
-    for (const EffectFinding& effect : chosen(arguments))
-      add_found(effect, arguments, model, machine, campaign, changes);
+    for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, extended, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
   if (!arguments.force) require_no_input(output, {arguments.model, machine.file, arguments.campaign});
@@ -250,7 +223,7 @@ const Command& extend_command() {
       "  volcal extend model.toml --diagnosis diagnosis --accepted -o model-1.toml\n"
       "  volcal extend model.toml --custom \"EZX: abs(x) / 400 * dir_x\" -o model-1.toml\n"
       "  volcal extend model.toml --effect axis-coupling:EAY:z:linear -o model-1.toml\n"
-      "  volcal extend model.toml --effect thermal-drift:EAZ:T_column --campaign campaign.toml -o "
+      "  volcal extend model.toml --effect thermal-drift:EAZ:T_air --campaign campaign.toml -o "
       "model-1.toml\n",
       define_extend};
   return command;

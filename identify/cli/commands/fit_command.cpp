@@ -35,6 +35,7 @@ struct FitArguments {
   bool keep_stated_sigma = false;
   bool first_order = false;
   bool json = false;
+  bool verbose = false;
 };
 
 FitOptions fit_options(const FitArguments& arguments) {
@@ -89,8 +90,9 @@ int run_fit(const FitArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}\n", result_summary_json(result));
   } else {
-    fmt::print("{}", fit_summary_text(result, campaign));
-    fmt::print("\nwritten: {}\n", arguments.output);
+    fmt::print("{}", arguments.verbose ? fit_text(result, campaign) : fit_summary_text(result, campaign));
+    fmt::print("written: {} ({})\n", arguments.output,
+               report_available() ? "report.html has all of it" : "--verbose prints all of it");
     if (result.status == FitStatus::LackOfFit) fmt::print("next: {}\n", diagnosis_of(arguments));
     if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
@@ -123,6 +125,8 @@ std::function<int()> define_fit(CLI::App& app) {
   app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,
                "do not estimate variance components nor correlated noise");
   app.add_flag("--first-order", arguments->first_order, "first-order kinematics only");
+  app.add_flag("-v,--verbose", arguments->verbose,
+               "print every error, setup, noise term, flagged reading and message");
   app.add_flag("--json", arguments->json, "print result.json on standard output and nothing else");
   return [arguments] { return run_fit(*arguments); };
 }

@@ -29,6 +29,7 @@
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {
@@ -184,7 +185,7 @@ End draw_all(const MonteCarloArguments& arguments, ProgressBar& bar, MonteCarloS
   if (is_first(arguments)) progress.update(study);
   while (!study.done()) {
     study.run_block();
-    const double minutes = std::chrono::duration<double>(Clock::now() - start).count() / 60.0;
+    const double minutes = std::chrono::duration<double>(Clock::now() - start).count() / kSecondsPerMinute;
     const End end = agreed(arguments, interrupt.was_asked_for()                    ? End::Interrupted
                                       : has_a_limit && minutes > arguments.minutes ? End::OutOfTime
                                                                                    : End::Done);

@@ -159,7 +159,6 @@ PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Cam
   read_bar(arguments, settings);
   const double reading_s =
       arguments.reading_s > 0.0 ? arguments.reading_s : plan_instrument_of(settings).usual_reading_time();
-  constexpr double kSecondsPerMinute = 60.0;
   settings.costs = {arguments.station_min * kSecondsPerMinute, arguments.run_min * kSecondsPerMinute,
                     reading_s, arguments.feed_mm_min * kMetrePerMillimetre / kSecondsPerMinute};
   check_plan_settings(settings);

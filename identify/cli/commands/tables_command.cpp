@@ -364,10 +364,10 @@ const Command& tables_command() {
       "  volcal tables --list\n"
       "  volcal tables result -o tables\n"
       "  volcal tables result --positions 101 --grid 9 -o tables\n"
-      "  volcal tables result --format csv --tool long --dry-run\n"
+      "  volcal tables result --format csv --tool side_x --dry-run\n"
       "  volcal tables result --align spindle --origin Z=0 -o tables\n"
       "  volcal tables again --format neutral-csv --superimpose tables -o tables-2\n"
-      "  volcal tables result --at X=100,Y=250,Z=-80 --tool long\n",
+      "  volcal tables result --at X=100,Y=150,Z=-80 --tool short\n",
       define_tables};
   return command;
 }

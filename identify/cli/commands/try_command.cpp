@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/report/text/campaign_notes_text.h"
@@ -21,7 +22,7 @@
 #include "volcal/identify/standards/comparison.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/identify/words/sentences.h"
-#include "volcal/model/effects/registry.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::cli {
 namespace {
@@ -122,10 +123,8 @@ Diagnosis what_remains(const Campaign& campaign, const ModelSpec& model, int thr
   return diagnose(campaign, result, diagnosis);
 }
 
-Tried try_effect(const Campaign& campaign, const ModelSpec& without, const WrittenEffect& effect,
-                 int threads) {
-  ModelSpec with = without;
-  with.effects.push_back(effect.spec);
+Tried try_effect(const Campaign& campaign, const ModelSpec& without, const ModelSpec& with,
+                 const WrittenEffect& effect, int threads) {
   ProgressBar bar("try");
   FitOptions options;
   options.threads = threads;
@@ -160,8 +159,9 @@ std::string size_text(const Comparison& without, const Comparison& with) {
   std::string text;
   const auto add = [&](const ResidualSize& before, const ResidualSize& after, const char* unit) {
     if (before.count == 0) return;
-    text += fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", short_number(before.rms * 1e6, 3),
-                        short_number(after.rms * 1e6, 3), unit);
+    text +=
+        fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", short_number(before.rms * kPerMicro, 3),
+                    short_number(after.rms * kPerMicro, 3), unit);
   };
   add(without.total.lengths, with.total.lengths, "um");
   add(without.total.angles, with.total.angles, "urad");
@@ -220,8 +220,8 @@ std::string tried_text(const TryArguments& arguments, const Tried& tried) {
 nlohmann::ordered_json judged_json(const Comparison& comparison) {
   return {{"observations", comparison.total.observations},
           {"chi2", comparison.total.chi2},
-          {"rms_um", comparison.total.lengths.rms * 1e6},
-          {"rms_urad", comparison.total.angles.rms * 1e6}};
+          {"rms_um", comparison.total.lengths.rms * kPerMicro},
+          {"rms_urad", comparison.total.angles.rms * kPerMicro}};
 }
 
 std::string tried_json(const TryArguments& arguments, const Tried& tried) {
@@ -244,23 +244,17 @@ std::string tried_json(const TryArguments& arguments, const Tried& tried) {
   return json.dump(2) + "\n";
 }
 
-/// Throws when the model has the effect already.
-void require_absent(const WrittenEffect& effect, const ModelSpec& model, const TryArguments& arguments) {
-  for (const EffectSpec& present : model.effects) {
-    if (find_effect(present.kind)->make(present, model.file)->name() != effect.made->name()) continue;
-    throw InputError({arguments.model, present.source_line}, "the model has this effect already",
-                     "try another, or a model without it");
-  }
-}
-
 int run_try(const TryArguments& arguments) {
   const WrittenEffect effect = written_effect("EFFECT", arguments.effect, arguments.parameters);
   const Campaign campaign = read_campaign(arguments.campaign);
-  effect.made->check(campaign, {});
-  const ModelSpec model =
+  const ModelSpec without =
       arguments.model.empty() ? ModelSpec{} : read_model(arguments.model, campaign.machine);
-  require_absent(effect, model, arguments);
-  const Tried tried = try_effect(campaign, model, effect, arguments.threads);
+  ModelSpec with = without;
+  extend_model({with, campaign.machine, &campaign}, effect.spec,
+               {.label = "this effect",
+                .remedy_if_known = "try another, or a model without it",
+                .remedy_if_absent = "name an error motion of one of the machine's axes"});
+  const Tried tried = try_effect(campaign, without, with, effect, arguments.threads);
   fmt::print("{}", arguments.json ? tried_json(arguments, tried) : tried_text(arguments, tried));
   const bool done = tried.not_visible.empty() && tried.status != FitStatus::NotConverged;
   return done ? kDone : kIncomplete;

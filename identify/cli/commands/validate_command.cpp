@@ -19,6 +19,7 @@
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal::cli {
 namespace {
@@ -32,10 +33,10 @@ struct ValidateArguments {
 };
 
 nlohmann::ordered_json figures_json(const ValidationFigures& figures, const FittedReadings& fitted) {
-  nlohmann::ordered_json json = {{"rms_before_um", figures.rms_before * 1e6},
-                                 {"rms_after_um", figures.rms_after * 1e6},
-                                 {"max_before_um", figures.max_before * 1e6},
-                                 {"max_after_um", figures.max_after * 1e6},
+  nlohmann::ordered_json json = {{"rms_before_um", figures.rms_before * kPerMicro},
+                                 {"rms_after_um", figures.rms_after * kPerMicro},
+                                 {"max_before_um", figures.max_before * kPerMicro},
+                                 {"max_after_um", figures.max_after * kPerMicro},
                                  {"reduced_chi2", figures.reduced_chi2},
                                  {"coverage95", figures.coverage95},
                                  {"readings", figures.lengths}};
@@ -45,10 +46,10 @@ nlohmann::ordered_json figures_json(const ValidationFigures& figures, const Fitt
     json["fitted_readings"] = nullptr;
   }
   if (figures.angles > 0) {
-    json["angle_rms_before_urad"] = figures.angle_rms_before * 1e6;
-    json["angle_rms_after_urad"] = figures.angle_rms_after * 1e6;
-    json["angle_max_before_urad"] = figures.angle_max_before * 1e6;
-    json["angle_max_after_urad"] = figures.angle_max_after * 1e6;
+    json["angle_rms_before_urad"] = figures.angle_rms_before * kPerMicro;
+    json["angle_rms_after_urad"] = figures.angle_rms_after * kPerMicro;
+    json["angle_max_before_urad"] = figures.angle_max_before * kPerMicro;
+    json["angle_max_after_urad"] = figures.angle_max_after * kPerMicro;
     json["angle_readings"] = figures.angles;
   }
   return json;
@@ -90,9 +91,9 @@ std::string figures_text(const Validation& validation, const FittedReadings& fit
   const auto add = [&](const char* name, std::size_t count, double rms0, double rms1, double max0,
                        double max1, const char* unit) {
     if (count == 0) return;
-    totals.add_row({name, count_number(static_cast<long long>(count)), fixed_number(rms0 * 1e6, 3),
-                    fixed_number(rms1 * 1e6, 3), fixed_number(max0 * 1e6, 3), fixed_number(max1 * 1e6, 3),
-                    unit});
+    totals.add_row({name, count_number(static_cast<long long>(count)), fixed_number(rms0 * kPerMicro, 3),
+                    fixed_number(rms1 * kPerMicro, 3), fixed_number(max0 * kPerMicro, 3),
+                    fixed_number(max1 * kPerMicro, 3), unit});
   };
   add("lengths and vectors", figures.lengths, figures.rms_before, figures.rms_after, figures.max_before,
       figures.max_after, "um");
@@ -108,14 +109,14 @@ std::string figures_text(const Validation& validation, const FittedReadings& fit
   for (std::size_t i = 0; i < validation.after.setups.size(); ++i) {
     const SetupSummary& setup = validation.after.setups[i];
     setups.add_row({setup.name, setup.instrument, setup.tool,
-                    fixed_number(validation.before.setups[i].rms_residual * 1e6, 3),
-                    fixed_number(setup.rms_residual * 1e6, 3), setup.reading_unit});
+                    fixed_number(validation.before.setups[i].rms_residual * kPerMicro, 3),
+                    fixed_number(setup.rms_residual * kPerMicro, 3), setup.reading_unit});
   }
   return totals.text() + "\n" + setups.text() +
          fmt::format(
-             "\nreduced chi2 {:.3f} and {:.1f} % of readings inside 1.96 sqrt(u_model^2 + sigma^2) (95 % "
+             "\nreduced chi2 {:.3f} and {:.1f} % of readings inside {} sqrt(u_model^2 + sigma^2) (95 % "
              "expected)\n",
-             figures.reduced_chi2, 100.0 * figures.coverage95) +
+             figures.reduced_chi2, 100.0 * figures.coverage95, kCoverageFactor) +
          warning(fitted);
 }
 
@@ -139,7 +140,7 @@ int run_validate(const ValidateArguments& arguments) {
     fmt::print("{}", campaign_notes_text(campaign.notes));
   }
   const bool exceeded =
-      arguments.max_rms_um > 0.0 && validation.figures.rms_after * 1e6 > arguments.max_rms_um;
+      arguments.max_rms_um > 0.0 && validation.figures.rms_after * kPerMicro > arguments.max_rms_um;
   if (exceeded) fmt::print(stderr, "RMS after exceeds the limit of {} um\n", arguments.max_rms_um);
   return exceeded ? kIncomplete : kDone;
 }

@@ -40,7 +40,7 @@ AxisPosition axis_position(const std::string& option, const std::string& text, c
     double value = 0.0;
     if (!CLI::detail::lexical_cast(part.substr(2), value) || !std::isfinite(value))
       throw error("\"" + part.substr(2) + "\" is not a number", usage);
-    const double unit = is_rotary(*name) ? kRadianPerDegree : kMetrePerMillimetre;
+    const double unit = position_unit(*name).si_per_unit;
     const Axis& axis = machine.axis(*name);
     constexpr double kRounding = 1e-9;
     if (value * unit < axis.travel_min - kRounding || value * unit > axis.travel_max + kRounding) {

@@ -140,13 +140,4 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
   return effect;
 }
 
-void require_axes(const WrittenEffect& effect, const Machine& machine) {
-  for (const EffectAmplitude& amplitude : effect.made->amplitudes()) {
-    if (amplitude.target.kind != TargetKind::Motion || machine.has_axis(amplitude.target.symbol.axis))
-      continue;
-    throw InputError({}, amplitude.label + " acts on an axis that the model's machine does not have",
-                     "name an error motion of one of the machine's axes");
-  }
-}
-
 }  // namespace volcal::cli

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "volcal/model/description/machine.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal::cli {
@@ -23,8 +22,5 @@ void add_parameter_option(CLI::App& app, std::vector<std::string>& parameters);
 /// InputError that names `option` and the column of the text.
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters);
-
-/// Throws InputError when the effect acts on an axis that the machine does not have.
-void require_axes(const WrittenEffect& effect, const Machine& machine);
 
 }  // namespace volcal::cli

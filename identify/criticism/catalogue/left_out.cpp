@@ -5,14 +5,16 @@
 #include <cmath>
 
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
 
 namespace volcal {
 namespace {
 
-constexpr int kDegrees = 6;        // of one function
-constexpr int kSharedDegrees = 4;  // of each of several
+constexpr int kDegrees = 6;                  // of one function
+constexpr int kSharedDegrees = 4;            // of each of several
+constexpr const char* kHeldAtZero = "zero";  // a basis without functions
 
 using Polynomials = std::array<double, kDegrees + 1>;  // by degree
 
@@ -128,11 +130,18 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
         {left_out_spec(names), functions(campaign, rotations, kSharedDegrees,
                                          {kLeftOut, names, "position", "functions"}, "rotations left out")});
   }
-  for (const LocationSymbol& location : campaign.machine.datum.squareness()) {
-    if (!campaign.machine.has_axis(location.axis) || model.layout().find_location(location)) continue;
+  for (const LocationSymbol& location : squareness_errors(campaign.machine)) {
+    if (model.layout().find_location(location)) continue;
     errors.push_back({left_out_spec(location.name()), squareness(location)});
   }
   return errors;
+}
+
+bool is_left_out(const std::string& symbol, const ModelSpec& model) {
+  if (const auto location = LocationSymbol::parse(symbol))
+    return std::ranges::find(model.locations_off, *location) != model.locations_off.end();
+  const auto function = ErrorSymbol::parse(symbol);
+  return function && model.function(*function).basis == kHeldAtZero;
 }
 
 bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {
@@ -140,8 +149,8 @@ bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {
   for (const std::string& name : left_out_symbols(spec)) {
     if (const auto location = LocationSymbol::parse(name)) std::erase(model.locations_off, *location);
     const auto symbol = ErrorSymbol::parse(name);
-    if (!symbol) continue;
-    if (model.default_function.basis == "zero") {
+    if (!symbol || !is_left_out(name, model)) continue;
+    if (model.default_function.basis == kHeldAtZero) {
       model.functions[*symbol] = FunctionSpec{};
     } else {
       model.functions.erase(*symbol);

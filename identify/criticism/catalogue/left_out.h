@@ -21,7 +21,11 @@ struct LeftOutError {
 /// lacking rotations together when there are several.
 std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
 
-/// Gives what `spec` names back to the model; false when it is an effect of the catalogue.
+/// Whether the model holds this function or location error ("EAX", "EC0Y") at zero.
+bool is_left_out(const std::string& symbol, const ModelSpec& model);
+
+/// Gives what `spec` names, and the model leaves out, back to the model; false when it is an effect of the
+/// catalogue.
 bool restore_left_out(const EffectSpec& spec, ModelSpec& model);
 
 }  // namespace volcal

@@ -44,7 +44,7 @@ std::string UnknownFinding::dependence() const {
 
 std::string UnknownFinding::action() const {
   if (!rotation.empty()) return direction + ", as " + rotation;
-  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * 1e3) : direction;
+  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * kPerMilli) : direction;
 }
 
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {

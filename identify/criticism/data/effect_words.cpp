@@ -8,6 +8,8 @@
 #include <sstream>
 #include <utility>
 
+#include "volcal/model/instruments/registry.h"
+
 namespace volcal {
 namespace {
 
@@ -53,7 +55,7 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"tool TOOL", "whether this tool is carried"},
     {"setup", "whether the reading belongs to the setup that the target names"},
     {"run RUN", "whether the reading belongs to this run"},
-    {"ball-bar", "whether a ball-bar reads"},
+    {"INSTRUMENT", "whether an instrument of this sort reads"},
     {"VARIABLES", "variables of the expression", "custom"},
 });
 
@@ -75,9 +77,18 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"EXPRESSION", "the expression", "custom"},
 });
 
+/// "laser-tracer|laser-tracker|..."
+std::string any_instrument() {
+  static const std::regex special(R"([^A-Za-z0-9])");
+  std::string names;
+  for (const Instrument* instrument : instruments())
+    names += (names.empty() ? "" : "|") + std::regex_replace(instrument->schema().name, special, R"(\$&)");
+  return names;
+}
+
 /// Pattern of a word; only what stands for something in the files varies.
 std::regex expression_of(std::string_view pattern) {
-  constexpr std::pair<std::string_view, std::string_view> kPlaces[] = {
+  const std::pair<std::string_view, std::string> places[] = {
       {"SYMBOL ...", "E[XYZABC]0?[XYZABC]( E[XYZABC]0?[XYZABC])*"},
       {"SYMBOL", "E[XYZABC]0?[XYZABC]"},
       {"AXIS", "[xyzabc]"},
@@ -90,12 +101,13 @@ std::regex expression_of(std::string_view pattern) {
       {"TARGET", ".+"},
       {"VARIABLES", ".*"},
       {"EXPRESSION", ".+"},
+      {"INSTRUMENT", any_instrument()},
   };
   std::string text;
   while (!pattern.empty()) {
     const auto* const place =
-        std::ranges::find_if(kPlaces, [&](const auto& each) { return pattern.starts_with(each.first); });
-    if (place != std::end(kPlaces)) {
+        std::ranges::find_if(places, [&](const auto& each) { return pattern.starts_with(each.first); });
+    if (place != std::end(places)) {
       text += place->second;
       pattern.remove_prefix(place->first.size());
       continue;

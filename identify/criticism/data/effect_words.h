@@ -3,7 +3,8 @@
 /// diagnosis.json holds, and --effect and --separate take.
 ///
 /// A word in capitals stands for something of the user's files: SYMBOL (EXX, EC0Y), AXIS (x), PLANE (XY),
-/// TOOL, STATION, SETUP, CHANNEL, RUN. An effect whose words are not here fails its contract test.
+/// TOOL, STATION, SETUP, INSTRUMENT, CHANNEL, RUN. An effect whose words are not here fails its contract
+/// test.
 
 #include <span>
 #include <string>

@@ -7,20 +7,19 @@
 #include <sstream>
 #include <utility>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
 
 using Kind = Variable::Kind;
 
-/// Readings of a ball-bar are taken while the axes move.
-bool is_in_motion(const Setup& setup) { return setup.instrument == "ball-bar"; }
-
 /// Share of the path that an axis moves along, with its sign, from the neighbouring readings of the run; 0 at
 /// rest.
 double share_of_path(const Setup& setup, std::size_t axis, std::size_t row) {
-  if (!is_in_motion(setup)) return 0.0;
+  if (!traits_of(setup).reads_in_motion) return 0.0;
   const auto& readings = setup.readings;
   const auto same_run = [&](std::size_t other) {
     return readings.run.empty() || readings.run[other] == readings.run[row];
@@ -60,12 +59,11 @@ class ScanVariables {
       return setup.readings.time.empty() ? start : setup.readings.time[row];
     });
     for (const std::string& channel : temperature_channels(campaign_)) {
-      add({.kind = Kind::Temperature, .subject = channel},
-          [&channel](const Setup& setup, std::size_t, std::size_t row) {
-            const auto found = setup.readings.temperature.find(channel);
-            return found == setup.readings.temperature.end() ? kEffectReferenceTemperature_degC
-                                                             : found->second[row];
-          });
+      add({.kind = Kind::Temperature, .subject = channel}, [&channel](const Setup& setup, std::size_t,
+                                                                      std::size_t row) {
+        const auto found = setup.readings.temperature.find(channel);
+        return found == setup.readings.temperature.end() ? kReferenceTemperature_degC : found->second[row];
+      });
     }
   }
 
@@ -203,7 +201,7 @@ std::vector<Variable> scan_variables_of(const EffectName& name) {
     if (name.driver.ends_with(" feed")) variables.push_back({Kind::Feed});
   } else if (name.driver.starts_with("run ")) {
     variables.push_back({Kind::Run});
-  } else if (name.driver == "ball-bar") {
+  } else if (find_instrument(name.driver) != nullptr) {
     variables.push_back({.kind = Kind::Instrument, .subject = name.driver});
   } else if (!name.driver.starts_with("tool")) {
     std::istringstream drivers(name.driver);

@@ -76,7 +76,7 @@ class MachineReader {
 
   Axis read_axis(const TomlTable& table, AxisName name) {
     const bool rotary = is_rotary(name);
-    const std::string unit = rotary ? "deg" : "mm";
+    const std::string unit(position_unit(name).suffix);
     Axis axis;
     axis.name = name;
     reject_other_family(table, rotary);

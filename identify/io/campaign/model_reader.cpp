@@ -10,6 +10,7 @@
 #include "volcal/identify/text/text_file.h"
 #include "volcal/identify/text/toml_document.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 
@@ -21,23 +22,6 @@ constexpr double kSamePosition = 1e-9;  // m or rad
 
 std::string coefficient_key(ErrorSymbol symbol) {
   return "coefficients_" + std::string(edge_unit(symbol.component));
-}
-
-/// Location errors that exist on a machine: the datum's three squareness errors, and of each rotary axis all
-/// but the displacement along it.
-std::vector<LocationSymbol> location_symbols(const Machine& machine) {
-  std::vector<LocationSymbol> symbols;
-  for (const LocationSymbol& symbol : machine.datum.squareness()) {
-    if (machine.has_axis(symbol.axis)) symbols.push_back(symbol);
-  }
-  for (const Axis& axis : machine.axes) {
-    if (!is_rotary(axis.name)) continue;
-    for (const Component component : kAllComponents) {
-      const bool along = !is_rotation(component) && direction_of(component) == direction_of(axis.name);
-      if (!along) symbols.push_back({component, axis.name});
-    }
-  }
-  return symbols;
 }
 
 std::vector<std::string> function_names(const Machine& machine) {
@@ -90,7 +74,7 @@ class ModelReader {
   void reject_location_as_function(const TomlTable& functions, const std::string& name) const {
     const auto location = LocationSymbol::parse(std::string(stem_of_key(name)));
     if (!location) return;
-    const auto known = location_symbols(machine_);
+    const auto known = possible_locations(machine_);
     const std::string symbol = location->name();
     if (std::ranges::find(known, *location) != known.end()) {
       functions.fail(name, "functions." + printable(name) + " is a location error, no error motion",
@@ -227,15 +211,12 @@ class ModelReader {
   /// The default basis must fit every axis of which a function is left to it.
   void check_default() const {
     const BasisKind& kind = *find_basis(spec_.default_function.basis);
-    for (const Axis& axis : machine_.axes) {
-      if (is_rotary(axis.name) ? kind.rotary_axes : kind.linear_axes) continue;
-      for (const Component component : kAllComponents) {
-        const ErrorSymbol symbol{component, axis.name};
-        if (spec_.functions.contains(symbol)) continue;
-        root_.fail("functions",
-                   "the default basis \"" + spec_.default_function.basis + "\" does not fit " + symbol.name(),
-                   "give " + symbol.name() + " its own basis");
-      }
+    for (const ErrorSymbol symbol : modelled_motions(machine_, spec_)) {
+      const bool fits = is_rotary(symbol.axis) ? kind.rotary_axes : kind.linear_axes;
+      if (fits || spec_.functions.contains(symbol)) continue;
+      root_.fail("functions",
+                 "the default basis \"" + spec_.default_function.basis + "\" does not fit " + symbol.name(),
+                 "give " + symbol.name() + " its own basis");
     }
   }
 
@@ -245,7 +226,7 @@ class ModelReader {
     for (const std::string& key : table->keys()) {
       const std::string stem(stem_of_key(key));
       const auto symbol = LocationSymbol::parse(stem);
-      const auto known = location_symbols(machine_);
+      const auto known = possible_locations(machine_);
       if (!symbol || std::ranges::find(known, *symbol) == known.end()) fail_location(*table, key, known);
       if (table->kind(stem) == TomlKind::Text) {
         table->choice(stem, {"zero"});

@@ -8,10 +8,7 @@
 
 namespace volcal {
 
-std::string axis_column(AxisName axis) {
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-  return std::string(1, letter) + (is_rotary(axis) ? "_deg" : "_mm");
-}
+std::string axis_column(AxisName axis) { return position_column(axis); }
 
 std::string direction_column(AxisName axis) {
   const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));

@@ -11,6 +11,7 @@
 #include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
@@ -30,23 +31,6 @@ constexpr ToleranceClass kClasses[] = {
     {"positioning_um", is_positioning}, {"straightness_um", is_straight}, {"angles_urad", is_angular}};
 constexpr const char* kSquareness = "squareness_urad";
 
-std::vector<ErrorSymbol> linear_motions(const Machine& machine) {
-  std::vector<ErrorSymbol> symbols;
-  for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) continue;
-    for (const Component component : kAllComponents) symbols.push_back({component, axis.name});
-  }
-  return symbols;
-}
-
-std::vector<LocationSymbol> squareness_of_machine(const Machine& machine) {
-  std::vector<LocationSymbol> symbols;
-  for (const LocationSymbol symbol : machine.datum.squareness()) {
-    if (machine.has_axis(symbol.axis)) symbols.push_back(symbol);
-  }
-  return symbols;
-}
-
 template <class Symbol>
 std::string key_of(Symbol symbol) {
   return symbol.name() + "_" + std::string(edge_unit(symbol.component));
@@ -61,10 +45,10 @@ class ToleranceReader {
 
   Tolerances read() {
     read_classes();
-    for (const ErrorSymbol symbol : linear_motions(machine_)) {
+    for (const ErrorSymbol symbol : linear_axis_motions(machine_)) {
       if (const auto width = width_of(key_of(symbol))) tolerances_.functions[symbol] = *width;
     }
-    for (const LocationSymbol symbol : squareness_of_machine(machine_)) {
+    for (const LocationSymbol symbol : squareness_errors(machine_)) {
       if (const auto width = width_of(key_of(symbol))) tolerances_.squareness[symbol] = *width;
     }
     for (const std::string& key : table_.keys()) refuse_other(key);
@@ -82,13 +66,13 @@ class ToleranceReader {
     for (const ToleranceClass& each : kClasses) {
       const auto width = width_of(each.key);
       if (!width) continue;
-      for (const ErrorSymbol symbol : linear_motions(machine_)) {
+      for (const ErrorSymbol symbol : linear_axis_motions(machine_)) {
         if (each.holds(symbol)) tolerances_.functions[symbol] = *width;
       }
     }
     const auto width = width_of(kSquareness);
     if (!width) return;
-    const auto symbols = squareness_of_machine(machine_);
+    const auto symbols = squareness_errors(machine_);
     if (symbols.empty())
       table_.fail(kSquareness, "the machine has no squareness", "leave squareness_urad out");
     for (const LocationSymbol symbol : symbols) tolerances_.squareness[symbol] = *width;
@@ -98,8 +82,8 @@ class ToleranceReader {
     std::vector<std::string> keys;
     for (const ToleranceClass& each : kClasses) keys.emplace_back(each.key);
     keys.emplace_back(kSquareness);
-    for (const ErrorSymbol symbol : linear_motions(machine_)) keys.push_back(key_of(symbol));
-    for (const LocationSymbol symbol : squareness_of_machine(machine_)) keys.push_back(key_of(symbol));
+    for (const ErrorSymbol symbol : linear_axis_motions(machine_)) keys.push_back(key_of(symbol));
+    for (const LocationSymbol symbol : squareness_errors(machine_)) keys.push_back(key_of(symbol));
     return keys;
   }
 

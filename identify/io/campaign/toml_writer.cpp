@@ -35,8 +35,7 @@ std::string key_text(const std::string& key) {
 
 std::string axis_toml(const Axis& axis) {
   const bool rotary = is_rotary(axis.name);
-  const std::string unit = rotary ? "deg" : "mm";
-  const double factor = rotary ? kRadianPerDegree : kMetrePerMillimetre;
+  const auto [unit, factor] = position_unit(axis.name);
   std::string text = fmt::format("\n[axes.{}]\n", letter_of(axis.name));
   text += fmt::format("travel_{} = {}\n", unit, array(std::array{axis.travel_min, axis.travel_max}, factor));
   text += fmt::format("home_{} = {}\n", unit, edge_number(axis.home, factor));
@@ -61,9 +60,8 @@ std::string knots_toml(const FunctionSpec& spec, std::optional<AxisName> axis) {
     case KnotChoice::Explicit:
       break;
   }
-  const bool rotary = axis && is_rotary(*axis);
-  return fmt::format(", knots_{} = {}", rotary ? "deg" : "mm",
-                     array(spec.breakpoints, rotary ? kRadianPerDegree : kMetrePerMillimetre));
+  const Unit unit = position_unit(axis.value_or(AxisName::X));
+  return fmt::format(", knots_{} = {}", unit.suffix, array(spec.breakpoints, unit.si_per_unit));
 }
 
 std::string function_toml(const FunctionSpec& spec, std::optional<ErrorSymbol> symbol) {
@@ -97,7 +95,7 @@ std::string priors_toml(const PriorWidths& priors) {
   };
   add("displacement_um", priors.displacement, kMicro);
   add("rotation_urad", priors.rotation, kMicro);
-  add("squareness_mrad", priors.squareness, 1e-3);
+  add("squareness_mrad", priors.squareness, kRadianPerMilliradian);
   return text;
 }
 

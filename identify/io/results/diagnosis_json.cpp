@@ -104,7 +104,7 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"with_one_of", unknown.with_one_of},
           {"direction", unknown.direction},
           {"rotation", unknown.rotation},
-          {"period_mm", unknown.period > 0.0 ? Json(unknown.period * 1e3) : Json()},
+          {"period_mm", unknown.period > 0.0 ? Json(unknown.period * kPerMilli) : Json()},
           {"rms_um", micro(unknown.rms)},
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }

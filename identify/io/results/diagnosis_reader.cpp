@@ -179,7 +179,7 @@ void read_noise(const Json& json, Diagnosis& diagnosis) {
 /// Files written before waves were looked for have none.
 double wave_period(const Json& unknown) {
   const auto found = unknown.find("period_mm");
-  return found == unknown.end() || found->is_null() ? 0.0 : found->get<double>() * 1e-3;
+  return found == unknown.end() || found->is_null() ? 0.0 : found->get<double>() * kMetrePerMillimetre;
 }
 
 Diagnosis diagnosis_from(const Json& json) {

@@ -21,10 +21,6 @@ MonteCarloJson finite(double value) {
   return std::isfinite(value) ? MonteCarloJson(value) : MonteCarloJson(nullptr);
 }
 
-double position_edge(AxisName axis, double q) {
-  return q / (is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre);
-}
-
 MonteCarloJson interval_json(const CoverageInterval& interval, double per_unit) {
   return {finite(interval.low / per_unit), finite(interval.high / per_unit)};
 }
@@ -35,8 +31,8 @@ MonteCarloJson quantity_json(const QuantityResult& value) {
   MonteCarloJson json = {{"kind", std::string(to_string(quantity.kind))}, {"name", quantity.name}};
   if (quantity.axis) {
     json["axis"] = std::string(1, letter_of(*quantity.axis));
-    json["position"] = position_edge(*quantity.axis, quantity.position);
-    json["position_unit"] = is_rotary(*quantity.axis) ? "deg" : "mm";
+    json["position"] = quantity.position / position_unit(*quantity.axis).si_per_unit;
+    json["position_unit"] = position_unit(*quantity.axis).suffix;
     json["direction"] = quantity.direction;
   }
   if (!quantity.tool.empty()) json["tool"] = quantity.tool;
@@ -126,8 +122,8 @@ std::string montecarlo_csv(const MonteCarloResult& result) {
     fmt::format_to(out, "{},{},", to_string(quantity.kind), csv_cell(quantity.name));
     if (quantity.axis) {
       fmt::format_to(out, "{},{:.10g},{},{},", letter_of(*quantity.axis),
-                     position_edge(*quantity.axis, quantity.position),
-                     is_rotary(*quantity.axis) ? "deg" : "mm", quantity.direction);
+                     quantity.position / position_unit(*quantity.axis).si_per_unit,
+                     position_unit(*quantity.axis).suffix, quantity.direction);
     } else {
       fmt::format_to(out, ",,,,");
     }

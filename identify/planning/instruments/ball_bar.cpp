@@ -45,6 +45,8 @@ class PlannedBallBar : public PlanInstrument {
  public:
   std::string name() const override { return "ball-bar"; }
 
+  std::string study_kind() const override { return "ball-bar-circles"; }
+
   InstrumentWords words() const override {
     return {
         "place", "places", "Places of the centre ball, workpiece coordinates", "centre balls may stand",

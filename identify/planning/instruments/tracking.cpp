@@ -18,6 +18,8 @@ class PlannedTracking : public PlanInstrument {
 
   std::string name() const override { return angles_ ? "laser-tracker" : "laser-tracer"; }
 
+  std::string study_kind() const override { return name(); }
+
   InstrumentWords words() const override {
     return {
         "station", "stations", "Stations, workpiece coordinates", "stations may stand",

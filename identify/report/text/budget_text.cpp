@@ -6,6 +6,7 @@
 
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/budget_shares.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -31,11 +32,11 @@ std::string halving_table(const MonteCarloResult& result, const std::vector<std:
   TextTable table(
       {{"source", Align::Left}, {"u would be [um]"}, {"less by"}},
       fmt::format("If one source were half as large: u of ex, ey, ez in the volume, now {} um RMS",
-                  short_number(now * 1e6)));
+                  short_number(now * kPerMicro)));
   for (std::size_t k = 0; k < sources.size(); ++k) {
     const double half = volume_u(result, result.budget.u_with_half_of(sources[k]));
-    table.add_row({fmt::format("[{}] {}", k + 1, result.budget.sources[sources[k]]), short_number(half * 1e6),
-                   fixed_number(100.0 * (1.0 - half / now), 1) + " %"});
+    table.add_row({fmt::format("[{}] {}", k + 1, result.budget.sources[sources[k]]),
+                   short_number(half * kPerMicro), fixed_number(100.0 * (1.0 - half / now), 1) + " %"});
   }
   return "\n" + table.text();
 }

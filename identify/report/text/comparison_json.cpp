@@ -118,7 +118,7 @@ Json figures_json(const StandardFigures& figures) {
   for (const CircleTest& test : figures.circles) {
     json["iso230_4"].push_back({{"setup", test.setup},
                                 {"plane", std::string{letter_of(test.first), letter_of(test.second)}},
-                                {"radius_mm", test.radius * 1e3},
+                                {"radius_mm", test.radius * kPerMilli},
                                 {"readings", circular_json(test, test.figures.readings)},
                                 {"model", circular_json(test, test.figures.model)},
                                 {"notes", test.notes}});
@@ -178,7 +178,7 @@ Json model_json(const Campaign& campaign, const ComparedModel& model) {
                      {"contradict", model.screening->contradicts},
                      {"leading", model.screening->leading},
                      {"log10_p", model.screening->log10_p},
-                     {"rms_um", model.screening->rms * 1e6}};
+                     {"rms_um", model.screening->rms * kPerMicro}};
   }
   return json;
 }

@@ -8,6 +8,7 @@
 #include "volcal/identify/report/text/standard_figures_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -64,7 +65,7 @@ std::string list_of(const std::vector<std::pair<std::string, const ComparisonCel
 }
 
 std::string size_cell(const ResidualSize& size, double ResidualSize::*figure) {
-  return size.count == 0 ? "-" : fixed_number(size.*figure * 1e6, 2);
+  return size.count == 0 ? "-" : fixed_number(size.*figure * kPerMicro, 2);
 }
 
 std::string mark(const ComparisonCell& cell) {
@@ -123,7 +124,7 @@ class CellColumns {
     if (!two_) return;
     const ResidualSize &a = of_models[0]->*kind, &b = of_models[1]->*kind;
     const bool both = a.count > 0 && b.count > 0;
-    cells.push_back(both ? fixed_number((b.rms - a.rms) * 1e6, 2) : "-");
+    cells.push_back(both ? fixed_number((b.rms - a.rms) * kPerMicro, 2) : "-");
     cells.push_back(both && a.rms > 0.0 ? fixed_number(b.rms / a.rms, 3) : "-");
   }
 
@@ -262,9 +263,10 @@ std::string worst_text(const Campaign& campaign, std::span<const ComparedModel> 
     std::vector<std::string> row = {setup.name, std::to_string(record.source_line),
                                     channel_column(setup, channel)};
     for (const ComparedModel& model : models)
-      row.push_back(fixed_number(model.records[i].residual() * 1e6, 2));
-    if (two) row.push_back(fixed_number((models[1].records[i].residual() - record.residual()) * 1e6, 2));
-    row.push_back(fixed_number(record.sigma * 1e6, 2));
+      row.push_back(fixed_number(model.records[i].residual() * kPerMicro, 2));
+    if (two)
+      row.push_back(fixed_number((models[1].records[i].residual() - record.residual()) * kPerMicro, 2));
+    row.push_back(fixed_number(record.sigma * kPerMicro, 2));
     row.push_back(residual_unit(setup, channel));
     for (const ComparedModel& model : models) {
       row.push_back(fixed_number(model.records[i].residual() / model.records[i].sigma, 1));
@@ -280,8 +282,8 @@ std::string against_sentence(const Comparison& a, const Comparison& b, const std
   std::string text;
   const auto add = [&](const ResidualSize& of_a, const ResidualSize& of_b, const char* unit) {
     if (of_a.count == 0 || of_b.count == 0) return;
-    text += fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", fixed_number(of_a.rms * 1e6, 2),
-                        fixed_number(of_b.rms * 1e6, 2), unit);
+    text += fmt::format("{}RMS {} -> {} {}", text.empty() ? "" : ", ", fixed_number(of_a.rms * kPerMicro, 2),
+                        fixed_number(of_b.rms * kPerMicro, 2), unit);
     if (of_a.rms > 0.0) text += fmt::format(" ({} times)", fixed_number(of_b.rms / of_a.rms, 3));
   };
   add(a.total.lengths, b.total.lengths, "um");

@@ -18,6 +18,8 @@ namespace volcal {
 namespace {
 
 constexpr std::size_t kRanked = 12;
+constexpr std::size_t kLeadingNotes = 2;
+constexpr std::size_t kLeadingUnknown = 3;
 constexpr double kNear = 0.9;               // cosine
 constexpr std::size_t kMostAmplitudes = 3;  // of an effect; functions that the model leaves out have more
 
@@ -133,10 +135,11 @@ std::string noise_text(const Diagnosis& diagnosis) {
   return table.text();
 }
 
-std::string unknown_table(const Diagnosis& diagnosis) {
+std::string unknown_table(const Diagnosis& diagnosis, std::size_t most) {
   TextTable table({{"depends on", Align::Left}, {"along", Align::Left}, {"rms [um]"}, {"log10 p"}},
                   "What the generic scans still see");
-  for (const UnknownFinding& unknown : diagnosis.unknown) {
+  for (std::size_t i = 0; i < std::min(most, diagnosis.unknown.size()); ++i) {
+    const UnknownFinding& unknown = diagnosis.unknown[i];
     table.add_row({unknown.dependence(), unknown.action(), edge(unknown.rms, kMicro),
                    fixed_number(unknown.log10_p, 1)});
   }
@@ -177,6 +180,18 @@ std::string removed_text(const Diagnosis& diagnosis) {
   return text;
 }
 
+/// "  reversal EXX: 1.40 +- 0.05 um, log10 p -45.2": its amplitudes, the largest number of which is
+/// kMostAmplitudes.
+std::string effect_line(const EffectFinding& effect) {
+  std::vector<std::string> amplitudes;
+  for (const AmplitudeFigure& each : effect.amplitudes) {
+    amplitudes.push_back(fmt::format("{} {} +- {} {}", each.label, edge(each.value, each.si_per_unit),
+                                     edge(kCoverageFactor * each.u, each.si_per_unit, 2), each.unit));
+  }
+  if (amplitudes.empty() || amplitudes.size() > kMostAmplitudes) amplitudes = {effect.label};
+  return fmt::format("  {}; log10 p {}\n", fmt::join(amplitudes, ", "), fixed_number(effect.log10_p, 1));
+}
+
 }  // namespace
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
@@ -193,6 +208,21 @@ std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
   return all;
 }
 
+std::string diagnosis_summary_text(const Diagnosis& diagnosis) {
+  std::string text = to_string(diagnosis.verdict) + "\n";
+  for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
+  if (diagnosis.ladder.size() > 1) text += ladder_table(diagnosis);
+  for (const EffectFinding& effect : diagnosis.effects) text += effect_line(effect);
+  if (!diagnosis.unknown.empty()) text += unknown_table(diagnosis, kLeadingUnknown);
+  if (!diagnosis.next_measurement.empty()) text += "next: " + diagnosis.next_measurement.front() + "\n";
+  const std::size_t shown = std::min(kLeadingNotes, diagnosis.notes.size());
+  for (std::size_t i = 0; i < shown; ++i) text += "! " + sentence(diagnosis.notes[i]) + "\n";
+  const std::size_t more = diagnosis.notes.size() - shown +
+                           (diagnosis.not_looked_for.empty() ? 0 : diagnosis.not_looked_for.size());
+  if (more > 0) text += fmt::format("! and {} more note{} (--verbose)\n", more, more == 1 ? "" : "s");
+  return text;
+}
+
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
   std::string text = to_string(diagnosis.verdict) + "\n";
@@ -202,12 +232,11 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
   for (const auto* set : sets_of_alternatives(diagnosis))
     text += "\n" + evidence_table(*set, ranked, "The readings cannot separate", set->size());
-  if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis);
+  if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
   text +=
       "  MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from "
-      "every "
-      "other effect, the worst of which is the rival\n";
+      "every other effect, the worst of which is the rival\n";
   text += confounding_table(diagnosis.confounding);
   if (!diagnosis.next_measurement.empty()) {
     text += "\nWhich measurement next\n";

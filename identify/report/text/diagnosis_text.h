@@ -8,6 +8,10 @@
 
 namespace volcal {
 
+/// A dozen lines: the verdict, how the error fell, what was added, what to measure next.
+std::string diagnosis_summary_text(const Diagnosis& diagnosis);
+
+/// All of it.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
 /// Effects by rank, most likely first, each once: what was added, what could not be separated, the ranking.

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
@@ -60,16 +61,11 @@ std::vector<std::string> design_cells(const BudgetLine& line, const Tolerances& 
 /// Errors of the linear axes that no tolerance bounds.
 std::vector<std::string> without_tolerance(const Machine& machine, const Tolerances& tolerances) {
   std::vector<std::string> names;
-  for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) continue;
-    for (const Component component : kAllComponents) {
-      const ErrorSymbol symbol{component, axis.name};
-      if (!tolerances.functions.contains(symbol)) names.push_back(symbol.name());
-    }
+  for (const ErrorSymbol symbol : linear_axis_motions(machine)) {
+    if (!tolerances.functions.contains(symbol)) names.push_back(symbol.name());
   }
-  for (const LocationSymbol symbol : machine.datum.squareness()) {
-    if (machine.has_axis(symbol.axis) && !tolerances.squareness.contains(symbol))
-      names.push_back(symbol.name());
+  for (const LocationSymbol symbol : squareness_errors(machine)) {
+    if (!tolerances.squareness.contains(symbol)) names.push_back(symbol.name());
   }
   return names;
 }

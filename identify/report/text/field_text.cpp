@@ -64,11 +64,11 @@ std::vector<std::string> unmeasured_travel(const FitResult& result) {
   for (const Axis& axis : result.machine.axes) {
     const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
     if (!(first > axis.travel_min + kNoticed) && !(last < axis.travel_max - kNoticed)) continue;
-    const double unit = is_rotary(axis.name) ? kRadianPerDegree : kMetrePerMillimetre;
+    const auto [suffix, unit] = position_unit(axis.name);
     sentences.push_back(fmt::format(
         "{} was measured from {:g} to {:g} of {:g} to {:g} {}: beyond it the last measured error is held",
         letter_of(axis.name), first / unit, last / unit, axis.travel_min / unit, axis.travel_max / unit,
-        is_rotary(axis.name) ? "deg" : "mm"));
+        suffix));
   }
   return sentences;
 }

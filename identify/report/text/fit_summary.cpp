@@ -5,18 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
 namespace {
 
 constexpr std::size_t kListedOutliers = 10;
+constexpr std::size_t kLeadingMessages = 3;
+constexpr std::size_t kLeadingEffects = 4;
 
 std::string headline(const FitResult& result, const Campaign& campaign) {
   return fmt::format(
@@ -37,23 +42,39 @@ std::string reference_line(const FitResult& result) {
          temperature + ".\n";
 }
 
-/// Range of a function and its largest uncertainty where it was measured.
-void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
-                      const Observability& error, TextTable& text) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  double low = kNone, high = kNone, largest_u = kNone;
+/// Values of an error where it was measured, SI; NaN where nothing was.
+struct ErrorRange {
+  double low = std::nan(""), high = std::nan("");
+  double expanded = std::nan("");  ///< largest U95
+
+  double magnitude() const { return std::fmax(std::abs(low), std::abs(high)); }
+};
+
+ErrorRange range_of(const FitResult& result, const std::vector<ErrorTableRow>& table,
+                    const Observability& error) {
+  if (const ParameterBlock* block = result.layout.find_block(error.symbol)) {
+    const double value = result.parameters[block->offset];
+    return {value, value, result.coverage_factor * error.u_rms};
+  }
+  ErrorRange range;
   for (const ErrorTableRow& row : table) {
     if (row.symbol != error.symbol || row.extrapolated) continue;
-    low = std::fmin(low, row.value);
-    high = std::fmax(high, row.value);
-    largest_u = std::fmax(largest_u, row.u);
+    range.low = std::fmin(range.low, row.value);
+    range.high = std::fmax(range.high, row.value);
+    range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
   }
+  return range;
+}
+
+void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
+                      const Observability& error, TextTable& text) {
+  const ErrorRange range = range_of(result, table, error);
   const auto symbol = ErrorSymbol::parse(error.symbol);
   const bool rotation = symbol && is_rotation(symbol->component);
-  const auto value = [](double si) { return fixed_number(si * 1e6, 2); };
-  text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(low) : "-",
-                error.visible ? value(high) : "-", value(result.coverage_factor * error.u_rms),
-                value(result.coverage_factor * largest_u), fixed_number(error.visible_fraction, 2),
+  const auto value = [](double si) { return fixed_number(si * kPerMicro, 2); };
+  text.add_row({error.symbol, rotation ? "urad" : "um", error.visible ? value(range.low) : "-",
+                error.visible ? value(range.high) : "-", value(result.coverage_factor * error.u_rms),
+                value(range.expanded), fixed_number(error.visible_fraction, 2),
                 fixed_number(error.effective_parameters, 1), error.visible ? "" : "NOT VISIBLE"});
 }
 
@@ -121,9 +142,7 @@ std::string noise_table_text(const NoiseSummary& noise) {
   if (!noise.estimated) return "Noise: readings taken as independent; nothing else was looked for.\n";
   if (!noise.more_than_white)
     return "Noise: independent readings suffice; no correlated drift, line offset or part in proportion to "
-           "length "
-           "is "
-           "supported.\n";
+           "length is supported.\n";
   TextTable text(
       {{"instrument", Align::Left},
        {"term", Align::Left},
@@ -177,6 +196,125 @@ std::string outliers_table(const FitResult& result, const Campaign& campaign) {
   return text.text() + more;
 }
 
+/// What the summary says of errors of one unit.
+struct ErrorExtremes {
+  std::string largest;         ///< symbol
+  double value = 0.0;          ///< its largest magnitude, edge unit
+  std::string most_uncertain;  ///< symbol
+  double expanded = 0.0;       ///< its largest U95 where it was measured, edge unit
+};
+
+bool is_angle(const FitResult& result, const std::string& symbol) {
+  if (const ParameterBlock* block = result.layout.find_block(symbol)) return block->units[0] == "urad";
+  const auto parsed = ErrorSymbol::parse(symbol);
+  return parsed && is_rotation(parsed->component);
+}
+
+bool is_effect(const FitResult& result, const Observability& error) {
+  const ParameterBlock* block = result.layout.find_block(error.symbol);
+  return block != nullptr && block->kind == ParameterKind::Effect;
+}
+
+void extend_extremes(const Observability& error, const ErrorRange& range, ErrorExtremes& extremes) {
+  if (range.magnitude() * kPerMicro >= extremes.value) {
+    extremes.value = range.magnitude() * kPerMicro;
+    extremes.largest = error.symbol;
+  }
+  if (range.expanded * kPerMicro >= extremes.expanded) {
+    extremes.expanded = range.expanded * kPerMicro;
+    extremes.most_uncertain = error.symbol;
+  }
+}
+
+/// "21 of 21 errors identified", and the largest and most uncertain of positions and of angles.
+std::string errors_lines(const FitResult& result) {
+  const auto table = error_table(result);
+  std::map<bool, ErrorExtremes> extremes;  // of angles
+  std::vector<std::string> invisible;
+  std::size_t errors = 0;
+  for (const Observability& error : result.rank.errors) {
+    if (is_effect(result, error)) continue;
+    ++errors;
+    if (error.visible) {
+      extend_extremes(error, range_of(result, table, error), extremes[is_angle(result, error.symbol)]);
+    } else {
+      invisible.push_back(error.symbol);
+    }
+  }
+  std::string text = fmt::format("{} of {} errors identified{}\n", errors - invisible.size(), errors,
+                                 invisible.empty() ? "" : "; not visible: " + listed_names(invisible));
+  for (const auto& [angle, of_unit] : extremes) {
+    const char* unit = angle ? "urad" : "um";
+    text += fmt::format("  {}: largest {} {:.2f} {}; U95 at most {:.2f} {} ({})\n",
+                        angle ? "rotations and squareness" : "positions and straightness", of_unit.largest,
+                        of_unit.value, unit, of_unit.expanded, unit, of_unit.most_uncertain);
+  }
+  return text;
+}
+
+/// The first effects of the model with their amplitudes.
+std::string effects_lines(const FitResult& result) {
+  std::string text;
+  std::size_t shown = 0, more = 0;
+  for (const Observability& error : result.rank.errors) {
+    if (!is_effect(result, error)) continue;
+    if (shown++ >= kLeadingEffects) {
+      ++more;
+      continue;
+    }
+    const ParameterBlock& block = *result.layout.find_block(error.symbol);
+    text += fmt::format("  {}: {:.3g} +- {:.2g} {}{}\n", error.symbol,
+                        result.parameters[block.offset] / block.si_per_unit[0],
+                        result.coverage_factor * error.u_rms / block.si_per_unit[0], block.units[0],
+                        error.visible ? "" : ", not visible");
+  }
+  if (more > 0)
+    text += fmt::format("  and {} more amplitude{} of effects (--verbose)\n", more, more == 1 ? "" : "s");
+  return text;
+}
+
+std::string setups_line(const FitResult& result) {
+  const auto ratio = [](const SetupSummary& setup) {
+    return setup.redundancy > 0.0 ? setup.chi2 / setup.redundancy : 0.0;
+  };
+  const auto worst = std::ranges::max_element(result.setups, {}, ratio);
+  if (worst == result.setups.end()) return {};
+  return fmt::format("Setups: {} scatters most, chi2/dof {:.2f}, RMS {:.2f} {}\n", worst->name, ratio(*worst),
+                     worst->rms_residual * 1e6, worst->reading_unit);
+}
+
+std::string noise_line(const NoiseSummary& noise) {
+  if (!noise.estimated || !noise.more_than_white) return noise_table_text(noise);
+  std::vector<std::string> terms;
+  for (const NoiseRow& row : noise.rows) {
+    if (row.value == 0.0 || row.term == "tau" || row.term == "white") continue;
+    const std::string& instrument = noise.groups[row.instrument];
+    const EdgeNoise edge = edge_noise(row, instrument);
+    terms.push_back(
+        fmt::format("{} {} {} {}", instrument, edge.meaning, short_number(edge.value, 2), edge.unit));
+  }
+  return fmt::format("Noise beyond independent readings: {}\n", fmt::join(terms, "; "));
+}
+
+std::string outliers_line(const FitResult& result) {
+  const auto flagged = std::ranges::count_if(result.residuals, report::is_suspect);
+  if (flagged == 0) return {};
+  return fmt::format("{} reading{} flagged by the w-test (|w| > {:.2f})\n", flagged, flagged == 1 ? "" : "s",
+                     result.outlier_critical_value);
+}
+
+/// The first messages, and how many more there are.
+std::string leading_messages(const FitResult& result) {
+  const std::size_t shown = std::min(kLeadingMessages, result.findings.size());
+  std::string text;
+  for (std::size_t i = 0; i < shown; ++i) text += "! " + sentence(result.findings[i]) + "\n";
+  if (shown < result.findings.size()) {
+    const std::size_t more = result.findings.size() - shown;
+    text += fmt::format("! and {} more message{} (--verbose)\n", more, more == 1 ? "" : "s");
+  }
+  return text;
+}
+
 std::string notes(const FitResult& result) {
   std::string text = rank_text(result) + "\n";
   for (const std::string& message : sentences(result.findings)) text += "! " + message + "\n";
@@ -193,9 +331,8 @@ std::string rank_text(const FitResult& result) {
   if (rest == 0) return text + ".";
   if (std::ranges::any_of(result.functions, &FunctionSummary::smoothed)) {
     text += fmt::format(
-        "; with automatic knots, which are finer than the data, the other {} are detail between the readings "
-        "that "
-        "the smoothing prior holds: resolution, not invisibility",
+        "; with automatic knots, which are finer than the data, the other {} are detail between the "
+        "readings that the smoothing prior holds: resolution, not invisibility",
         rest);
     return text + (result.rank.invisible.empty() ? "." : ", except for the errors named here.");
   }
@@ -204,7 +341,7 @@ std::string rank_text(const FitResult& result) {
   return text + fmt::format("; {} combinations are not determined, in the errors named here.", rest);
 }
 
-std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
+std::string fit_text(const FitResult& result, const Campaign& campaign) {
   std::string text = headline(result, campaign) + reference_line(result);
   for (const std::string& part :
        {errors_table(result), setups_table(result), variance_table(result), noise_table_text(result.noise),
@@ -212,6 +349,12 @@ std::string fit_summary_text(const FitResult& result, const Campaign& campaign) 
     if (!part.empty()) text += "\n" + part;
   }
   return text;
+}
+
+std::string fit_summary_text(const FitResult& result, const Campaign& campaign) {
+  return headline(result, campaign) + reference_line(result) + errors_lines(result) + effects_lines(result) +
+         setups_line(result) + noise_line(result.noise) + outliers_line(result) + rank_text(result) + "\n" +
+         leading_messages(result);
 }
 
 }  // namespace volcal

@@ -1,5 +1,5 @@
 #pragma once
-/// What `volcal fit` prints: one page of text that says what was found, how well, and what was not.
+/// What `volcal fit` prints.
 
 #include <string>
 
@@ -11,6 +11,10 @@ namespace volcal {
 /// One sentence: how many parameters the readings alone determine, and what holds the rest.
 std::string rank_text(const FitResult& result);
 
+/// A dozen lines: what was found, how well, what was not, what to mind.
 std::string fit_summary_text(const FitResult& result, const Campaign& campaign);
+
+/// All of it: every error, setup, noise term, flagged reading and message.
+std::string fit_text(const FitResult& result, const Campaign& campaign);
 
 }  // namespace volcal

@@ -13,9 +13,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kPerMicrometre = 1e6;
-constexpr double kPerMillimetre = 1e3;
-
 std::string joined_words(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -27,7 +24,7 @@ std::string hours(double seconds) {
 }
 
 std::string tolerance_text(double tolerance) {
-  return tolerance > 0.0 ? fixed_number(tolerance * kPerMillimetre, 0) : "< 10";
+  return tolerance > 0.0 ? fixed_number(tolerance * kPerMilli, 0) : "< 10";
 }
 
 /// Plan, what it is compared with, the user's own.
@@ -42,9 +39,9 @@ InstrumentWords words_of(const CampaignPlan& plan) { return plan_instrument_of(p
 
 /// "100 mm, u 0.5 um"
 std::string bar_words(const PlannedBar& bar) {
-  const std::string length = fmt::format("{:g} mm", bar.length * kPerMillimetre);
+  const std::string length = fmt::format("{:g} mm", bar.length * kPerMilli);
   if (!bar.length_sigma) return length + ", length unknown";
-  return fmt::format("{}, u {:g} um", length, *bar.length_sigma * kPerMicrometre);
+  return fmt::format("{}, u {:g} um", length, *bar.length_sigma * kPerMicro);
 }
 
 /// "short 76, side_x 90"; where a tool has several parts "short XY 72, short YZ 66".
@@ -94,7 +91,7 @@ std::string layout_table(const CampaignPlan& plan) {
                    {"readings by tool", Align::Left}},
                   words.heading);
   for (std::size_t i = 0; i < layout.stations_w.size(); ++i) {
-    const Eigen::Vector3d at = layout.stations_w[i] * kPerMillimetre;
+    const Eigen::Vector3d at = layout.stations_w[i] * kPerMilli;
     const bool known = i < plan.searched.station_tolerance.size();
     table.add_row({layout.station_names[i], fixed_number(at.x(), 0), fixed_number(at.y(), 0),
                    fixed_number(at.z(), 0), known ? tolerance_text(plan.searched.station_tolerance[i]) : "-",
@@ -104,8 +101,8 @@ std::string layout_table(const CampaignPlan& plan) {
   if (!plan.searched.as_good_w.empty()) {
     std::vector<std::string> places;
     for (const Eigen::Vector3d& at : plan.searched.as_good_w) {
-      places.push_back(fmt::format("[{:.0f}, {:.0f}, {:.0f}]", at.x() * kPerMillimetre,
-                                   at.y() * kPerMillimetre, at.z() * kPerMillimetre));
+      places.push_back(fmt::format("[{:.0f}, {:.0f}, {:.0f}]", at.x() * kPerMilli, at.y() * kPerMilli,
+                                   at.z() * kPerMilli));
     }
     text += fmt::format("  as good within {:.1f} %: {} mm\n",
                         std::max(0.1, 100.0 * (plan.searched.as_good_ratio - 1.0)), joined_words(places));
@@ -131,10 +128,10 @@ std::string figures_table(const CampaignPlan& plan) {
     table.add_row({each->name, count_number(static_cast<long long>(places_of(each->campaign, words).size())),
                    count_number(static_cast<long long>(each->campaign.setups.size())),
                    count_number(static_cast<long long>(each->campaign.reading_count())),
-                   hours(each->duration), fixed_number(each->volumetric.rms * kPerMicrometre, 3),
-                   fixed_number(each->volumetric.largest * kPerMicrometre, 3),
-                   fixed_number(each->worst_length * kPerMicrometre, 3),
-                   fixed_number(each->worst_angle * kPerMicrometre, 3),
+                   hours(each->duration), fixed_number(each->volumetric.rms * kPerMicro, 3),
+                   fixed_number(each->volumetric.largest * kPerMicro, 3),
+                   fixed_number(each->worst_length * kPerMicro, 3),
+                   fixed_number(each->worst_angle * kPerMicro, 3),
                    hidden.empty() ? "-" : joined_words(hidden)});
   }
   return table.text();
@@ -155,9 +152,10 @@ std::string errors_table(const CampaignPlan& plan) {
   columns.push_back({"visible fraction"});
   columns.push_back({"effective parameters"});
   TextTable table(columns,
-                  "Every error: U95 = 1.96 u, root mean square over the travel; visible fraction (share of "
-                  "its signal that "
-                  "nothing else imitates) and effective parameters with the plan");
+                  fmt::format("Every error: U95 = {} u, root mean square over the travel; visible fraction "
+                              "(share of its signal that nothing else imitates) and effective parameters "
+                              "with the plan",
+                              kCoverageFactor));
   for (const Observability& error : plan.plan.result.rank.errors) {
     const auto symbol = ErrorSymbol::parse(error.symbol);
     const auto location = LocationSymbol::parse(error.symbol);
@@ -170,7 +168,7 @@ std::string errors_table(const CampaignPlan& plan) {
       const Observability* own = error_of(*each, error.symbol);
       cells.push_back(own == nullptr  ? "-"
                       : !own->visible ? "not visible"
-                                      : fixed_number(kCoverageFactor * own->u_rms * kPerMicrometre, 3));
+                                      : fixed_number(kCoverageFactor * own->u_rms * kPerMicro, 3));
     }
     const Observability* before = error_of(*all[1], error.symbol);
     const bool both = before != nullptr && before->visible && error.visible;
@@ -219,7 +217,7 @@ std::string options_table(const CampaignPlan& plan) {
                   "What one setup more would bring, best first");
   for (const PlanOption& option : plan.options) {
     table.add_row({option.words, count_number(static_cast<long long>(option.readings)),
-                   fixed_number(option.volumetric_rms * kPerMicrometre, 3),
+                   fixed_number(option.volumetric_rms * kPerMicro, 3),
                    option.made_visible.empty() ? "-" : joined_words(option.made_visible),
                    option.still_invisible.empty() ? "-" : joined_words(option.still_invisible)});
   }

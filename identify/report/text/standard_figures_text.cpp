@@ -9,13 +9,16 @@
 #include <vector>
 
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
 using Cells = std::vector<std::string>;
 
-std::string micrometres(std::optional<double> value) { return value ? fixed_number(*value * 1e6, 2) : "-"; }
+std::string micrometres(std::optional<double> value) {
+  return value ? fixed_number(*value * kPerMicro, 2) : "-";
+}
 
 void append(Cells& cells, Cells more) {
   cells.insert(cells.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
@@ -161,7 +164,7 @@ std::string circles_text(std::span<const NamedFigures> models) {
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const Cells heading = {tests[i].setup,
                            {letter_of(tests[i].first), letter_of(tests[i].second)},
-                           short_number(tests[i].radius * 1e3)};
+                           short_number(tests[i].radius * kPerMilli)};
     rows.add(heading, "readings", circle_cells(tests[i], tests[i].figures.readings));
     for (const NamedFigures& model : models) {
       rows.add(heading, model.name, circle_cells(tests[i], model.figures->circles[i].figures.model));

@@ -12,7 +12,7 @@ namespace volcal {
 namespace {
 
 double at_the_edge(const Axis& axis, const AxisPosition& position) {
-  return position[index_of(axis.name)] / (is_rotary(axis.name) ? kRadianPerDegree : kMetrePerMillimetre);
+  return position[index_of(axis.name)] / position_unit(axis.name).si_per_unit;
 }
 
 std::vector<double> micro_of(const Eigen::Vector3d& si) {
@@ -24,7 +24,7 @@ std::vector<double> micro_of(const Eigen::Vector3d& si) {
 std::string volumetric_text(const FitResult& result, const std::vector<VolumetricError>& errors) {
   std::vector<TextColumn> columns;
   for (const Axis& axis : result.machine.axes)
-    columns.push_back({fmt::format("{} [{}]", letter_of(axis.name), is_rotary(axis.name) ? "deg" : "mm")});
+    columns.push_back({fmt::format("{} [{}]", letter_of(axis.name), position_unit(axis.name).suffix)});
   columns.push_back({"tool", Align::Left});
   for (const char* name : {"ex", "ey", "ez"}) columns.push_back({fmt::format("{} +- U95 [um]", name)});
   for (const char* name : {"ea", "eb", "ec"}) columns.push_back({fmt::format("{} +- U95 [urad]", name)});

@@ -8,10 +8,10 @@
 namespace volcal {
 
 Eigen::MatrixXd datum_constraints(const Basis& basis, ErrorSymbol symbol, const Axis& axis) {
-  const int rows = symbol.is_straightness() ? 2 : 1;
+  const int rows = has_free_slope(symbol) ? 1 : 2;
   Eigen::MatrixXd constraints(rows, basis.size());
   constraints.row(0) = basis.row(axis.home).transpose();
-  if (symbol.is_straightness()) {
+  if (!has_free_slope(symbol)) {
     const BasisMoments moment = moments(basis);
     const double middle = 0.5 * (axis.travel_min + axis.travel_max);
     constraints.row(1) =

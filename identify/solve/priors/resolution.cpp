@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -99,13 +100,8 @@ int automatic_intervals(const Campaign& campaign, AxisName axis) {
 
 ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
   ModelSpec result = spec;
-  for (const Axis& axis : campaign.machine.axes) {
-    for (const Component component : kAllComponents) {
-      const ErrorSymbol symbol{component, axis.name};
-      if (is_rotary(axis.name) && !spec.functions.contains(symbol)) continue;
-      result.functions[symbol] = resolved(spec.function(symbol), symbol, campaign);
-    }
-  }
+  for (const ErrorSymbol symbol : modelled_motions(campaign.machine, spec))
+    result.functions[symbol] = resolved(spec.function(symbol), symbol, campaign);
   return result;
 }
 

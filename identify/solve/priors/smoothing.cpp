@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/solve/priors/basis_prior.h"
 
 namespace volcal {
 namespace {
@@ -411,8 +412,8 @@ std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const 
     const FunctionSpec& spec = model.spec().function(function.symbol);
     const int group = model.layout().find(function.symbol)->group;
     const Basis& basis = *model.layout().groups[static_cast<std::size_t>(group)].basis;
-    if (spec.knots != KnotChoice::Automatic || basis.roughness_order() == 0 || function.size() == 0) continue;
-    auto& family = family_of[{group, function.symbol.is_straightness()}];
+    if (!is_smoothed(spec, basis) || function.size() == 0) continue;
+    auto& family = family_of[{group, has_free_slope(function.symbol)}];
     if (!family) {
       const ResolvedStretch stretch =
           resolved_stretch(model.campaign(), function.symbol.axis, spec.breakpoints);

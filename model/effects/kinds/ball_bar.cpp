@@ -6,35 +6,40 @@
 
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
 
-bool is_ball_bar(const Setup& setup) { return setup.instrument == "ball-bar"; }
+bool has_bar(const Setup& setup) { return traits_of(setup).has_bar; }
 
-void check_ball_bar(const Campaign& campaign, const SourcePlace& place) {
-  for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup)) return;
-  }
+/// Axes that follow their commands late show on the way round the centre ball alone.
+bool reads_circles(const Setup& setup) { return has_bar(setup) && traits_of(setup).reads_in_motion; }
+
+void check_bar(const Campaign& campaign, const SourcePlace& place) {
+  if (std::ranges::any_of(campaign.setups, has_bar)) return;
+  throw InputError(place, "no setup is a ball-bar", "remove the effect");
+}
+
+void check_circles(const Campaign& campaign, const SourcePlace& place) {
+  if (std::ranges::any_of(campaign.setups, reads_circles)) return;
   throw InputError(place, "no setup is a ball-bar", "remove the effect");
 }
 
 std::unique_ptr<FormulaEffect> make_ball_bar_length(const EffectTable& table) {
   const std::string label = "ball-bar length";
   return std::make_unique<FormulaEffect>(
-      EffectName{"ball-bar-length", "readings", "ball-bar", "step"},
+      EffectName{"ball-bar-length", "readings", instrument_with_bar(), "step"},
       std::vector{reading_amplitude(table, label, "amplitude_um")},
       [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        return constant(view, is_ball_bar(view.setup) ? 1.0 : 0.0);
+        return constant(view, has_bar(view.setup) ? 1.0 : 0.0);
       },
-      check_ball_bar);
+      check_bar);
 }
 
 std::vector<EffectSpec> ball_bar_lengths(const Campaign& campaign) {
-  for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup)) return {effect_spec("ball-bar-length", {})};
-  }
-  return {};
+  if (std::ranges::none_of(campaign.setups, has_bar)) return {};
+  return {effect_spec("ball-bar-length", {})};
 }
 
 /// A tenth of the travel of the others: a circle in another plane moves along an axis by its centre's error.
@@ -51,11 +56,11 @@ bool moves(const Setup& setup, AxisName axis) {
   return travel(axis) > 0.1 * largest;
 }
 
-/// Ball-bar setups that move all of these axes.
+/// Setups with circles that move all of these axes.
 std::vector<const Setup*> circles_with(const Campaign& campaign, const std::vector<AxisName>& axes) {
   std::vector<const Setup*> setups;
   for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup) && std::ranges::all_of(axes, [&](AxisName axis) { return moves(setup, axis); }))
+    if (reads_circles(setup) && std::ranges::all_of(axes, [&](AxisName axis) { return moves(setup, axis); }))
       setups.push_back(&setup);
   }
   return setups;
@@ -95,7 +100,7 @@ Eigen::VectorXd feed_factor(const SetupView& view, bool feed) {
 
 void check_feed(const Campaign& campaign, const std::string& label, const SourcePlace& place) {
   for (const Setup& setup : campaign.setups) {
-    if (is_ball_bar(setup) && !setup.readings.feed.empty()) return;
+    if (reads_circles(setup) && !setup.readings.feed.empty()) return;
   }
   throw InputError(place, label + ": no setup of a ball-bar records the feed",
                    "add the column feed_mm_min, or leave by = \"feed\" out");
@@ -103,7 +108,7 @@ void check_feed(const Campaign& campaign, const std::string& label, const Source
 
 FormulaEffect::Count without_feed() {
   return [](const SetupView& view) {
-    return is_ball_bar(view.setup) && view.setup.readings.feed.empty() ? view.rows() : std::size_t{0};
+    return reads_circles(view.setup) && view.setup.readings.feed.empty() ? view.rows() : std::size_t{0};
   };
 }
 
@@ -112,7 +117,7 @@ FormulaEffect::Count without_feed() {
 Eigen::VectorXd twice_per_turn(const SetupView& view, AxisName first, AxisName second) {
   Eigen::VectorXd driver = constant(view, 0.0);
   const auto centre = view.setup.options.vector("centre");
-  if (!is_ball_bar(view.setup) || !centre) return driver;
+  if (!reads_circles(view.setup) || !centre) return driver;
   const Eigen::VectorXd dir_1 = directions(view, first), dir_2 = directions(view, second);
   for (Eigen::Index row = 0; row < driver.size(); ++row) {
     const Eigen::Vector3d radius = view.nominal_point_w[static_cast<std::size_t>(row)] - *centre;
@@ -142,7 +147,7 @@ std::unique_ptr<FormulaEffect> make_servo_mismatch(const EffectTable& table) {
         return feed ? Eigen::VectorXd(0.5 * driver.cwiseProduct(feed_factor(view, feed))) : driver;
       },
       [feed, label](const Campaign& campaign, const SourcePlace& place) {
-        check_ball_bar(campaign, place);
+        check_circles(campaign, place);
         if (feed) check_feed(campaign, label, place);
       });
   if (feed) effect->count_unrecorded(without_feed());
@@ -171,7 +176,7 @@ std::vector<EffectSpec> servo_mismatches(const Campaign& campaign) {
 Eigen::VectorXd share_of_velocity(const SetupView& view, AxisName axis) {
   Eigen::VectorXd share = constant(view, 0.0);
   const auto centre = view.setup.options.vector("centre");
-  if (!is_ball_bar(view.setup) || !centre || !moves(view.setup, axis)) return share;
+  if (!reads_circles(view.setup) || !centre || !moves(view.setup, axis)) return share;
   const Eigen::VectorXd direction = directions(view, axis);
   for (Eigen::Index row = 0; row < share.size(); ++row) {
     const Eigen::Vector3d radius = view.nominal_point_w[static_cast<std::size_t>(row)] - *centre;
@@ -199,7 +204,7 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
       },
       [axis, feed, label](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, axis, label, place);
-        check_ball_bar(campaign, place);
+        check_circles(campaign, place);
         if (feed) check_feed(campaign, label, place);
       });
   if (feed) effect->count_unrecorded(without_feed());

@@ -2,11 +2,15 @@
 // the angle and in proportion to the displacement.
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
 
-bool is_interferometer(const Setup& setup) { return setup.instrument == "displacement"; }
+/// An interferometer whose beam keeps its direction.
+bool is_interferometer(const Setup& setup) {
+  return traits_of(setup).laser_length == LaserLength::Displacement;
+}
 
 std::unique_ptr<FormulaEffect> make_beam_misalignment(const EffectTable& table) {
   const std::string setup = table.text("setup", "add setup = \"NAME\"");
@@ -22,7 +26,7 @@ std::unique_ptr<FormulaEffect> make_beam_misalignment(const EffectTable& table) 
         for (const Setup& each : campaign.setups) {
           if (each.name != setup || is_interferometer(each)) continue;
           throw InputError(place, "beam of " + setup + ": the setup is a " + each.instrument,
-                           "name a setup with instrument = \"displacement\" or remove the effect");
+                           "name a setup of an interferometer along a line or remove the effect");
         }
       });
 }

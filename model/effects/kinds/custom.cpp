@@ -15,7 +15,6 @@
 namespace volcal {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr std::array<const char*, 2> kParameters = {"p", "q"};
 
 /// What the effect acts on. `owner`: tool, station or setup; empty = all.
@@ -149,7 +148,7 @@ std::optional<Eigen::VectorXd> recorded(const SetupView& view, const std::string
     return scaled(direction, 1.0);
   }
   if (const auto axis = axis_of(name)) {
-    return scaled(readings.position[index_of(*axis)], is_rotary(*axis) ? kRadianPerDegree : kMillimetre);
+    return scaled(readings.position[index_of(*axis)], position_unit(*axis).si_per_unit);
   }
   if (name == "t") {
     if (readings.time.empty()) return std::nullopt;
@@ -159,8 +158,8 @@ std::optional<Eigen::VectorXd> recorded(const SetupView& view, const std::string
     if (readings.feed.empty()) return std::nullopt;
     return scaled(readings.feed, unit_of_key("feed_mm_min").si_per_unit);
   }
-  if (name == "length") return view.length / kMillimetre;
-  const Eigen::Vector3d offset = view.campaign.machine.tools[view.setup.tool].offset / kMillimetre;
+  if (name == "length") return view.length / kMetrePerMillimetre;
+  const Eigen::Vector3d offset = view.campaign.machine.tools[view.setup.tool].offset / kMetrePerMillimetre;
   return Eigen::VectorXd::Constant(rows, name == "tool_length" ? offset.norm() : offset[name.back() - 'x']);
 }
 
@@ -381,9 +380,11 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
   specs.back().options.set("p", 250.0);
   specs.back().options.set("p_sigma", 50.0);
   for (const Setup& setup : campaign.setups) {
-    if (setup.instrument != "laser-tracer") continue;
+    if (traits_of(setup).laser_length != LaserLength::Distance) continue;
+    const Instrument& instrument = *find_instrument(setup.instrument);
     add("station " + station_of(setup) + " x", setup.readings.time.empty() ? axis : "t / 3600");
-    add("length_mm of " + setup.name, "sin(2 * pi * length / 500)");
+    add(instrument.schema().column_sets[setup.readings.column_set].front().column + " of " + setup.name,
+        "sin(2 * pi * length / 500)");
     break;
   }
   return specs;

@@ -1,41 +1,61 @@
 // An angle encoder of a tracker whose circle is mounted off centre: its angle is wrong by one wave per turn.
+#include <algorithm>
+#include <optional>
+
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
 
-bool is_tracker_at(const Setup& setup, const std::string& station) {
-  return setup.instrument == "laser-tracker" && station_of(setup) == station;
+std::optional<int> channel_of_encoder(const InstrumentTraits& traits, const std::string& encoder) {
+  const auto found = std::ranges::find(traits.encoders, encoder, &AngleEncoder::name);
+  return found == traits.encoders.end() ? std::nullopt : std::optional(found->channel);
 }
+
+/// The first of the registered instruments that has the encoder says which channel it reads.
+int channel_of_encoder(const EffectTable& table, const std::string& encoder) {
+  for (const Instrument* instrument : instruments()) {
+    if (const auto channel = channel_of_encoder(instrument->schema().traits, encoder)) return *channel;
+  }
+  table.fail("\"" + encoder + "\" is no encoder", "write azimuth or elevation");
+}
+
+/// An encoder of an instrument that stands at a station.
+struct StationEncoder {
+  std::string station;
+  std::string encoder;
+  int channel = 0;
+
+  bool reads(const Setup& setup) const {
+    return channel_of_encoder(traits_of(setup), encoder) == channel && station_of(setup) == station;
+  }
+};
 
 std::unique_ptr<FormulaEffect> make_encoder_eccentricity(const EffectTable& table) {
   const std::string station = table.text("station", "add station = \"NAME\"");
   const std::string encoder = table.text("encoder", "add encoder = \"azimuth\"");
-  if (encoder != "azimuth" && encoder != "elevation")
-    table.fail("\"" + encoder + "\" is no encoder", "write azimuth or elevation");
-  const std::size_t channel = encoder == "azimuth" ? 1 : 2;
+  const StationEncoder at{station, encoder, channel_of_encoder(table, encoder)};
   const std::string label = encoder + " encoder at " + station;
   return std::make_unique<FormulaEffect>(
       EffectName{"encoder-eccentricity", "station " + station, encoder, "periodic"},
-      std::vector{reading_amplitude(table, label + " cos", "cos_urad", static_cast<int>(channel)),
-                  reading_amplitude(table, label + " sin", "sin_urad", static_cast<int>(channel))},
-      [station, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+      std::vector{reading_amplitude(table, label + " cos", "cos_urad", at.channel),
+                  reading_amplitude(table, label + " sin", "sin_urad", at.channel)},
+      [at](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const auto rows = static_cast<Eigen::Index>(view.rows());
-        if (!is_tracker_at(view.setup, station)) return Eigen::MatrixXd::Zero(rows, 2);
-        const Eigen::Map<const Eigen::ArrayXd> angle(view.setup.readings.value[channel].data(), rows);
+        if (!at.reads(view.setup)) return Eigen::MatrixXd::Zero(rows, 2);
+        const Eigen::Map<const Eigen::ArrayXd> angle(
+            view.setup.readings.value[static_cast<std::size_t>(at.channel)].data(), rows);
         Eigen::MatrixXd drivers(rows, 2);
         drivers << angle.cos(), angle.sin();
         return drivers;
       },
-      [station, label](const Campaign& campaign, const SourcePlace& place) {
-        check_station(campaign, station, place);
-        for (const Setup& setup : campaign.setups) {
-          if (is_tracker_at(setup, station)) return;
-        }
+      [at, label](const Campaign& campaign, const SourcePlace& place) {
+        check_station(campaign, at.station, place);
+        if (std::ranges::any_of(campaign.setups, [&](const Setup& setup) { return at.reads(setup); })) return;
         throw InputError(place, label + ": no laser tracker stands there",
-                         "name the station of a setup with instrument = \"laser-tracker\" or remove the "
-                         "effect");
+                         "name the station of a setup that reads azimuth and elevation or remove the effect");
       });
 }
 
@@ -43,10 +63,11 @@ std::vector<EffectSpec> encoder_eccentricities(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   for (const std::string& station : station_names(campaign)) {
     for (const Setup& setup : campaign.setups) {
-      if (!is_tracker_at(setup, station)) continue;
-      for (const char* encoder : {"azimuth", "elevation"}) {
+      const auto& encoders = traits_of(setup).encoders;
+      if (encoders.empty() || station_of(setup) != station) continue;
+      for (const AngleEncoder& encoder : encoders) {
         specs.push_back(
-            effect_spec("encoder-eccentricity", {{"station", station}, {"encoder", std::string(encoder)}}));
+            effect_spec("encoder-eccentricity", {{"station", station}, {"encoder", encoder.name}}));
       }
       break;
     }

@@ -3,10 +3,10 @@
 // spindle and table does not. Without instruments of the second kind it is the same as an error motion: the
 // rotations of the axis next to the workpiece, functions of its own position or axis-coupling by another.
 #include <algorithm>
-#include <set>
 
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -14,10 +14,7 @@ namespace {
 const std::string kDirections = "xyz";
 
 /// Whether the instrument refers to the floor: trackers beside the machine, levels.
-bool stands_on_floor(const Setup& setup) {
-  if (setup.instrument == "angle") return setup.options.text("body").value_or("relative") != "relative";
-  return setup.instrument == "laser-tracer" || setup.instrument == "laser-tracker";
-}
+bool stands_on_floor(const Setup& setup) { return traits_of(setup).stands_on_floor(setup.options); }
 
 bool some_stand_on_floor(const Campaign& campaign, bool wanted) {
   return std::ranges::any_of(campaign.setups,

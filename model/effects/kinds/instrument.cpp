@@ -5,6 +5,7 @@
 
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -12,10 +13,7 @@ namespace {
 constexpr double kSharpestEvent = 1.0;  // s
 constexpr std::size_t kEventTimes = 24;
 
-bool measures_lengths(const Setup& setup) {
-  static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "displacement"};
-  return kinds.contains(setup.instrument);
-}
+bool measures_lengths(const Setup& setup) { return traits_of(setup).laser_length != LaserLength::None; }
 
 /// 1 from `event` on, 0 before, rising within a second so that it has a slope.
 Eigen::ArrayXd after(const SetupView& view, double event) {
@@ -32,7 +30,8 @@ std::unique_ptr<FormulaEffect> make_length_scale(const EffectTable& table) {
         const bool acts =
             measures_lengths(view.setup) && (station.empty() || station_of(view.setup) == station);
         if (!acts) return constant(view, 0.0);
-        return view.setup.instrument == "displacement" ? beam_displacements(view) : view.length;
+        const bool along_beam = traits_of(view.setup).laser_length == LaserLength::Displacement;
+        return along_beam ? beam_displacements(view) : view.length;
       },
       [station](const Campaign& campaign, const SourcePlace& place) {
         if (!station.empty()) check_station(campaign, station, place);

@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kUsualLag = 3600.0;  // s
+constexpr double kUsualLag = kSecondsPerHour;
 constexpr double kShortestLag = 600.0;
 constexpr double kLongestLag = 14400.0;
 constexpr int kLags = 8;
@@ -65,7 +66,7 @@ Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel,
   follow(samples, lag);
   for (std::size_t row = 0; row < view.rows(); ++row) {
     const auto at = std::ranges::lower_bound(samples, view.setup.readings.time[row], {}, &Sample::time);
-    excess[static_cast<Eigen::Index>(row)] = at->temperature - kEffectReferenceTemperature_degC;
+    excess[static_cast<Eigen::Index>(row)] = at->temperature - kReferenceTemperature_degC;
   }
   return excess;
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -34,7 +35,7 @@ std::vector<Eigen::VectorXd> periods(double travel, const PeriodRange& range) {
 std::vector<Eigen::VectorXd> usual_periods() {
   std::vector<Eigen::VectorXd> values;
   for (const double micrometres : {10.0, 20.0, 40.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0}) {
-    values.emplace_back(Eigen::VectorXd::Constant(1, micrometres * 1e-6));
+    values.emplace_back(Eigen::VectorXd::Constant(1, micrometres * kMetrePerMicrometre));
   }
   return values;
 }

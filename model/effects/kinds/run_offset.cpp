@@ -7,6 +7,7 @@
 
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -15,12 +16,7 @@ std::set<std::int32_t> runs_of(const Setup& setup) {
   return {setup.readings.run.begin(), setup.readings.run.end()};
 }
 
-/// One length, or a length first.
-bool reads_length(const Setup& setup) {
-  static const std::set<std::string> kinds = {"laser-tracer", "laser-tracker", "ball-bar", "displacement",
-                                              "straightness"};
-  return kinds.contains(setup.instrument);
-}
+bool reads_length(const Setup& setup) { return traits_of(setup).length_from_zero; }
 
 std::unique_ptr<FormulaEffect> make_run_offset(const EffectTable& table) {
   const std::string setup = table.text("setup", "add setup = \"NAME\"");

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kUsualTimeConstant = 1800.0;  // s
 constexpr double kShortestTimeConstant = 120.0;
-constexpr double kLongestTimeConstant = 36000.0;
+constexpr double kLongestTimeConstant = 10.0 * kSecondsPerHour;
 
 std::string linear_axis_text(AxisName axis) { return std::string(1, letter_of(axis)); }
 

@@ -75,7 +75,7 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
   const auto within = [](const Moments& found, double expected) {
     return std::abs(found.mean() - expected) < kTwoSided99 * found.of_mean();
   };
-  RecordProperty("wander_on", drift_on);
+  RecordProperty("drift_on", drift_on);
   RecordProperty("line_on", line_on);
   RecordProperty("covered", covered);
   RecordProperty("intervals", intervals);
@@ -103,7 +103,7 @@ TEST(NoiseStudy, WhiteStaysWhite) {
     without_per_metre += own.per_metre.on ? 0 : 1;
     white += !own.drift.on && !own.line.on && !own.per_metre.on ? 1 : 0;
   }
-  RecordProperty("without_wander", without_drift);
+  RecordProperty("without_drift", without_drift);
   RecordProperty("without_line", without_line);
   RecordProperty("without_per_metre", without_per_metre);
   RecordProperty("white", white);

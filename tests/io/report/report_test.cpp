@@ -334,7 +334,7 @@ TEST(FitSummary, AnAxisParkedOffTheGridHasNoValuesButItsUnits) {
   for (FunctionSummary& function : fit.result.functions) {
     if (function.symbol.axis == AxisName::Z) function.measured_min = function.measured_max = -0.12345;
   }
-  const std::string text = fit_summary_text(fit.result, fit.campaign);
+  const std::string text = fit_text(fit.result, fit.campaign);
   EXPECT_THAT(text, ::testing::ContainsRegex("ECZ +urad +- +- +0\\.00 +- .*NOT VISIBLE"));
   EXPECT_THAT(text, ::testing::ContainsRegex("EXZ +um +- +- +0\\.59 +- "));
   EXPECT_THAT(text, ::testing::ContainsRegex("EAY +urad +-?[0-9.]+ +[0-9.]+ +0\\.59 +[0-9.]+ "));
@@ -356,7 +356,7 @@ TEST(ReportOfATracker, ReadingsHaveTheUnitOfTheirChannel) {
   }
   const Json document = Json::parse(report_json(fit.result, fit.campaign));
   const Json rows = page_data(document, "outliers").at("rows");
-  const std::string summary = fit_summary_text(fit.result, fit.campaign);
+  const std::string summary = fit_text(fit.result, fit.campaign);
   for (const int channel : {0, 1, 2}) {
     const auto k = static_cast<std::size_t>(channel);
     EXPECT_EQ(rows.at(k).at("unit"), channel == 0 ? "µm" : "µrad");

@@ -27,7 +27,7 @@ kind = "laser-tracer"
 grid = [4, 3, 3]
 revisits = 1
 shuffled = true
-noise = { constant_um = 0.3, drift_um = 0.4, drift_time_s = 500.0, line_um = 0.2, outlier_share = 0.02, outlier_sigma = 9.0 }
+noise = { constant_um = 0.3, wander_um = 0.4, wander_time_s = 500.0, line_um = 0.2, outlier_share = 0.02, outlier_sigma = 9.0 }
 )";
 
 sim::Study parse_hidden(const std::string& body) {
@@ -89,7 +89,7 @@ feed_mm_min = 3000.0
 record_feed = true
 [[measurements]]
 kind = "angle-lines"
-noise = { constant_urad = 0.4, drift_urad = 0.3, line_urad = 0.2 }
+noise = { constant_urad = 0.4, wander_urad = 0.3, line_urad = 0.2 }
 )");
   EXPECT_TRUE(study.unseen);
   const auto& circles = std::get<sim::BallBarCircles>(study.measurements[0].settings);

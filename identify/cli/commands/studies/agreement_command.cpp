@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/studies/agreement.h"
 
@@ -83,17 +83,12 @@ nlohmann::ordered_json agreement_json(const AgreementOptions& options,
 
 int run_agreement(AgreementArguments arguments) {
   ProgressBar bar("agreement");
-  arguments.options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
-  };
+  arguments.options.progress = counted_on(bar, "campaigns");
   const std::vector<AgreedValue> values = agreement(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(agreement_json(arguments.options, values), 2));
-  } else {
-    fmt::print("{}", agreement_text(arguments.options, values));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return agreement_json(arguments.options, values); },
+      [&] { return agreement_text(arguments.options, values); });
 }
 
 std::function<int()> define_agreement(CLI::App& app) {
@@ -107,9 +102,7 @@ std::function<int()> define_agreement(CLI::App& app) {
       ->check(CLI::Range(0, 3))
       ->capture_default_str();
   app.add_option("--seed", options.seed)->check(not_negative())->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_agreement(*arguments); };
 }
 

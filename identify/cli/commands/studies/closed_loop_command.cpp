@@ -7,10 +7,11 @@
 #include <numeric>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/units.h"
 #include "volcal/studies/closed_loop.h"
 
 namespace volcal::cli {
@@ -126,16 +127,16 @@ std::string closed_loop_text(const ClosedLoopArguments& arguments, const ClosedL
   for (const Row& row : rows_of(campaigns)) {
     std::vector<std::string> cells = {row.structure,
                                       count_number(row.campaigns),
-                                      fixed_number(row.before * 1e6, 2),
-                                      fixed_number(row.median * 1e6, 3),
-                                      fixed_number(row.worst * 1e6, 3),
-                                      fixed ? fixed_number(row.median_fixed * 1e6, 3) : "-",
+                                      fixed_number(row.before * kPerMicro, 2),
+                                      fixed_number(row.median * kPerMicro, 3),
+                                      fixed_number(row.worst * kPerMicro, 3),
+                                      fixed ? fixed_number(row.median_fixed * kPerMicro, 3) : "-",
                                       fixed ? fixed_number(row.worst_ratio, 2) : "-",
                                       fmt::format("{:.3f} +- {:.3f}", row.chi2.mean, row.chi2.standard_error),
                                       percent(row.coverage),
                                       fixed_number(100.0 * row.coverage_5th, 1)};
     if (correlated) {
-      cells.push_back(fixed_number(row.median_white * 1e6, 3));
+      cells.push_back(fixed_number(row.median_white * kPerMicro, 3));
       cells.push_back(percent(row.white_coverage));
     }
     table.add_row(cells);
@@ -158,16 +159,16 @@ nlohmann::ordered_json json_of(const ClosedLoopArguments& arguments, const Close
   for (const ClosedLoopCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"structure", campaign.structure},
                                     {"seed", campaign.seed},
-                                    {"rms_before_um", campaign.rms_before * 1e6},
-                                    {"rms_after_um", campaign.rms_after * 1e6},
+                                    {"rms_before_um", campaign.rms_before * kPerMicro},
+                                    {"rms_after_um", campaign.rms_after * kPerMicro},
                                     {"reduced_chi2", campaign.reduced_chi2},
                                     {"coverage95", mean_coverage(campaign.coverage)},
                                     {"coverage95_of", campaign.coverage}};
     if (arguments.options.fixed_knots) {
-      for (const double rms : campaign.rms_fixed) entry["rms_fixed_um"].push_back(rms * 1e6);
+      for (const double rms : campaign.rms_fixed) entry["rms_fixed_um"].push_back(rms * kPerMicro);
     }
     if (arguments.options.correlated_noise) {
-      entry["white_rms_after_um"] = campaign.white_rms_after * 1e6;
+      entry["white_rms_after_um"] = campaign.white_rms_after * kPerMicro;
       entry["white_coverage95"] = mean_coverage(campaign.white_coverage);
     }
     json["campaigns"].push_back(entry);
@@ -175,18 +176,18 @@ nlohmann::ordered_json json_of(const ClosedLoopArguments& arguments, const Close
   for (const Row& row : rows_of(campaigns)) {
     nlohmann::ordered_json entry = {{"structure", row.structure},
                                     {"campaigns", row.campaigns},
-                                    {"median_rms_before_um", row.before * 1e6},
-                                    {"median_rms_after_um", row.median * 1e6},
-                                    {"worst_rms_after_um", row.worst * 1e6},
+                                    {"median_rms_before_um", row.before * kPerMicro},
+                                    {"median_rms_after_um", row.median * kPerMicro},
+                                    {"worst_rms_after_um", row.worst * kPerMicro},
                                     {"mean_reduced_chi2", row.chi2.mean},
                                     {"mean_coverage95", row.coverage.mean},
                                     {"coverage95_5th_percentile", row.coverage_5th}};
     if (arguments.options.fixed_knots) {
-      entry["median_best_fixed_um"] = row.median_fixed * 1e6;
+      entry["median_best_fixed_um"] = row.median_fixed * kPerMicro;
       entry["worst_ratio_to_best_fixed"] = row.worst_ratio;
     }
     if (arguments.options.correlated_noise) {
-      entry["white_median_rms_after_um"] = row.median_white * 1e6;
+      entry["white_median_rms_after_um"] = row.median_white * kPerMicro;
       entry["white_mean_coverage95"] = row.white_coverage.mean;
     }
     json["summary"].push_back(entry);
@@ -198,17 +199,12 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
   if (arguments.small) arguments.options.grid = {6, 5, 4};
   arguments.options.correlated_noise = arguments.noise == "correlated";
   ProgressBar bar("closed loop");
-  arguments.options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
-  };
+  arguments.options.progress = counted_on(bar, "campaigns");
   const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 2));
-  } else {
-    fmt::print("{}", closed_loop_text(arguments, campaigns));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return json_of(arguments, campaigns); },
+      [&] { return closed_loop_text(arguments, campaigns); });
 }
 
 std::function<int()> define_closed_loop_study(CLI::App& app) {
@@ -233,9 +229,7 @@ std::function<int()> define_closed_loop_study(CLI::App& app) {
       "with a scale of the laser (0.3 um/m) and offsets of the tools (3 um) that are wrong by what the "
       "campaign states, drawn anew for every campaign");
   app.add_flag("--small", arguments->small, "1,920 readings a campaign instead of 6,048");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_closed_loop_study(*arguments); };
 }
 

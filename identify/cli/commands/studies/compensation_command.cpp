@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/tables/compensation.h"
 
@@ -124,17 +124,11 @@ nlohmann::ordered_json rows_json(const CompensationArguments& arguments, const C
 
 int run_compensation_study(CompensationArguments arguments) {
   ProgressBar bar("compensation");
-  arguments.options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} machines", done, all), static_cast<double>(done) / all);
-  };
+  arguments.options.progress = counted_on(bar, "machines");
   const CompensationRows rows = compensation_study(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(rows_json(arguments, rows), 2));
-  } else {
-    fmt::print("{}", rows_text(arguments, rows));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return rows_json(arguments, rows); }, [&] { return rows_text(arguments, rows); });
 }
 
 std::function<int()> define_compensation_study(CLI::App& app) {
@@ -149,9 +143,7 @@ std::function<int()> define_compensation_study(CLI::App& app) {
   app.add_option("-f,--format", options.formats, "table formats; default: all")
       ->check(CLI::IsMember(table_format_names()));
   app.add_flag("--small", options.small, "1,920 readings a campaign instead of 6,048, fewer fresh points");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_compensation_study(*arguments); };
 }
 

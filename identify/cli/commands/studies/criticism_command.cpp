@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/text/atomic_folder.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/criticism/criticism.h"
 #include "volcal/studies/criticism/criticism_campaign.h"
@@ -113,17 +113,12 @@ int run_criticism_study(CriticismArguments arguments) {
   CriticismOptions& options = arguments.options;
   if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
   ProgressBar bar("criticism");
-  options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} campaigns", done, all), static_cast<double>(done) / all);
-  };
+  options.progress = counted_on(bar, "campaigns");
   const Campaigns campaigns = criticism(options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(json_of(arguments, campaigns), 1));
-  } else {
-    fmt::print("{}", figures_text(arguments, campaigns));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return json_of(arguments, campaigns); },
+      [&] { return figures_text(arguments, campaigns); }, 1);
 }
 
 std::function<int()> define_criticism_study(CLI::App& app) {
@@ -146,9 +141,7 @@ std::function<int()> define_criticism_study(CLI::App& app) {
   app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_criticism_study(*arguments); };
 }
 

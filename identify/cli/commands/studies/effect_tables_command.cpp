@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/tables/effect_tables.h"
 
@@ -73,15 +73,14 @@ std::string rows_text(const EffectTablesArguments& arguments, const std::vector<
     table.add_row({same ? "" : row.structure, same ? "" : row.effect, row.format,
                    fixed_number(row.before / kMicro, 2), fixed_number(row.rigid / kMicro, 2),
                    fixed_number(row.extended / kMicro, 2), fixed_number(row.ideal / kMicro, 2),
-                   fixed_number(row.printed / kMicro, 2), verdict_of(row)});
+                   fixed_number(row.uncertainty / kMicro, 2), fixed_number(row.printed / kMicro, 2),
+                   verdict_of(row)});
     place = row.structure + row.effect;
   }
   return fmt::format(
       "effects in tables, {} structures, seeds from {}\n\n{}\n{} rows: {} above the rigid model's, {} above "
-      "the "
-      "ideal of the format with the uncertainty u of the identified errors (1.05 times or 0.05 um; 1 um "
-      "where the format holds every error), {} printed "
-      "otherwise than by 5 % or 0.05 um\n",
+      "the ideal of the format with the uncertainty u of the identified errors (1.05 times or 0.05 um; 1 um "
+      "where the format holds every error), {} printed otherwise than by 5 % or 0.05 um\n",
       arguments.options.structures, arguments.options.seed, table.text(), rows.size(),
       count_rows(rows, is_worse_than_rigid), count_rows(rows, misses_ideal),
       count_rows(rows, is_printed_wrong));
@@ -112,17 +111,11 @@ nlohmann::ordered_json rows_json(const EffectTablesArguments& arguments,
 
 int run_effect_tables(EffectTablesArguments arguments) {
   ProgressBar bar("effect-tables");
-  arguments.options.progress = [&bar](int done, int all) {
-    bar.update(fmt::format("{} of {} machines", done, all), static_cast<double>(done) / all);
-  };
+  arguments.options.progress = counted_on(bar, "machines");
   const std::vector<EffectTablesRow> rows = effect_tables_study(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(rows_json(arguments, rows), 2));
-  } else {
-    fmt::print("{}", rows_text(arguments, rows));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return rows_json(arguments, rows); }, [&] { return rows_text(arguments, rows); });
 }
 
 std::function<int()> define_effect_tables(CLI::App& app) {
@@ -141,9 +134,7 @@ std::function<int()> define_effect_tables(CLI::App& app) {
       ->check(CLI::IsMember(effect_table_cases()));
   app.add_option("-f,--format", options.formats, "table formats; default: all")
       ->check(CLI::IsMember(table_format_names()));
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_effect_tables(*arguments); };
 }
 

@@ -5,16 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/cli/commands/studies/studies.h"
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/units.h"
 #include "volcal/studies/planning.h"
 
 namespace volcal::cli {
 namespace {
-
-constexpr double kMicrometresPerMetre = 1e6;
 
 struct PlanningStudyArguments {
   PlanningStudyOptions options;
@@ -31,7 +30,7 @@ std::string planning_text(const PlanningStudyOptions& options, const std::vector
        {"true error [um]"},
        {"fits with an invisible error"}},
       "Volumetric, RMS of the vector over the volume and three tools; true error after rigid alignment");
-  const auto um = [](double value) { return fixed_number(value * kMicrometresPerMetre, 3); };
+  const auto um = [](double value) { return fixed_number(value * kPerMicro, 3); };
   const auto less = [](double plan, double textbook) {
     return fmt::format("-{:.1f} %", 100.0 * (1.0 - plan / textbook));
   };
@@ -55,10 +54,10 @@ nlohmann::ordered_json planning_json(const std::vector<PlannedMachine>& machines
     for (const LayoutFigures* each : {&machine.textbook, &machine.plan}) {
       json["layouts"].push_back({{"structure", machine.structure},
                                  {"layout", each->name},
-                                 {"predicted_u_um", each->predicted_u * kMicrometresPerMetre},
-                                 {"fitted_u_um", each->fitted_u * kMicrometresPerMetre},
-                                 {"montecarlo_u_um", each->montecarlo_u * kMicrometresPerMetre},
-                                 {"true_error_um", each->true_error * kMicrometresPerMetre},
+                                 {"predicted_u_um", each->predicted_u * kPerMicro},
+                                 {"fitted_u_um", each->fitted_u * kPerMicro},
+                                 {"montecarlo_u_um", each->montecarlo_u * kPerMicro},
+                                 {"true_error_um", each->true_error * kPerMicro},
                                  {"fits_with_invisible_error", each->invisible}});
     }
   }
@@ -70,12 +69,9 @@ int run_planning_study(PlanningStudyArguments arguments) {
   arguments.options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
   const std::vector<PlannedMachine> machines = planning_study(arguments.options);
   bar.finish();
-  if (arguments.json) {
-    fmt::print("{}\n", json_text(planning_json(machines), 2));
-  } else {
-    fmt::print("{}", planning_text(arguments.options, machines));
-  }
-  return kDone;
+  return print_outcome(
+      arguments.json, [&] { return planning_json(machines); },
+      [&] { return planning_text(arguments.options, machines); });
 }
 
 std::function<int()> define_planning_study(CLI::App& app) {
@@ -91,9 +87,7 @@ std::function<int()> define_planning_study(CLI::App& app) {
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("--threads", options.threads, "0 = all; results do not depend on it")
-      ->check(number_of_threads());
-  app.add_flag("--json", arguments->json, "print one JSON document and nothing else");
+  add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_planning_study(*arguments); };
 }
 

@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -41,7 +43,7 @@ void set_noise(const Campaign& campaign, Setup& setup) {
   for (const Setup& each : campaign.setups) {
     setup.repeatability = std::max(setup.repeatability, each.repeatability);
   }
-  const auto bar = std::ranges::find(campaign.setups, "ball-bar", &Setup::instrument);
+  const auto bar = std::ranges::find(campaign.setups, instrument_with_bar(), &Setup::instrument);
   if (bar == campaign.setups.end() || !bar->has_noise) return;
   setup.noise = bar->noise;
   setup.repeatability = bar->repeatability;
@@ -52,7 +54,7 @@ Setup circle(const CandidateContext& context, const Plane& plane, double radius,
   const AxisPosition centre = middle(machine);
   Setup setup;
   setup.name = std::string("calibrated ball-bar ") + plane.name;
-  setup.instrument = "ball-bar";
+  setup.instrument = instrument_with_bar();
   setup.options.set("centre", context.chain.nominal_point_w(centre, machine.tools.front().offset));
   setup.options.set("length_sigma", 0.0);
   set_noise(context.campaign, setup);
@@ -91,7 +93,7 @@ std::vector<ExtraMeasurement> calibrated_lengths(const CandidateContext& context
     if (!machine.has_axis(plane.first) || !machine.has_axis(plane.second)) continue;
     ExtraMeasurement extra;
     extra.words = fmt::format("measure a circle of {:.0f} mm in {} with a ball-bar of calibrated length",
-                              radius * 1e3, plane.name);
+                              radius * kPerMilli, plane.name);
     extra.setups.push_back(circle(context, plane, radius, end_of(context.campaign) + kPause));
     all.push_back(std::move(extra));
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -67,8 +68,9 @@ std::vector<ExtraMeasurement> further_stations(const CandidateContext& context) 
         return (*each.setups.front().options.vector("station") - place).norm() < kNear;
       });
       if (offered || !is_new(context.campaign, place)) continue;
-      const std::string where = fmt::format("a further station near [{:.0f}, {:.0f}, {:.0f}] mm",
-                                            place.x() * 1e3, place.y() * 1e3, place.z() * 1e3);
+      const std::string where =
+          fmt::format("a further station near [{:.0f}, {:.0f}, {:.0f}] mm", place.x() * kPerMilli,
+                      place.y() * kPerMilli, place.z() * kPerMilli);
       other.name = where;
       other.options.set("station", place);
       other.options.set("station", where);

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -47,7 +48,7 @@ double temperature_at(const Campaign& campaign, const std::string& channel, Temp
   const bool first = temperatures == Temperatures::First;
   double best_time =
       first ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
-  double value = kEffectReferenceTemperature_degC;
+  double value = kReferenceTemperature_degC;
   for (const Setup& setup : campaign.setups) {
     const auto found = setup.readings.temperature.find(channel);
     if (found == setup.readings.temperature.end() || found->second.empty()) continue;

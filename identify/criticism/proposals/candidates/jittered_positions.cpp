@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -47,7 +48,7 @@ std::vector<ExtraMeasurement> jittered_positions(const CandidateContext& context
     const double step = is_rotary(axis.name) ? 0.0 : grid_step(measured.readings.position[k]);
     if (step == 0.0) return {};
     jitter(axis, step, k, again.position[k]);
-    return fmt::format("{} off its step of {:.4g} mm", letter_of(axis.name), step * 1e3);
+    return fmt::format("{} off its step of {:.4g} mm", letter_of(axis.name), step * kPerMilli);
   };
   return altered_again(context, " off the grid", alter,
                        [](const std::string& place, const std::string& axes) {

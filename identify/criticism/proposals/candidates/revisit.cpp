@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kHour = 3600.0;
 constexpr double kHoursLater = 3.0;
 constexpr double kOvernight = 16.0;
 
@@ -20,7 +20,7 @@ std::vector<ExtraMeasurement> again(const CandidateContext& context, double hour
   for (const Setup* setup : one_setup_per_station(campaign)) {
     all.push_back(taken_again(context, *setup, setup->name + " again " + when,
                               fmt::format("measure {} again {}", place_and_tool(campaign, *setup), when),
-                              hours * kHour, temperatures));
+                              hours * kSecondsPerHour, temperatures));
   }
   return all;
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "volcal/identify/criticism/proposals/candidates/hypothetical_readings.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -25,8 +26,8 @@ Tool longer_tool(const Machine& machine) {
   Tool tool = longest;
   tool.offset = kLonger * longest.offset;
   tool.offset.x() += kSidewaysShare * length_of(longest);
-  tool.name = fmt::format("of [{:.0f}, {:.0f}, {:.0f}] mm", tool.offset.x() * 1e3, tool.offset.y() * 1e3,
-                          tool.offset.z() * 1e3);
+  tool.name = fmt::format("of [{:.0f}, {:.0f}, {:.0f}] mm", tool.offset.x() * kPerMilli,
+                          tool.offset.y() * kPerMilli, tool.offset.z() * kPerMilli);
   return tool;
 }
 

@@ -95,7 +95,7 @@ Json functions_page(const PageInput& input) {
   for (const Axis& axis : result.machine.axes) {
     const double factor = position_factor(axis.name);
     axes.push_back({{"name", axis_letter(axis.name)},
-                    {"unit", position_unit(axis.name)},
+                    {"unit", position_unit(axis.name).suffix},
                     {"range", {rounded(axis.travel_min * factor, 7), rounded(axis.travel_max * factor, 7)}}});
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};

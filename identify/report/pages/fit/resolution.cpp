@@ -21,7 +21,7 @@ Json resolution_page(const PageInput& input) {
          {"degree", spec.degree},
          {"intervals", function.intervals},
          {"interval_length", rounded(pieces ? axis.travel() * factor / function.intervals : NAN, 4)},
-         {"position_unit", position_unit(axis.name)},
+         {"position_unit", position_unit(axis.name).suffix},
          {"smoothed", function.smoothed},
          {"effective_parameters", rounded(function.effective_parameters, 3)},
          {"measured",

@@ -113,7 +113,7 @@ Json machine_facts(const PageInput& input) {
     const double factor = position_factor(axis.name);
     add(fmt::format("Travel {}", letter_of(axis.name)).c_str(),
         fmt::format("{:g} to {:g} {}, home {:g} {}", axis.travel_min * factor, axis.travel_max * factor,
-                    position_unit(axis.name), axis.home * factor, position_unit(axis.name)));
+                    position_unit(axis.name).suffix, axis.home * factor, position_unit(axis.name).suffix));
   }
   add("Datum", fmt::format("primary {}, secondary {}; every function is zero at home, straightness has no "
                            "least-squares slope over the travel",

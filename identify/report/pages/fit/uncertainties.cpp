@@ -41,7 +41,7 @@ Json functions(const MonteCarloResult& study) {
     Json function = {{"symbol", group.name},
                      {"axis", axis_letter(*first.axis)},
                      {"unit", shown_unit(group.unit)},
-                     {"position_unit", position_unit(*first.axis)},
+                     {"position_unit", position_unit(*first.axis).suffix},
                      {"curves", Json::array()}};
     for (const int direction : {0, 1, -1}) {
       std::vector<std::size_t> own;

@@ -25,9 +25,9 @@ Shown shown(const std::string& name) {
   if (name.size() == 1) return {"Position " + name, "deg", 1.0 / kRadianPerDegree};
   if (name.starts_with("dir_")) return {"Direction of " + name.substr(4), "", 1.0};
   if (name.starts_with("T_")) return {"Temperature " + name.substr(2), "°C", 1.0};
-  if (name == "time") return {"Time", "min", 1.0 / 60.0};
+  if (name == "time") return {"Time", "min", 1.0 / kSecondsPerMinute};
   if (name == "length") return {"Measured length", "mm", kPerMilli};
-  if (name == "feed") return {"Feed", "mm/min", kPerMilli * 60.0};
+  if (name == "feed") return {"Feed", "mm/min", kPerMilli * kSecondsPerMinute};
   if (name == "elevation") return {"Elevation of the beam", "deg", 1.0 / kRadianPerDegree};
   if (name == "run") return {"Run", "", 1.0};
   if (name.starts_with("tool ")) return {"Tool " + name.substr(5), "", 1.0};

@@ -9,6 +9,7 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal::report {
@@ -85,13 +86,13 @@ Json plots(const PageInput& input, const std::vector<std::size_t>& drawn) {
     });
     json["axis"] = axis_letter(axis.name);
     json["title"] = "Position " + axis_letter(axis.name);
-    json["unit"] = position_unit(axis.name);
+    json["unit"] = position_unit(axis.name).suffix;
     list.push_back(std::move(json));
   }
   if (has_time(input.campaign)) {
     Json json = plot(input, drawn, [&](const ResidualRecord& record) {
       const std::vector<double>& time = setups[record.setup].readings.time;
-      return time.empty() ? nan() : time[record.row] / 60.0;
+      return time.empty() ? nan() : time[record.row] / kSecondsPerMinute;
     });
     json["axis"] = "time";
     json["title"] = "Time";

@@ -1,0 +1,67 @@
+#include "volcal/identify/criticism/model_extension.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "volcal/identify/criticism/catalogue/left_out.h"
+#include "volcal/model/effects/driver_check.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+[[noreturn]] void refuse_known(const ModelSpec& model, int line, const std::string& what,
+                               const ExtensionWords& words) {
+  throw InputError({model.file, line}, "the model has " + what + " already", words.remedy_if_known);
+}
+
+void require_axis(const ModelToExtend& extended, AxisName axis, const ExtensionWords& words) {
+  if (extended.machine.has_axis(axis)) return;
+  throw InputError({extended.model.file, 0},
+                   words.label + " acts on an axis that the model's machine does not have",
+                   words.remedy_if_absent);
+}
+
+void give_back(const ModelToExtend& extended, const EffectSpec& spec, const ExtensionWords& words) {
+  const std::vector<std::string> symbols = left_out_symbols(spec);
+  for (const std::string& name : symbols) {
+    if (const auto symbol = ErrorSymbol::parse(name)) require_axis(extended, symbol->axis, words);
+    if (const auto symbol = LocationSymbol::parse(name)) require_axis(extended, symbol->axis, words);
+  }
+  const bool lacks_one = std::ranges::any_of(
+      symbols, [&](const std::string& name) { return is_left_out(name, extended.model); });
+  if (!lacks_one) refuse_known(extended.model, 0, *spec.options.text("symbol"), words);
+  restore_left_out(spec, extended.model);
+}
+
+}  // namespace
+
+std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
+                                     const ExtensionWords& words) {
+  if (spec.kind == kLeftOut) {
+    give_back(extended, spec, words);
+    return nullptr;
+  }
+  ModelSpec& model = extended.model;
+  const EffectKind* kind = find_effect(spec.kind);
+  if (kind == nullptr) {
+    throw InputError(words.place, words.label + " is of no kind of effect of this program",
+                     "volcal diagnose --list prints all kinds");
+  }
+  std::unique_ptr<Effect> effect = kind->make(spec, words.place.file);
+  for (const EffectSpec& present : model.effects) {
+    const EffectKind* known = find_effect(present.kind);
+    if (known != nullptr && known->make(present, model.file)->name() == effect->name())
+      refuse_known(model, present.source_line, words.label, words);
+  }
+  if (extended.campaign != nullptr) effect->check(*extended.campaign, words.place);
+  for (const EffectAmplitude& amplitude : effect->amplitudes()) {
+    if (amplitude.target.kind == TargetKind::Motion)
+      require_axis(extended, amplitude.target.symbol.axis, words);
+  }
+  if (extended.campaign != nullptr) check_drivers_vary(*extended.campaign, *effect, words.place);
+  model.effects.push_back(spec);
+  return effect;
+}
+
+}  // namespace volcal

@@ -1,0 +1,38 @@
+#pragma once
+/// The one way to extend a model: an effect is added, an error that the model leaves out is given back.
+
+#include <memory>
+#include <string>
+
+#include "volcal/model/description/campaign.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/model_spec.h"
+#include "volcal/model/effects/effect.h"
+
+namespace volcal {
+
+/// What is extended. `campaign`: where the effect has to act; none: only the machine is looked at.
+struct ModelToExtend {
+  ModelSpec& model;
+  const Machine& machine;
+  const Campaign* campaign = nullptr;
+};
+
+/// What messages say of an effect that is to be added.
+struct ExtensionWords {
+  std::string label;             ///< "reversal EXX"
+  SourcePlace place = {};        ///< where it was given
+  std::string remedy_if_known;   ///< where the model has it already
+  std::string remedy_if_absent;  ///< where the machine lacks its axis
+};
+
+/// Adds the effect `spec` to the model, or gives back the errors that it names (left_out.h). Returns the
+/// effect; nothing where errors were given back. Throws InputError, the model unchanged, where
+///   the model has it already,
+///   its kind is none of the catalogue,
+///   it acts on an axis that the machine does not have,
+///   the campaign lacks what the effect is about, or the effect's drivers never change there.
+std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
+                                     const ExtensionWords& words);
+
+}  // namespace volcal

@@ -1,0 +1,20 @@
+#pragma once
+/// What a basis, and nothing else, decides of the priors of its functions.
+
+#include <Eigen/Core>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/model/description/model_spec.h"
+#include "volcal/model/functions/basis.h"
+
+namespace volcal {
+
+/// Whether a function is smoothed (function_prior.h): its knots are the program's choice, and its basis has a
+/// roughness. Fixed knots, Legendre polynomials and Fourier series say themselves how smooth it is.
+bool is_smoothed(const FunctionSpec& spec, const Basis& basis);
+
+/// Precision of the coefficients of a function whose standard deviation over the travel is 1, and which is
+/// smooth where its basis has a roughness: the wide prior (rank.h) of what the readings do not determine.
+Eigen::MatrixXd wide_precision(const Basis& basis, const Axis& axis);
+
+}  // namespace volcal

@@ -29,27 +29,33 @@ function(volcal_compile_options target)
   endif()
 endfunction()
 
-# With VOLCAL_UNITY_BUILD the files of a folder are compiled together, a dozen at a time, so that the headers
-# they share are read once. Names in unnamed namespaces are therefore unique within a folder. A file that renames
-# what it includes (VOLCAL_VECTOR_LOOPS) is compiled alone.
+# With VOLCAL_UNITY_BUILD neighbouring files of a target are compiled together, as many as `most` and all groups of
+# one size, so that the headers they share are read once and a template is instantiated once. Names in unnamed
+# namespaces are therefore unique within a target. A file that renames what it includes (VOLCAL_VECTOR_LOOPS), or is
+# for one instruction set, is compiled alone.
 function(volcal_unity_build target)
   if(NOT VOLCAL_UNITY_BUILD)
     return()
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  set(most 16)
   get_target_property(sources ${target} SOURCES)
+  set(together)
   foreach(source IN LISTS sources)
-    cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
-    cmake_path(GET folder PARENT_PATH folder)
-    string(MAKE_C_IDENTIFIER ${folder} folder)
-    math(EXPR count "${count_${folder}} + 0")
-    math(EXPR dozen "${count} / 12")
-    math(EXPR count_${folder} "${count} + 1")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${dozen})
     file(STRINGS ${source} renames REGEX "^#define VOLCAL_VECTOR_LOOPS" LIMIT_COUNT 1)
-    if(renames)
+    if(renames OR source MATCHES "_avx(2|512)\.cpp$")
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    else()
+      list(APPEND together ${source})
     endif()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  list(LENGTH together count)
+  math(EXPR groups "(${count} + ${most} - 1) / ${most}")
+  set(number 0)
+  foreach(source IN LISTS together)
+    math(EXPR group "${number} * ${groups} / ${count}")
+    math(EXPR number "${number} + 1")
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP part_${group})
   endforeach()
 endfunction()
 

@@ -24,7 +24,7 @@ constexpr double kLineOffset = 0.2e-6;
 constexpr double kScale = 0.3e-6;     // relative
 constexpr double kToolOffset = 3e-6;  // m
 
-sim::Study study_of(const ClosedLoopOptions& options, int campaign) {
+sim::Study closed_loop_study(const ClosedLoopOptions& options, int campaign) {
   const std::vector<Machine> machines = sim::reference_machines();
   sim::Study study;
   study.machine = machines[static_cast<std::size_t>(campaign) % machines.size()];
@@ -96,7 +96,7 @@ std::map<std::string, double> table_coverage(const sim::SimulatedCampaign& simul
 }
 
 ClosedLoopCampaign run_campaign(const ClosedLoopOptions& options, int campaign) {
-  const sim::Study study = study_of(options, campaign);
+  const sim::Study study = closed_loop_study(options, campaign);
   const sim::SimulatedCampaign simulated = sim::simulate(study);
   const FitResult result = fit(simulated.campaign, ModelSpec{}, one_thread(NoisePolicy::Automatic));
   const Validation validation = validate(simulated.validation, result, 1);

@@ -39,7 +39,7 @@ bool has_room() {
   return true;
 }
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse_to_start() {
   constexpr char kSentence[] =
       "error: the limit of memory is too low to start: 320 MiB must be free (raise or lift it: ulimit -v, "
       "ulimit -d)\n";
@@ -62,7 +62,7 @@ void start_again_with_one_thread(char** arguments, char** environment) {
 }
 
 void check_memory_limit(int /*argc*/, char** arguments, char** environment) {
-  if (!has_room()) refuse();
+  if (!has_room()) refuse_to_start();
   if (limits_memory(RLIMIT_AS) || limits_memory(RLIMIT_DATA))
     start_again_with_one_thread(arguments, environment);
 }

@@ -10,7 +10,8 @@
 #include "volcal/identify/criticism/proposals/next_measurement.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/search.h"
-#include "volcal/identify/criticism/unknown_findings.h"
+#include "volcal/identify/criticism/search/unknown_findings.h"
+#include "volcal/identify/criticism/surface_findings.h"
 #include "volcal/identify/criticism/verdict.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/model/observation/channels.h"
@@ -87,6 +88,10 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
   list_detectable(search.given(), diagnosis);
   list_ranking(reached, diagnosis);
   diagnosis.unknown = unknown_findings(reached, search.rejected());
+  diagnosis.surfaces = surface_findings(reached);
+  for (std::size_t i = 0; i < reached.surfaces().size(); ++i)
+    diagnosis.unknown.insert(diagnosis.unknown.begin() + static_cast<std::ptrdiff_t>(i),
+                             reached.surfaces()[i].finding);
   diagnosis.noise = noise_table(reached.noise_with_uncertainty());
   diagnosis.noise_instruments = reached.model().noise_groups();
   conclude(remarks(search), diagnosis);

@@ -51,6 +51,36 @@ Finding alternatives(FindingCode code, const std::vector<EffectFinding>& set) {
   return {code, {{"effects", labels(set)}}};
 }
 
+void add_laws(const std::vector<FormulaFinding>& formulas, Finding& finding) {
+  std::vector<std::string> laws, shapes;
+  std::vector<FindingNumber> amplitudes, expanded;
+  for (const FormulaFinding& formula : formulas) {
+    laws.push_back(formula.label);
+    shapes.push_back(formula.shape_text);
+    amplitudes.push_back({formula.amplitude, formula.unit, formula.si_per_unit});
+    expanded.push_back({kCoverageFactor * formula.u, formula.unit, formula.si_per_unit});
+  }
+  finding.data["laws"] = laws;
+  finding.data["law_shapes"] = shapes;
+  finding.data["law_amplitudes"] = amplitudes;
+  finding.data["law_U"] = expanded;
+}
+
+Finding drawn(const SurfaceFinding& surface) {
+  const auto value = [&surface](double si) { return FindingNumber{si, surface.unit, surface.si_per_unit}; };
+  Finding finding{FindingCode::DiagnosisDrawn,
+                  {{"effect", surface.label},
+                   {"largest", value(surface.largest)},
+                   {"U", value(kCoverageFactor * surface.largest_u)},
+                   {"drivers", surface.drivers},
+                   {"at", std::vector<FindingNumber>(surface.at.size())}}};
+  auto& at = std::get<std::vector<FindingNumber>>(finding.data["at"]);
+  for (std::size_t i = 0; i < at.size(); ++i) at[i].si = surface.at[i];
+  if (!surface.free.empty()) finding.data["left_open"] = surface.free;
+  if (!surface.formulas.empty()) add_laws(surface.formulas, finding);
+  return finding;
+}
+
 void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
   const auto sets = sets_of_alternatives(diagnosis);
   const bool more = !diagnosis.unknown.empty();
@@ -96,6 +126,7 @@ void conclude_nothing(Diagnosis& diagnosis) {
 void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
   auto& findings = diagnosis.findings;
   findings.insert(findings.end(), remarks.rejected.begin(), remarks.rejected.end());
+  for (const SurfaceFinding& surface : diagnosis.surfaces) findings.push_back(drawn(surface));
   if (const std::size_t back = remarks.removed_by_fit - diagnosis.removed_readings.size(); back > 0) {
     findings.push_back({FindingCode::DiagnosisReadingsReinstated,
                         {{"readings", count(back)}, {"of", count(remarks.removed_by_fit)}}});

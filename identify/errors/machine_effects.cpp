@@ -261,9 +261,9 @@ class ReachProbe {
 };
 
 int parameter_of(const FitResult& result, const std::string& label) {
-  const ParameterBlock* block = result.layout.find_block(label);
-  if (block == nullptr) throw std::logic_error("an effect's parameter is missing: " + label);
-  return block->offset;
+  const std::optional<int> place = result.layout.find_parameter(label);
+  if (!place) throw std::logic_error("an effect's parameter is missing: " + label);
+  return *place;
 }
 
 }  // namespace
@@ -280,7 +280,7 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
     if (!probe) probe.emplace(shared->machine, shared->tool, conditions, shared->clock_start);
     one.reach = probe->reach_of(*one.effect);
     if (!one.reach.acts) continue;
-    one.label = one.effect->amplitudes().front().label;
+    one.label = effect_label(*one.effect);
     one.shape = one.effect->shape_values();
     const auto& shapes = one.effect->shapes();
     for (std::size_t s = 0; s < shapes.size(); ++s) {
@@ -406,7 +406,7 @@ std::vector<std::string> effects_on_no_pose(const FitResult& result) {
     const bool acts = std::ranges::any_of(result.machine.tools, [&](const Tool& tool) {
       return ReachProbe(result.machine, tool, conditions, clock_start).reach_of(*effect).acts;
     });
-    if (!acts) labels.push_back(effect->amplitudes().front().label);
+    if (!acts) labels.push_back(effect_label(*effect));
   }
   return labels;
 }

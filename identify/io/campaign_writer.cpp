@@ -91,9 +91,11 @@ void append_number(double value, int decimals, std::string& text) {
   text += number == "-0" ? "0" : number;
 }
 
-std::string vector_text(const Eigen::Vector3d& v, double si_per_unit) {
-  return fmt::format("[{}, {}, {}]", edge_number(v.x(), si_per_unit), edge_number(v.y(), si_per_unit),
-                     edge_number(v.z(), si_per_unit));
+template <class Range>
+std::string list_text(const Range& values, double si_per_unit) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + edge_number(value, si_per_unit);
+  return "[" + text + "]";
 }
 
 /// One `key = value` of a schema; empty when the options do not hold it.
@@ -105,7 +107,10 @@ std::string option_toml(const KeySchema& key, const Options& options) {
       if (const auto value = options.number(stem)) return key.key + " = " + edge_number(*value, factor);
       break;
     case KeyType::Vector3:
-      if (const auto value = options.vector(stem)) return key.key + " = " + vector_text(*value, factor);
+      if (const auto value = options.vector(stem)) return key.key + " = " + list_text(*value, factor);
+      break;
+    case KeyType::Numbers:
+      if (const auto value = options.numbers(stem)) return key.key + " = " + list_text(*value, factor);
       break;
     case KeyType::Text:
       if (const auto value = options.text(stem)) return key.key + " = " + toml_text(*value);

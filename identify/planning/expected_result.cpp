@@ -75,6 +75,7 @@ class Expectation {
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = assumed_smoothing(model_, datum_, roughness);
     hold_invisible(rank_, terms_, base_prior_);
+    leave_imitated_to_the_rest(information_, base_prior_, terms_);
     base_prior_.mean = z_;
     prior_ = base_prior_;
     add_smoothing(terms_, prior_);

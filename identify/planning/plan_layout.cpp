@@ -6,13 +6,13 @@
 #include <tuple>
 
 #include "volcal/identify/planning/registry.h"
+#include "volcal/identify/planning/swept_volume.h"
 
 namespace volcal {
 namespace {
 
 constexpr double kResting = 1e-12;
-constexpr double kProgrammedSteps = 1e6;  // per metre
-constexpr double kPause = 600.0;          // s, between setups where nothing is said
+constexpr double kPause = 600.0;  // s, between setups where nothing is said
 
 std::array<std::int8_t, kAxisCount> approach(const AxisPosition& from, const AxisPosition& to,
                                              std::array<std::int8_t, kAxisCount> before) {
@@ -208,8 +208,7 @@ std::vector<PlanPosition> grid_over_travel(const Machine& machine, const Eigen::
           const double step = axis.travel() / (per_axis[d] - 1);
           const int place = each.cell[static_cast<std::size_t>(d)];
           q = axis.travel_min + step * (place + jitter * even(random));
-          q = std::clamp(std::round(q * kProgrammedSteps) / kProgrammedSteps, axis.travel_min,
-                         axis.travel_max);
+          q = std::clamp(programmed_position(q), axis.travel_min, axis.travel_max);
         }
         positions.push_back(each);
       }

@@ -79,12 +79,25 @@ Campaign thinned(const Campaign& campaign) {
   return thin;
 }
 
+/// A surface is as large as the model states it; without coefficients as it starts.
+void assume_identified(const Eigen::VectorXd& z, SmoothingTerm& term) {
+  const auto size = term.precision().rows();
+  const auto own = z.segment(term.offset, size);
+  const double squares = own.dot(term.precision() * own);
+  if (squares > 0.0) term.lambda = static_cast<double>(size) / squares;
+}
+
 }  // namespace
 
 std::vector<SmoothingTerm> assumed_smoothing(const MeasurementModel& model, const DatumSpace& datum,
                                              const FunctionRoughnessGuess& guess) {
   std::vector<SmoothingTerm> terms = smoothing_terms(model, datum);
+  const Eigen::VectorXd z = datum.reduced(model.initial_parameters());
   for (SmoothingTerm& term : terms) {
+    if (!term.is_function()) {
+      assume_identified(z, term);
+      continue;
+    }
     const auto& shapes = term.family->shapes();
     double nearest = std::numeric_limits<double>::infinity();
     const double travel = model.campaign().machine.axis(term.symbol.axis).travel();

@@ -21,6 +21,8 @@ Eigen::Vector3d spindle_direction(const Machine& machine) {
 
 }  // namespace
 
+double programmed_position(double q) { return std::round(q * kProgrammedSteps) / kProgrammedSteps; }
+
 AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share) {
   AxisPosition position{};
   for (const Axis& axis : machine.axes) {
@@ -86,7 +88,7 @@ std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& want
   }
   const Eigen::Vector3d moves = directions.inverse() * (wanted_w - at_zero);
   for (const AxisName name : kLinearAxes) {
-    const double q = std::round(moves[direction_of(name)] * kProgrammedSteps) / kProgrammedSteps;
+    const double q = programmed_position(moves[direction_of(name)]);
     const Axis& axis = settings_.machine.axis(name);
     if (q < axis.travel_min || q > axis.travel_max) return std::nullopt;
     position[index_of(name)] = q;

@@ -42,6 +42,9 @@ class SweptVolume {
 double distance_from_half_line(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                const Eigen::Vector3d& from, const Eigen::Vector3d& direction);
 
+/// In whole micrometres, as in an NC program.
+double programmed_position(double q);
+
 /// All axes at home, X, Y, Z at shares of their travel.
 AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share);
 

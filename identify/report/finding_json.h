@@ -7,6 +7,9 @@ namespace volcal::report {
 
 /// label, kind, shape, log10_p, visible_fraction, resolution; amplitudes with value, U95, mdb in `unit`.
 Json finding_json(const EffectFinding& effect);
+/// label, target, factor, unit; axes with title, places and dots; value and U95 in `unit`, those of the last
+/// axis next to each other; largest with its U95 and place; what is free.
+Json surface_json(const SurfaceFinding& surface);
 /// centre x factor, mean and noise in units of `value_unit`, count.
 Json binned_json(const BinnedMean& means, double centre_factor, double value_factor);
 

@@ -16,7 +16,7 @@
 
 #include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/identify/solve/campaign_noise.h"
-#include "volcal/identify/solve/priors/smoothing.h"
+#include "volcal/identify/solve/priors/evidence.h"
 
 namespace volcal {
 

@@ -13,8 +13,8 @@
 #include "volcal/identify/solve/correlated_adjustment.h"
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/plausibility.h"
+#include "volcal/identify/solve/priors/evidence.h"
 #include "volcal/identify/solve/priors/resolution.h"
-#include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/identify/solve/rank.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/identify/solve/summaries.h"
@@ -188,6 +188,7 @@ class Identification {
     hold_undetermined(rank_, wide, base_prior_);
     terms_ = smoothing_terms(model_, *datum_);
     hold_invisible(rank_, terms_, base_prior_);
+    leave_imitated_to_the_rest(datum_->reduce_matrix(sums.matrix), base_prior_, terms_);
   }
 
   GaussianPrior prior() const {

@@ -54,7 +54,7 @@ std::vector<ErrorStretch> error_stretches(const MeasurementModel& model, const D
   }
   for (const auto& block : datum.blocks()) {
     const ParameterBlock& source = model.layout().blocks[block.block];
-    if (!source.location && source.kind != ParameterKind::Effect) continue;
+    if (!source.location && (source.kind != ParameterKind::Effect || is_surface(source))) continue;
     stretches.push_back(
         {source.name, block.offset, block.size, Eigen::MatrixXd::Identity(block.size, block.size), nullptr});
   }
@@ -88,7 +88,11 @@ class RankAnalyser {
   }
 
   RankAnalysis run() {
-    analysis_.report.parameters = datum_.size();
+    for (const auto& block : datum_.blocks()) {
+      if (!is_surface(model_.layout().blocks[block.block])) continue;
+      for (int k = 0; k < block.size; ++k) analysis_.of_surfaces.push_back(block.offset + k);
+    }
+    analysis_.report.parameters = datum_.size() - static_cast<int>(analysis_.of_surfaces.size());
     for (const ErrorStretch& stretch : stretches_) judge(stretch);
     for (const auto& block : datum_.blocks()) report_held(block);
     return std::move(analysis_);

@@ -8,6 +8,8 @@
 /// over the measured travel is more than a hundredth of its prior variance. Both are free of the choice of
 /// units, and of the noise where this is more than 2 um.
 ///
+/// Surfaces (surface_prior.h) count as known here: what they could hide of an error belongs to the error.
+///
 /// Where an error is not visible the prior stands on the invisible directions alone and pulls nothing that
 /// the readings determine. Where all are, it also stands, for the detail that smoothing holds, on directions
 /// that the readings determine, and changes their estimates by less than a hundredth of u.
@@ -36,6 +38,8 @@ struct RankAnalysis {
   std::vector<ErrorSymbol> invisible_functions;
   bool deficient = false;        ///< an error is not visible
   Eigen::MatrixXd on_invisible;  ///< precision of the wide prior on the invisible directions alone
+  std::vector<int>
+      of_surfaces;  ///< reduced coordinates of surfaces' coefficients, which no analysis concerns
 };
 
 /// `data`: normal matrix of the readings plus the user's priors on nuisance parameters, reduced coordinates.

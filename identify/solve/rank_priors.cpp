@@ -15,6 +15,7 @@ constexpr double kWideRotation = 1e-3;
 constexpr double kWideSquareness = 1e-3;
 constexpr double kNoiseOfMachineTools = 2e-6;  // m or rad: what these widths are wide beside
 constexpr double kWideNuisance = 1.0;
+constexpr double kHeldSurface = 1e-9;  // what a surface could hide of the errors belongs to them
 
 /// Standard deviations of the wide prior.
 class WideSigma {
@@ -66,9 +67,9 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
   }
   for (const auto& block : datum.blocks()) {
     const ParameterBlock& source = model.layout().blocks[block.block];
-    for (int k = 0; k < block.size; ++k) {
-      prior.precision(block.offset + k, block.offset + k) = 1.0 / std::pow(wide_sigma.of(source), 2);
-    }
+    const double width = is_surface(source) ? kHeldSurface : wide_sigma.of(source);
+    for (int k = 0; k < block.size; ++k)
+      prior.precision(block.offset + k, block.offset + k) = 1.0 / (width * width);
     if (source.location || source.kind == ParameterKind::Effect)
       prior.mean.segment(block.offset, block.size).setZero();
   }
@@ -92,12 +93,18 @@ GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& dat
 void hold_undetermined(const RankAnalysis& rank, const GaussianPrior& wide, GaussianPrior& prior) {
   if (rank.report.rank >= rank.report.parameters) return;
   prior.mean = (prior.precision.diagonal().array() > 0.0).select(prior.mean, wide.mean);
-  prior.precision += rank.deficient ? rank.on_invisible : wide.precision;
+  Eigen::MatrixXd held = rank.deficient ? rank.on_invisible : wide.precision;
+  for (const int coefficient : rank.of_surfaces) {
+    held.row(coefficient).setZero();
+    held.col(coefficient).setZero();
+  }
+  prior.precision += held;
 }
 
 void hold_invisible(const RankAnalysis& rank, std::vector<SmoothingTerm>& terms, GaussianPrior& prior) {
   const auto is_visible = [&](const SmoothingTerm& term) {
-    return std::ranges::find(rank.invisible_functions, term.symbol) == rank.invisible_functions.end();
+    return !term.is_function() ||
+           std::ranges::find(rank.invisible_functions, term.symbol) == rank.invisible_functions.end();
   };
   const auto unseen = std::stable_partition(terms.begin(), terms.end(), is_visible);
   std::vector<SmoothingTerm> held(unseen, terms.end());

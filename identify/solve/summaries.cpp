@@ -22,7 +22,7 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
     summary.intervals = std::max(0, static_cast<int>(function_spec.breakpoints.size()) - 1);
     summary.effective_parameters = function.size();
     for (const SmoothingTerm& term : terms) {
-      if (term.symbol != function.symbol) continue;
+      if (!term.is_function() || term.symbol != function.symbol) continue;
       summary.smoothed = true;
       summary.prior = to_string(term.prior->roughness);
       summary.correlation_length = term.prior->correlation_length() * term.family->stretch_length();
@@ -87,12 +87,14 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
   }
   for (EffectSpec& effect : identified.effects) {
     const auto made = find_effect(effect.kind)->make(effect, spec.file);
-    const auto keep = [&](const std::string& label, const std::string& key) {
-      const ParameterBlock* block = layout.find_block(label);
-      if (block != nullptr) effect.options.set(std::string(stem_of_key(key)), parameters[block->offset]);
-    };
-    for (const EffectAmplitude& amplitude : made->amplitudes()) keep(amplitude.label, amplitude.key);
-    for (const EffectShape& shape : made->shapes()) keep(shape.label, shape.key);
+    for (const EffectAmplitude& amplitude : made->amplitudes()) {
+      if (const auto place = layout.find_parameter(amplitude.label))
+        amplitude.keep(parameters[*place], effect.options);
+    }
+    for (const EffectShape& shape : made->shapes()) {
+      if (const auto place = layout.find_parameter(shape.label))
+        effect.options.set(std::string(stem_of_key(shape.key)), parameters[*place]);
+    }
   }
   return identified;
 }

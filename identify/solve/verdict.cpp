@@ -159,7 +159,7 @@ void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& 
       unrecorded += effect.effect->unrecorded({campaign, setup, {}, {}});
     if (unrecorded == 0) continue;
     result.findings.push_back({FindingCode::EffectDriverUnrecorded,
-                               {{"effect", effect.effect->amplitudes().front().label},
+                               {{"effect", effect_label(*effect.effect)},
                                 {"readings", static_cast<std::int64_t>(unrecorded)},
                                 {"driver", effect.effect->name().driver}}});
   }

@@ -397,6 +397,12 @@ Options TomlTable::options(const std::vector<KeySchema>& schema) const {
         read.set(stem, value);
         break;
       }
+      case KeyType::Numbers: {
+        std::vector<double> values = required_numbers(key.key);
+        for (const double value : values) check_plausible(key, value / factor);
+        read.set(stem, std::move(values));
+        break;
+      }
       case KeyType::Text: {
         const std::string value = key.choices.empty() ? *text(key.key) : *choice(key.key, key.choices);
         if (is_blank(value)) {

@@ -70,6 +70,42 @@ std::string nearest(const Finding& finding) {
   return "Nearest in the catalogue, but not all of it: " + names(finding);
 }
 
+/// " A law that explains as much: EAY by y * z^2 with p = 120, 1.2 +- 0.1 urad."
+std::string laws(const Finding& finding) {
+  const std::vector<std::string> labels = finding.texts("laws"), shapes = finding.texts("law_shapes");
+  const std::vector<FindingNumber> amplitudes = finding.numbers("law_amplitudes");
+  const std::vector<FindingNumber> expanded = finding.numbers("law_U");
+  const std::size_t count = labels.size();
+  if (shapes.size() != count || amplitudes.size() != count || expanded.size() != count)
+    throw std::invalid_argument("there is not one shape, amplitude and U for each law");
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += fmt::format(" {} {}{}, {:.3g} +- {:.2g} {}.",
+                        i == 0 ? "A law that explains as much:" : "Or:", labels[i],
+                        shapes[i].empty() ? "" : " with " + shapes[i], amplitudes[i].in_unit(),
+                        expanded[i].in_unit(), amplitudes[i].unit);
+  }
+  return text;
+}
+
+/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310, z = -120; ..."
+std::string drawn(const Finding& finding) {
+  const std::vector<std::string> drivers = finding.texts("drivers");
+  const std::vector<FindingNumber> at = finding.numbers("at");
+  if (drivers.size() != at.size()) throw std::invalid_argument("there is not one value for each driver");
+  std::string place;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", drivers[i], at[i].si);
+  const FindingNumber& largest = finding.number("largest");
+  std::string text = fmt::format(
+      "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it and the error falls.",
+      finding.text("effect"), largest.in_unit(), finding.number("U").in_unit(), largest.unit, place);
+  text += laws(finding);
+  for (const std::string& part : finding.texts("left_open"))
+    text += " These readings leave open " + part + ".";
+  return text;
+}
+
 std::string more_one_of(const Finding& finding) { return "More remains, one of: " + names(finding); }
 
 std::string more_in_catalogue(const Finding&) {
@@ -164,6 +200,7 @@ std::span<const SentenceMaker> criticism_sentences() {
       {FindingCode::DiagnosisUnknown, unknown},
       {FindingCode::DiagnosisOneOf, one_of},
       {FindingCode::DiagnosisNearest, nearest},
+      {FindingCode::DiagnosisDrawn, drawn},
       {FindingCode::DiagnosisMoreOneOf, more_one_of},
       {FindingCode::DiagnosisMoreInCatalogue, more_in_catalogue},
       {FindingCode::DiagnosisMoreUnknown, more_unknown},

@@ -12,7 +12,7 @@
 
 namespace volcal {
 
-enum class KeyType { Number, Text, Boolean, Vector3 };
+enum class KeyType { Number, Text, Boolean, Vector3, Numbers };
 
 /// One key of a TOML table. The unit is the suffix of the key; `plausible_*` bounds |value| in that unit.
 struct KeySchema {
@@ -22,7 +22,7 @@ struct KeySchema {
   std::string help;
   std::vector<std::string> choices = {};  ///< for Text: allowed values; empty = any
   double plausible_min = 0.0;             ///< smallest |value| other than 0 that is believed
-  double plausible_max = 1e300;           ///< largest |value| (for Vector3: of a component) that is believed
+  double plausible_max = 1e300;           ///< largest |value| (of each component or entry) that is believed
 };
 
 /// One reading column. Several columns of one instrument are read together (ex, ey, ez).
@@ -34,7 +34,7 @@ struct ColumnSchema {
 
 /// Values of a table's keys after reading: SI, under the key's stem ("station", not "station_mm"). Values of
 /// different type under one stem stand beside each other: `station = "P1"` and `station_mm = [...]`.
-using OptionValue = std::variant<double, std::string, bool, Eigen::Vector3d>;
+using OptionValue = std::variant<double, std::string, bool, Eigen::Vector3d, std::vector<double>>;
 class Options {
  public:
   using Key = std::pair<std::string, std::size_t>;  ///< stem and index of the value's type
@@ -48,6 +48,10 @@ class Options {
   std::optional<std::string> text(const std::string& stem) const { return get<std::string>(stem); }
   std::optional<bool> boolean(const std::string& stem) const { return get<bool>(stem); }
   std::optional<Eigen::Vector3d> vector(const std::string& stem) const { return get<Eigen::Vector3d>(stem); }
+  /// A list of any length.
+  std::optional<std::vector<double>> numbers(const std::string& stem) const {
+    return get<std::vector<double>>(stem);
+  }
   const std::map<Key, OptionValue>& all() const { return values_; }
 
  private:

@@ -38,7 +38,7 @@ struct Recorded {
   Range range;
 };
 
-std::optional<Recorded> recorded(const Campaign& campaign, const std::string& variable) {
+std::optional<Recorded> recorded_range(const Campaign& campaign, const std::string& variable) {
   for (const AxisName axis : kAllAxes) {
     const std::string letter(1, lower_letter_of(axis));
     if (variable != letter && variable != "dir_" + letter) continue;
@@ -69,7 +69,7 @@ std::vector<std::string> constant_columns(const Campaign& campaign, const Effect
   std::vector<std::string> constant;
   std::istringstream words(name.driver);
   for (std::string variable; words >> variable;) {
-    const auto found = recorded(campaign, variable);
+    const auto found = recorded_range(campaign, variable);
     const bool unknown_direction =
         found && found->range.constant() && found->range.min == 0.0 && variable.starts_with("dir_");
     if (found && found->range.constant() && !unknown_direction) {
@@ -95,8 +95,8 @@ void check_drivers_vary(const Campaign& campaign, const Effect& effect, const So
   const std::vector<std::string> constant = constant_columns(campaign, effect.name());
   if (constant.empty()) return;
   throw InputError(place,
-                   fmt::format("{} depends on {}: the same in all readings",
-                               effect.amplitudes().front().label, fmt::join(constant, " and ")),
+                   fmt::format("{} depends on {}: the same in all readings", effect_label(effect),
+                               fmt::join(constant, " and ")),
                    "remove the effect, or measure where that changes");
 }
 

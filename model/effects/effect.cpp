@@ -9,8 +9,27 @@ namespace volcal {
 std::string EffectAmplitude::unit() const { return unit_text(unit_of_key(key).suffix); }
 double EffectAmplitude::si_per_unit() const { return unit_of_key(key).si_per_unit; }
 
+void EffectAmplitude::keep(double value, Options& options) const {
+  const std::string stem(stem_of_key(key));
+  if (element < 0) return options.set(stem, value);
+  std::vector<double> all = options.numbers(stem).value_or(std::vector<double>{});
+  const auto place = static_cast<std::size_t>(element);
+  if (all.size() <= place) all.resize(place + 1, 0.0);
+  all[place] = value;
+  options.set(stem, std::move(all));
+}
+
 std::string EffectShape::unit() const { return unit_text(unit_of_key(key).suffix); }
 double EffectShape::si_per_unit() const { return unit_of_key(key).si_per_unit; }
+
+std::string surface_name(const Effect& effect) {
+  const std::string& first = effect.amplitudes().front().label;
+  return first.substr(0, first.rfind(' '));
+}
+
+std::string effect_label(const Effect& effect) {
+  return effect.surface() != nullptr ? surface_name(effect) : effect.amplitudes().front().label;
+}
 
 Eigen::VectorXd Effect::shape_values() const {
   Eigen::VectorXd values(static_cast<Eigen::Index>(shapes_.size()));

@@ -19,6 +19,8 @@
 
 namespace volcal {
 
+class TensorBasis;
+
 enum class TargetKind { Motion, ToolOffset, Station, Floor, Reading };
 
 /// What an amplitude is added to: an error motion (m, rad), the tool's offset in tool coordinates (m), the
@@ -37,9 +39,12 @@ struct EffectAmplitude {
   EffectTarget target;
   std::string key;     ///< schema key of its value, with unit: "amplitude_um_per_K"
   double guess = 0.0;  ///< SI; the value of an identified model, else 0
+  int element = -1;    ///< of the list that the key holds; -1: the key holds a number
 
   std::string unit() const;  ///< edge unit: "um/K"
   double si_per_unit() const;
+  /// Keeps a value, SI, where the amplitude is read from.
+  void keep(double value, Options& options) const;
 };
 
 /// A parameter of the shape, on which the driver depends nonlinearly.
@@ -98,6 +103,9 @@ class Effect {
   /// Values of the shape's parameters at which an unknown shape is looked for; one entry, the given shape,
   /// when nothing is to be looked for. Neighbours are near enough not to miss what lies between.
   virtual std::vector<Eigen::VectorXd> scan(const Campaign& campaign) const;
+  /// Set where the amplitudes are the coefficients of one function of its drivers: a prior ties them together
+  /// (identify/solve/priors/surface_prior.h), and none of them means anything alone.
+  virtual const TensorBasis* surface() const { return nullptr; }
   /// Readings of a setup on which the effect acts, but whose driver was not recorded.
   virtual std::size_t unrecorded(const SetupView& /*view*/) const { return 0; }
 
@@ -107,12 +115,24 @@ class Effect {
   std::vector<EffectShape> shapes_;
 };
 
+/// Name of the function that the amplitudes of a surface describe together: "surface EAY by y z".
+std::string surface_name(const Effect& effect);
+/// That, or the label of the first amplitude.
+std::string effect_label(const Effect& effect);
+
 class EffectKind {
  public:
   virtual ~EffectKind() = default;
   virtual const EffectSchema& schema() const = 0;
   /// Throws InputError naming file and line of the effect in the model file.
   virtual std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const = 0;
+  /// Whether the spec leaves open what the readings are to tell, as the range of a driver.
+  virtual bool is_open(const EffectSpec& /*spec*/) const { return false; }
+  /// With that. Throws InputError where they do not tell.
+  virtual EffectSpec resolved(const EffectSpec& spec, const std::vector<SetupView>& /*views*/,
+                              const std::string& /*model_file*/) const {
+    return spec;
+  }
   /// Every effect of this kind that could act in the campaign, amplitudes unknown: what a diagnosis tests.
   virtual std::vector<EffectSpec> candidates(const Campaign& campaign) const = 0;
   /// Effects to show and to try the kind on; other than the candidates for a kind that nobody can guess.

@@ -36,7 +36,8 @@ namespace volcal {
   EFFECT(beam_misalignment_effect)    \
   EFFECT(encoder_eccentricity_effect) \
   EFFECT(run_offset_effect)           \
-  EFFECT(custom_effect)
+  EFFECT(custom_effect)               \
+  EFFECT(empirical_effect)
 
 #define VOLCAL_DECLARE(name) const EffectKind& name();
 #define VOLCAL_ADDRESS(name) &(name)(),

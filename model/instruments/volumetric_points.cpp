@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kComponentColumns = {"ex_um", "ey_um", "ez_um"};
 
-ColumnSchema component(int k) {
+ColumnSchema coordinate_column(int k) {
   static const std::array<std::string, 3> kHelp = {"error vector, x", "error vector, y", "error vector, z"};
   const auto i = static_cast<std::size_t>(k);
   return {.column = std::string(kComponentColumns[i]), .help = kHelp[i], .plausible_max = 1e5};
@@ -33,13 +33,13 @@ const InstrumentSchema kVolumetricPointsSchema = {
              {.key = "artefact",
               .type = KeyType::Text,
               .help = "setups that name the same artefact share its rigid alignment"}},
-    .column_sets = {{component(0), component(1), component(2)},
-                    {component(0), component(1)},
-                    {component(1), component(2)},
-                    {component(0), component(2)},
-                    {component(0)},
-                    {component(1)},
-                    {component(2)}},
+    .column_sets = {{coordinate_column(0), coordinate_column(1), coordinate_column(2)},
+                    {coordinate_column(0), coordinate_column(1)},
+                    {coordinate_column(1), coordinate_column(2)},
+                    {coordinate_column(0), coordinate_column(2)},
+                    {coordinate_column(0)},
+                    {coordinate_column(1)},
+                    {coordinate_column(2)}},
     .noise_keys = length_noise_keys(),
     .traits = {.reads_error_vectors = true}};
 

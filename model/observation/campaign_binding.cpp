@@ -40,6 +40,23 @@ ParameterBlock effect_block(const EffectAmplitude& amplitude) {
   return block;
 }
 
+/// The coefficients of one function.
+ParameterBlock surface_block(const Effect& effect) {
+  const auto size = static_cast<Eigen::Index>(effect.amplitudes().size());
+  const EffectAmplitude& first = effect.amplitudes().front();
+  ParameterBlock block =
+      scalar_block(ParameterKind::Effect, surface_name(effect), first.unit(), first.si_per_unit());
+  block.units.assign(effect.amplitudes().size(), block.units.front());
+  block.si_per_unit.assign(effect.amplitudes().size(), block.si_per_unit.front());
+  block.guess = block.prior_mean = block.prior_sigma = Eigen::VectorXd::Zero(size);
+  block.labels.clear();
+  for (Eigen::Index k = 0; k < size; ++k) {
+    block.labels.push_back(std::to_string(k + 1));
+    block.guess[k] = effect.amplitudes()[static_cast<std::size_t>(k)].guess;
+  }
+  return block;
+}
+
 ParameterBlock shape_block(const EffectShape& shape) {
   ParameterBlock block =
       scalar_block(ParameterKind::EffectShape, shape.label, shape.unit(), shape.si_per_unit());
@@ -211,14 +228,15 @@ class CampaignBinder {
     binding.effect->check(campaign_, place);
     binding.first_parameter = layout().size;
     for (const EffectAmplitude& amplitude : binding.effect->amplitudes()) {
-      if (layout().find_block(amplitude.label) != nullptr) {
+      if (layout().find_parameter(amplitude.label)) {
         throw InputError(place, "effect \"" + amplitude.label + "\" is given twice", "delete one of the two");
       }
       binding.target.push_back(disturbance_of(amplitude.target, machine_));
       binding_.effect_moves_tool |= amplitude.target.kind == TargetKind::ToolOffset;
       binding_.effect_tilts_floor |= amplitude.target.kind == TargetKind::Floor;
-      add_block(effect_block(amplitude));
+      if (binding.effect->surface() == nullptr) add_block(effect_block(amplitude));
     }
+    if (binding.effect->surface() != nullptr) add_block(surface_block(*binding.effect));
     binding.shape = binding.effect->shape_values();
     const auto& shapes = binding.effect->shapes();
     for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -18,7 +18,7 @@
 namespace volcal {
 
 /// Location errors and amplitudes of effects that a model can have; more are refused.
-inline constexpr std::size_t kMaxSharedTerms = 256;
+inline constexpr std::size_t kMaxSharedTerms = 640;
 
 class MeasurementModel {
  public:

@@ -19,6 +19,17 @@ const ParameterBlock* ParameterLayout::find_block(const std::string& name) const
   return found == blocks.end() ? nullptr : &*found;
 }
 
+std::optional<int> ParameterLayout::find_parameter(const std::string& name) const {
+  for (const ParameterBlock& block : blocks) {
+    if (!name.starts_with(block.name)) continue;
+    const std::string label = name.size() > block.name.size() ? name.substr(block.name.size() + 1) : "";
+    if (!label.empty() && name[block.name.size()] != ' ') continue;
+    const auto found = std::ranges::find(block.labels, label);
+    if (found != block.labels.end()) return block.offset + static_cast<int>(found - block.labels.begin());
+  }
+  return std::nullopt;
+}
+
 const ParameterBlock* ParameterLayout::find_location(LocationSymbol symbol) const {
   const auto found = std::ranges::find(blocks, std::optional(symbol), &ParameterBlock::location);
   return found == blocks.end() ? nullptr : &*found;

@@ -46,6 +46,11 @@ struct ParameterBlock {
   int size() const { return static_cast<int>(guess.size()); }
 };
 
+/// Coefficients of one function (Effect::surface).
+inline bool is_surface(const ParameterBlock& block) {
+  return block.kind == ParameterKind::Effect && block.size() > 1;
+}
+
 /// Layout of the parameter vector: functions first, then the blocks.
 struct ParameterLayout {
   std::vector<FunctionGroup> groups;
@@ -60,6 +65,8 @@ struct ParameterLayout {
   };
   std::optional<FunctionPlace> find(ErrorSymbol symbol) const;
   const ParameterBlock* find_block(const std::string& name) const;
+  /// Place of a parameter by its full name: that of its block, and its label behind it where it has one.
+  std::optional<int> find_parameter(const std::string& name) const;
   const ParameterBlock* find_location(LocationSymbol symbol) const;
   /// Coefficients of one function out of a parameter vector.
   Eigen::VectorXd coefficients(ErrorSymbol symbol, const Eigen::VectorXd& parameters) const;

@@ -18,7 +18,7 @@ std::pair<std::size_t, double> interval_of(const std::vector<double>& position, 
   return {upper, (q - position[upper - 1]) / (position[upper] - position[upper - 1])};
 }
 
-double between(const std::vector<double>& value, std::size_t upper, double share) {
+double interpolated_between(const std::vector<double>& value, std::size_t upper, double share) {
   if (upper == 0) return value.empty() ? 0.0 : value.front();
   return (1.0 - share) * value[upper - 1] + share * value[upper];
 }
@@ -26,8 +26,8 @@ double between(const std::vector<double>& value, std::size_t upper, double share
 double table_value(const ControlAxisTable& table, const MachineState& state) {
   const std::size_t axis = index_of(table.input);
   const auto [upper, share] = interval_of(table.position, state.position[axis]);
-  const double plus = between(table.towards_plus, upper, share);
-  const double minus = between(table.towards_minus, upper, share);
+  const double plus = interpolated_between(table.towards_plus, upper, share);
+  const double minus = interpolated_between(table.towards_minus, upper, share);
   const std::int8_t direction = state.direction[axis];
   return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
 }

@@ -25,7 +25,7 @@ void check_line(const Settings& settings, const PlanContext& context) {
   context.require_at_least(settings.runs, 1, "runs");
 }
 
-void require_linear(AxisName axis, const PlanContext& context) {
+void require_linear_axis(AxisName axis, const PlanContext& context) {
   if (is_rotary(axis)) context.fail(std::string("axis ") + letter_of(axis) + " is rotary", "use X, Y or Z");
 }
 
@@ -114,7 +114,7 @@ std::vector<SetupPlan> plan_axis_lines(const AxisLines& settings, const PlanCont
   check_line(settings, context);
   std::vector<SetupPlan> plans;
   for (const AxisName axis : settings.axes) {
-    require_linear(axis, context);
+    require_linear_axis(axis, context);
     SetupPlan plan = new_plan(std::string("line_") + letter_of(axis), "displacement", settings, context);
     const LineEnds ends = axis_line(context.machine, axis, settings.at);
     plan.points = straight_path(ends.start, ends.end, settings.points, settings.runs, true);
@@ -136,7 +136,7 @@ std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, cons
   check_line(settings, context);
   std::vector<SetupPlan> plans;
   for (const AxisName axis : settings.axes) {
-    require_linear(axis, context);
+    require_linear_axis(axis, context);
     for (const AxisName across : kLinearAxes) {
       if (across == axis) continue;
       const std::string name = std::string("straightness_") + letter_of(axis) + letter_of(across);
@@ -173,7 +173,7 @@ std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext
   }
   std::vector<SetupPlan> plans;
   for (const AxisName axis : settings.axes) {
-    require_linear(axis, context);
+    require_linear_axis(axis, context);
     const LineEnds ends = axis_line(context.machine, axis, settings.at);
     for (const AxisName about : kLinearAxes) {
       const std::string name = std::string("angle_") + letter_of(axis) + "_about_" +

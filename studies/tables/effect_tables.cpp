@@ -71,7 +71,7 @@ ModelSpec model_with(const std::vector<EffectSpec>& effects) {
   return model;
 }
 
-sim::Study study_of(const EffectTablesOptions& options, int structure, const EffectCase& effect) {
+sim::Study hiding_study(const EffectTablesOptions& options, int structure, const EffectCase& effect) {
   sim::Study study;
   study.machine = sim::reference_machines()[static_cast<std::size_t>(structure)];
   study.seed = options.seed + static_cast<std::uint64_t>(structure);
@@ -96,7 +96,7 @@ sim::Study study_of(const EffectTablesOptions& options, int structure, const Eff
 class MachineWithEffect {
  public:
   MachineWithEffect(const EffectTablesOptions& options, int structure, const EffectCase& effect)
-      : study_(study_of(options, structure, effect)),
+      : study_(hiding_study(options, structure, effect)),
         effect_(effect),
         simulated_(sim::simulate(study_)),
         points_(volume_points(study_.machine, kVolumeCells)) {

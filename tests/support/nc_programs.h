@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/machines.h"
+#include "tests/support/refusal.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/model/description/errors.h"
 
@@ -43,17 +44,6 @@ inline std::vector<NcMotion> motions_of(const std::string& program, const NcSetu
     motions.insert(motions.end(), step.motions.begin(), step.motions.end());
   }
   return motions;
-}
-
-/// what() of the InputError; empty when there is none.
-template <class Work>
-std::string refusal(Work work) {
-  try {
-    work();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
 }
 
 /// A machine of 1 m travel about 0 with this error field, smooth between the ends of `pieces` (m).

@@ -92,9 +92,9 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
 }
 
 /// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json and comparison.txt.
-void write_folder(const std::string& target, const Campaign& campaign,
-                  const std::vector<ComparedModel>& models, const std::string& text,
-                  const std::string& json) {
+void write_comparison(const std::string& target, const Campaign& campaign,
+                      const std::vector<ComparedModel>& models, const std::string& text,
+                      const std::string& json) {
   AtomicFolder folder(target);
   const bool one = models.size() == 1;
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -161,7 +161,7 @@ int run_compare(const CompareArguments& arguments) {
   }
   if (states_errors(named.back().spec) && fails(models.back()))
     text += fmt::format("\nnext: volcal diagnose {} --auto -o diagnosis\n", arguments.campaign);
-  if (!arguments.output.empty()) write_folder(arguments.output, campaign, models, text, json);
+  if (!arguments.output.empty()) write_comparison(arguments.output, campaign, models, text, json);
   if (arguments.json) {
     fmt::print("{}", json);
     return kDone;

@@ -64,6 +64,12 @@ ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& d
                   .remedy_if_known = "diagnose the campaign with a model without it",
                   .remedy_if_absent = "diagnose the campaign with a model of its machine"});
   }
+  for (const SurfaceFinding& surface : diagnosis.surfaces) {
+    extend_model({model, campaign.machine, &campaign}, surface.accepted_spec(),
+                 {.label = surface.accepted_label(),
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
+  }
   return model;
 }
 
@@ -78,8 +84,8 @@ int show(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-void write_folder(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
-                  const Diagnosis& diagnosis, const std::string& json) {
+void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
+                     const Diagnosis& diagnosis, const std::string& json) {
   AtomicFolder folder(arguments.output);
   folder.write("diagnosis.json", json);
   folder.write("diagnosis.txt", diagnosis_text(diagnosis));
@@ -124,7 +130,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   const Diagnosis diagnosis = diagnose(campaign, result, options);
   bar.finish();
   const std::string json = diagnosis_json(diagnosis);
-  if (!arguments.output.empty()) write_folder(arguments, campaign, model, diagnosis, json);
+  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosis, json);
   if (arguments.json) {
     fmt::print("{}", json);
   } else {

@@ -52,7 +52,14 @@ std::vector<EffectFinding> chosen(const ExtendArguments& arguments) {
   const Diagnosis diagnosis = read_diagnosis(arguments.diagnosis);
   const std::string again = "volcal diagnose --show " + arguments.diagnosis + " prints the ranking";
   if (arguments.accepted) {
-    if (!diagnosis.effects.empty()) return diagnosis.effects;
+    std::vector<EffectFinding> accepted = diagnosis.effects;
+    for (const SurfaceFinding& surface : diagnosis.surfaces) {
+      EffectFinding& found = accepted.emplace_back();
+      found.name = surface.name;
+      found.label = surface.accepted_label();
+      found.spec = surface.accepted_spec();
+    }
+    if (!accepted.empty()) return accepted;
     throw InputError({arguments.diagnosis, 0},
                      "the diagnosis added no effect, its verdict is " + to_string(diagnosis.verdict),
                      "choose one by --rank; " + again);
@@ -85,7 +92,7 @@ void add_custom(const ExtendArguments& arguments, const ModelToExtend& extended,
   const auto effect = extend_model(
       extended, spec,
       {.label = arguments.custom, .remedy_if_known = "leave out --custom", .remedy_if_absent = kOtherMotion});
-  changes.added.push_back(effect->amplitudes().front().label);
+  changes.added.push_back(effect_label(*effect));
 }
 
 void add_found(const EffectFinding& found, const ExtendArguments& arguments, const ModelToExtend& extended,

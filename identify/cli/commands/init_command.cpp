@@ -86,7 +86,8 @@ std::string commented_setup(const InstrumentSchema& schema, const std::string& p
   for (const ColumnSchema& column : schema.column_sets.front()) text += "," + column.column;
   text += "\n#tool = \"short\"\n";
   for (const KeySchema& key : schema.keys) {
-    const std::string value = key.type == KeyType::Vector3 ? "[0.0, 0.0, 0.0]"
+    const std::string value = key.type == KeyType::Vector3   ? "[0.0, 0.0, 0.0]"
+                              : key.type == KeyType::Numbers ? "[0.0, 1.0]"
                               : key.type == KeyType::Text
                                   ? (key.choices.empty() ? "\"name\"" : "\"" + key.choices.front() + "\"")
                               : key.type == KeyType::Boolean ? "false"

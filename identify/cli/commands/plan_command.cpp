@@ -57,7 +57,7 @@ struct PlanArguments {
   PlanSettings settings;
 };
 
-[[noreturn]] void fail(const std::string& problem, const std::string& remedy) {
+[[noreturn]] void refuse_plan(const std::string& problem, const std::string& remedy) {
   throw InputError({}, problem, remedy);
 }
 
@@ -67,8 +67,8 @@ void refuse_other_options(const CLI::App& app, const std::string& instrument) {
   for (const PlanInstrument* other : plan_instruments()) {
     for (const std::string& option : other->own_options()) {
       if (app.count(option) == 0 || std::ranges::find(own, option) != own.end()) continue;
-      fail(fmt::format("{} does not apply to a {}", option, instrument),
-           fmt::format("leave it out, or plan for --instrument {}", other->name()));
+      refuse_plan(fmt::format("{} does not apply to a {}", option, instrument),
+                  fmt::format("leave it out, or plan for --instrument {}", other->name()));
     }
   }
 }
@@ -84,7 +84,7 @@ void read_tools(const PlanArguments& arguments, PlanSettings& settings) {
     if (!tool) {
       std::string known;
       for (const Tool& each : settings.machine.tools) known += (known.empty() ? "" : ", ") + each.name;
-      fail("--tools: the machine file has no tool " + name, "choose of " + known);
+      refuse_plan("--tools: the machine file has no tool " + name, "choose of " + known);
     }
     settings.budget.tools.push_back(*tool);
   }
@@ -92,7 +92,8 @@ void read_tools(const PlanArguments& arguments, PlanSettings& settings) {
 
 void read_pair(const std::string& option, const std::vector<double>& values, double unit, double& low,
                double& high) {
-  if (!(values[0] < values[1])) fail(option + ": the first number is not the smaller one", "give MIN,MAX");
+  if (!(values[0] < values[1]))
+    refuse_plan(option + ": the first number is not the smaller one", "give MIN,MAX");
   low = values[0] * unit;
   high = values[1] * unit;
 }
@@ -102,8 +103,8 @@ void read_region(const PlanArguments& arguments, PlanSettings& settings) {
   const auto& r = arguments.region_mm;
   const Eigen::Vector3d low(r[0], r[2], r[4]), high(r[1], r[3], r[5]);
   if (!(low.array() <= high.array()).all()) {
-    fail("--region-mm: a lower bound is above its upper one",
-         "give X0,X1,Y0,Y1,Z0,Z1 in workpiece coordinates");
+    refuse_plan("--region-mm: a lower bound is above its upper one",
+                "give X0,X1,Y0,Y1,Z0,Z1 in workpiece coordinates");
   }
   settings.surroundings.stations_w =
       Eigen::AlignedBox3d(low * kMetrePerMillimetre, high * kMetrePerMillimetre);
@@ -127,8 +128,8 @@ void read_target(const PlanArguments& arguments, const Campaign* with, PlanSetti
   const std::string names = arguments.target.substr(separate.size());
   const std::size_t comma = names.find(',');
   if (comma == std::string::npos) {
-    fail("--minimise " + arguments.target + ": one effect alone cannot be separated",
-         "give separate:KIND:TARGET,KIND:TARGET; volcal diagnose --list prints kinds and targets");
+    refuse_plan("--minimise " + arguments.target + ": one effect alone cannot be separated",
+                "give separate:KIND:TARGET,KIND:TARGET; volcal diagnose --list prints kinds and targets");
   }
   const Campaign textbook =
       with != nullptr ? *with : campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);
@@ -174,10 +175,11 @@ Replaceable replaceable(const PlanArguments& arguments) {
 
 std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
   if (arguments.extend && arguments.with.empty()) {
-    fail("--extend has nothing to extend", "give the campaign that is measured with --with CAMPAIGN.toml");
+    refuse_plan("--extend has nothing to extend",
+                "give the campaign that is measured with --with CAMPAIGN.toml");
   }
   if (arguments.extend && arguments.readings == 0) {
-    fail("--extend: how many readings may be added is missing", "give --readings N");
+    refuse_plan("--extend: how many readings may be added is missing", "give --readings N");
   }
   if (arguments.with.empty()) return std::nullopt;
   Campaign campaign = read_campaign(arguments.with);

@@ -133,7 +133,7 @@ Tried try_effect(const Campaign& campaign, const ModelSpec& without, const Model
   Tried tried;
   tried.status = result.status;
   tried.values = tried_values(result, effect);
-  tried.not_visible = why_not_visible(result, effect.made->amplitudes().front().label);
+  tried.not_visible = why_not_visible(result, effect_label(*effect.made));
   const auto rows = judging_rows(campaign);
   tried.judged =
       std::ranges::any_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; });

@@ -78,7 +78,7 @@ std::string warning(const FittedReadings& fitted) {
                      remedy);
 }
 
-std::string figures_text(const Validation& validation, const FittedReadings& fitted) {
+std::string validation_text(const Validation& validation, const FittedReadings& fitted) {
   const ValidationFigures& figures = validation.figures;
   TextTable totals({{"", Align::Left},
                     {"readings"},
@@ -136,7 +136,7 @@ int run_validate(const ValidateArguments& arguments) {
     add_notes(campaign.notes, json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    fmt::print("{}", figures_text(validation, fitted));
+    fmt::print("{}", validation_text(validation, fitted));
     fmt::print("{}", campaign_notes_text(campaign.notes));
   }
   const bool exceeded =

@@ -16,8 +16,8 @@ namespace {
 const std::string kForm =
     "write \"TARGET: expression\" or \"TARGET += expression\", as in \"EZX: abs(x) / 400 * dir_x\"";
 
-[[noreturn]] void refuse(const std::string& option, const std::string& text, std::size_t column,
-                         const std::string& problem, const std::string& remedy) {
+[[noreturn]] void refuse_effect(const std::string& option, const std::string& text, std::size_t column,
+                                const std::string& problem, const std::string& remedy) {
   throw InputError({}, fmt::format("{} \"{}\", column {}: {}", option, text, column, problem), remedy);
 }
 
@@ -42,12 +42,12 @@ TargetAndExpression parted(const std::string& option, const std::string& text) {
   const std::size_t colon = text.find(':'), plus = text.find("+=");
   const bool adds = plus < colon;
   const std::size_t end = adds ? plus : colon;
-  if (end == std::string::npos) refuse(option, text, text.size() + 1, "it names no target", kForm);
+  if (end == std::string::npos) refuse_effect(option, text, text.size() + 1, "it names no target", kForm);
   TargetAndExpression parts{trimmed_piece(text, 0, end),
                             trimmed_piece(text, end + (adds ? 2 : 1), text.size())};
-  if (parts.target.text.empty()) refuse(option, text, 1, "it names no target", kForm);
+  if (parts.target.text.empty()) refuse_effect(option, text, 1, "it names no target", kForm);
   if (parts.expression.text.empty())
-    refuse(option, text, text.size() + 1, "the expression is missing", kForm);
+    refuse_effect(option, text, text.size() + 1, "the expression is missing", kForm);
   return parts;
 }
 
@@ -102,9 +102,9 @@ void set_parameters(const std::string& option, const std::string& text, const Pi
   }
   for (const std::string name : {"p", "q"}) {
     if (!formula.uses(name) || spec.options.number(name)) continue;
-    refuse(option, text, expression.at + formula.character_of(name),
-           "the expression uses " + name + ", which has no value",
-           fmt::format("add --parameter {0}=250 (held) or --parameter {0}=250+-50 (estimated)", name));
+    refuse_effect(option, text, expression.at + formula.character_of(name),
+                  "the expression uses " + name + ", which has no value",
+                  fmt::format("add --parameter {0}=250 (held) or --parameter {0}=250+-50 (estimated)", name));
   }
 }
 
@@ -128,14 +128,14 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
     set_parameters(option, text, expression, parameters, effect.spec);
   } catch (const ExpressionError& error) {
     const std::string token = error.token().empty() ? "at the end" : "\"" + error.token() + "\"";
-    refuse(option, text, expression.at + error.character(), error.problem() + ", " + token,
-           custom_expression_names());
+    refuse_effect(option, text, expression.at + error.character(), error.problem() + ", " + token,
+                  custom_expression_names());
   }
   try {
     effect.made = find_effect(effect.spec.kind)->make(effect.spec, {});
   } catch (const InputError& error) {
     const bool of_target = error.problem().find("is no target") != std::string::npos;
-    refuse(option, text, (of_target ? target.at : expression.at) + 1, error.problem(), error.remedy());
+    refuse_effect(option, text, (of_target ? target.at : expression.at) + 1, error.problem(), error.remedy());
   }
   return effect;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "volcal/model/description/finding_codes.h"
@@ -45,6 +46,11 @@ std::string UnknownFinding::dependence() const {
 std::string UnknownFinding::action() const {
   if (!rotation.empty()) return direction + ", as " + rotation;
   return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * kPerMilli) : direction;
+}
+
+std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis) {
+  const std::size_t drawn = std::min(diagnosis.surfaces.size(), diagnosis.unknown.size());
+  return std::span(diagnosis.unknown).subspan(drawn);
 }
 
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,51 @@ struct UnknownFinding {
   std::string dependence() const;
   /// "X", "X, as EBX", or "X, every 10.02 mm".
   std::string action() const;
+};
+
+/// A surface or curve as it is drawn: places of its first one or two drivers, values with the last of these
+/// next to each other. Not kept in files.
+struct SurfaceFigure {
+  std::vector<std::vector<double>> places;  ///< per driver, in its unit
+  Eigen::VectorXd value;                    ///< SI
+  Eigen::VectorXd u;
+  std::vector<std::vector<double>> dots;  ///< where readings stand, per driver; a part of them
+  double third = std::numeric_limits<double>::quiet_NaN();  ///< value of a third driver
+};
+
+/// A law that explains what a surface was drawn for, an effect of the kind `custom`.
+struct FormulaFinding {
+  std::string label;       ///< "EAY by y * z^2"
+  EffectSpec spec;         ///< with its amplitude: can be put into a model file
+  double amplitude = 0.0;  ///< SI
+  double u = 0.0;
+  std::string unit;  ///< edge
+  double si_per_unit = 1.0;
+  std::string shape_text;  ///< "p = 120.3"; empty without parameters of its shape
+  double log_evidence = -std::numeric_limits<double>::infinity();  ///< natural, over the model without it
+};
+
+/// A function without a formula that was drawn for what has no name, an effect of the kind `empirical`.
+struct SurfaceFinding {
+  EffectName name;
+  std::string label;
+  EffectSpec spec;  ///< with its coefficients: can be put into a model file
+  std::vector<std::string> drivers;
+  std::string unit;  ///< edge, of its values
+  double si_per_unit = 1.0;
+  double log_evidence = 0.0;          ///< natural, over the model without it
+  double effective_parameters = 0.0;  ///< that the readings determine
+  double rms = 0.0;                   ///< SI, over the readings
+  double largest = 0.0;               ///< SI, of the largest magnitude at a reading
+  double largest_u = 0.0;
+  std::vector<double> at;         ///< there, one value per driver, in its unit
+  std::vector<std::string> free;  ///< what the readings do not tell from the rest of the model, in words
+  std::vector<FormulaFinding> formulas;  ///< laws of as much evidence, best first; none: no law was found
+  SurfaceFigure figure;
+
+  /// What enters a model for it: the leading law, or the surface where there is none.
+  const EffectSpec& accepted_spec() const { return formulas.empty() ? spec : formulas.front().spec; }
+  const std::string& accepted_label() const { return formulas.empty() ? label : formulas.front().label; }
 };
 
 /// One step of the ladder, all against the noise model at the last step. SI.
@@ -136,8 +182,9 @@ struct Diagnosis {
   std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
-  std::vector<UnknownFinding> unknown;                     ///< leading first
-  std::vector<EffectFinding> ranking;        ///< families by gain, at the model reached; at most 40
+  std::vector<UnknownFinding> unknown;   ///< what surfaces were drawn for, in their order; then leading first
+  std::vector<SurfaceFinding> surfaces;  ///< drawn for what has no name
+  std::vector<EffectFinding> ranking;    ///< families by gain, at the model reached; at most 40
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
   std::vector<EffectFinding> model_changes;
@@ -154,6 +201,9 @@ struct Diagnosis {
   std::size_t generic_tests = 0;
   DiagnosisFigures figures;  ///< not kept in files
 };
+
+/// Of `unknown`, what no surface was drawn for.
+std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);

@@ -55,6 +55,14 @@ struct Thresholds {
   /// Names added together against a scan. `pairs`: 67 to 83 %.
   int most_together = 3;
 
+  // Surfaces (surface_search.h).
+
+  /// Log evidence over the model without it. Less: the surface is not drawn. Very strong evidence (Kass and
+  /// Raftery 1995, JASA 90, 773).
+  double surface_evidence = 5.0;
+  /// Surfaces that are drawn at most; what still exceeds then is reported.
+  int most_surfaces = 4;
+
   // What is no name (rejection.h).
 
   /// Probability that the amplitude is constant, per name. At or below: the name is rejected. `unlisted`.

@@ -5,14 +5,13 @@
 #include <utility>
 
 #include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/solve/priors/evidence.h"
 
 namespace volcal {
 
 LinearModel::Fixed::Fixed(const Campaign& of, const FitResult& result)
     : campaign(of),
       model(of, result.adjustment->model),
-      base_prior(result.adjustment->prior),
-      reduced(result.adjustment->reduced),
       stated_sigma(result.adjustment->stated_sigma),
       outlier_critical_value(result.outlier_critical_value) {
   model.expand_effects(result.parameters);
@@ -20,7 +19,8 @@ LinearModel::Fixed::Fixed(const Campaign& of, const FitResult& result)
   views = setup_views(campaign, model.binding(), model.chain());
 }
 
-LinearModel::LinearModel(const Campaign& campaign, const FitResult& result) {
+LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
+    : base_prior_(result.adjustment->prior), reduced_(result.adjustment->reduced) {
   const auto fixed = std::make_shared<Fixed>(campaign, result);
   std::vector<bool> removed;
   for (const ResidualRecord& record : result.residuals) {
@@ -43,10 +43,10 @@ LinearModel::LinearModel(const Campaign& campaign, const FitResult& result) {
 
 void LinearModel::set_smoothing(std::vector<SmoothingTerm> smoothing,
                                 const std::shared_ptr<NoiseProblem>& problem) {
-  GaussianPrior prior = fixed_->base_prior;
+  GaussianPrior prior = base_prior_;
   add_smoothing(smoothing, prior);
   problem->prior_precision = std::move(prior.precision);
-  problem->prior_mean = prior.mean - fixed_->reduced;
+  problem->prior_mean = prior.mean - reduced_;
   problem_ = problem;
   smoothing_ = std::move(smoothing);
 }
@@ -57,18 +57,73 @@ LinearModel LinearModel::with_smoothing(std::vector<SmoothingTerm> smoothing) co
   return other;
 }
 
+GaussianPrior LinearModel::base_prior_of(Eigen::Index size) const {
+  const Eigen::Index own = reduced_.size();
+  GaussianPrior prior = GaussianPrior::none(static_cast<int>(size));
+  prior.precision.topLeftCorner(own, own) = base_prior_.precision;
+  prior.mean.head(own) = base_prior_.mean;
+  return prior;
+}
+
+Eigen::VectorXd LinearModel::reduced_of(Eigen::Index size) const {
+  Eigen::VectorXd reduced = Eigen::VectorXd::Zero(size);
+  reduced.head(reduced_.size()) = reduced_;
+  return reduced;
+}
+
 LinearModel LinearModel::smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const {
   if (smoothing_.empty()) return *this;
-  const Eigen::Index count = gram.rows() - 1, own = fixed_->reduced.size();
+  const Eigen::Index count = gram.rows() - 1;
   const NoiseGroupEquations equations{gram.topLeftCorner(count, count), -gram.col(count).head(count),
                                       gram(count, count), static_cast<double>(observations)};
-  Eigen::VectorXd from = Eigen::VectorXd::Zero(count);
-  from.head(own) = fixed_->reduced;
-  GaussianPrior prior = GaussianPrior::none(static_cast<int>(count));
-  prior.precision.topLeftCorner(own, own) = fixed_->base_prior.precision;
-  prior.mean.head(own) = fixed_->base_prior.mean;
   std::vector<SmoothingTerm> smoothing = smoothing_;
-  maximise_evidence({equations}, from, prior, {.variance_components = false}, {1.0}, smoothing);
+  maximise_evidence({equations}, reduced_of(count), base_prior_of(count), {.variance_components = false},
+                    {1.0}, smoothing);
+  return with_smoothing(std::move(smoothing));
+}
+
+LinearModel LinearModel::with_surface(const Effect& effect) const {
+  LinearModel other = *this;
+  const Eigen::Index before = reduced_.size(), count = static_cast<Eigen::Index>(effect.amplitudes().size());
+  other.base_prior_ = base_prior_of(before + count);
+  other.reduced_ = reduced_of(before + count);
+  const auto problem = std::make_shared<NoiseProblem>(*problem_);
+  problem->jacobian.conservativeResize(Eigen::NoChange, before + count);
+  for (std::size_t setup = 0; setup + 1 < parts().size(); ++setup) {
+    const Eigen::Index first = parts()[setup], rows = parts()[setup + 1] - first;
+    columns(effect, effect.shape_values(), setup, problem->jacobian.block(first, before, rows, count));
+  }
+  std::vector<SmoothingTerm> smoothing = smoothing_;
+  smoothing.push_back(surface_term(*effect.surface(), static_cast<int>(before)));
+  other.set_smoothing(std::move(smoothing), problem);
+  return other;
+}
+
+LinearModel LinearModel::without_surface(std::size_t term) const {
+  LinearModel other = *this;
+  const int first = smoothing_[term].offset, count = static_cast<int>(smoothing_[term].precision().rows());
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < reduced_.size(); ++i) {
+    if (i < first || i >= first + count) kept.push_back(i);
+  }
+  other.base_prior_.precision = base_prior_.precision(kept, kept);
+  other.base_prior_.mean = base_prior_.mean(kept);
+  other.reduced_ = reduced_(kept);
+  const auto problem = std::make_shared<NoiseProblem>(*problem_);
+  problem->jacobian = problem_->jacobian(Eigen::all, kept);
+  std::vector<SmoothingTerm> smoothing = smoothing_;
+  smoothing.erase(smoothing.begin() + static_cast<std::ptrdiff_t>(term));
+  for (SmoothingTerm& each : smoothing) {
+    if (each.offset > first) each.offset -= count;
+  }
+  other.set_smoothing(std::move(smoothing), problem);
+  return other;
+}
+
+LinearModel LinearModel::with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const {
+  const Eigen::Index count = gram.rows() - 1;
+  std::vector<SmoothingTerm> smoothing = smoothing_;
+  leave_imitated_to_the_rest(gram.topLeftCorner(count, count), base_prior_of(count), smoothing);
   return with_smoothing(std::move(smoothing));
 }
 

@@ -49,6 +49,13 @@ class LinearModel {
   /// prior: a fit that lacks an effect takes part of it for detail of the functions, or for noise that hides
   /// detail.
   LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const;
+  /// With the coefficients of a surface as further parameters, the last, under its prior (surface_prior.h).
+  LinearModel with_surface(const Effect& effect) const;
+  /// Without the surface of a term of smoothing().
+  LinearModel without_surface(std::size_t term) const;
+  /// What the rest of the model, and effects that were added to it, can imitate of surfaces is theirs. `gram`
+  /// as for smoothed().
+  LinearModel with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const;
   /// Of all observations, those that are left out as well.
   const std::vector<double>& stated_sigma() const { return fixed_->stated_sigma; }
   /// Of the fit's outlier test.
@@ -81,8 +88,6 @@ class LinearModel {
     std::vector<std::string> noise_groups;
     std::vector<SetupView> views;
     Eigen::Matrix<double, Eigen::Dynamic, kDisturbances> sensitivity;
-    GaussianPrior base_prior;  ///< of the reduced parameters, without smoothing
-    Eigen::VectorXd reduced;   ///< where the model is linearised
     std::vector<double> stated_sigma;
     double outlier_critical_value;
   };
@@ -90,7 +95,13 @@ class LinearModel {
   /// `problem` becomes that of this model.
   void set_smoothing(std::vector<SmoothingTerm> smoothing, const std::shared_ptr<NoiseProblem>& problem);
 
+  /// That and `size` further parameters without prior, at zero.
+  GaussianPrior base_prior_of(Eigen::Index size) const;
+  Eigen::VectorXd reduced_of(Eigen::Index size) const;
+
   std::shared_ptr<const Fixed> fixed_;
+  GaussianPrior base_prior_;  ///< of the parameters, without smoothing
+  Eigen::VectorXd reduced_;   ///< where the model is linearised
   std::shared_ptr<const NoiseProblem> problem_;
   std::vector<SmoothingTerm> smoothing_;
   std::vector<std::size_t> removed_;

@@ -92,6 +92,15 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   return step;
 }
 
+/// The last step: surfaces were added first, then effects.
+void name_step(const ModelState& state, std::vector<LadderStep>& ladder) {
+  const std::size_t number = ladder.size() - 1, surfaces = state.surfaces().size();
+  ladder.back().model = std::to_string(number);
+  if (number == 0) return;
+  ladder.back().added = number <= surfaces ? effect_label(*state.surfaces()[number - 1].effect)
+                                           : state.family_of(state.added()[number - 1 - surfaces]).label();
+}
+
 }  // namespace
 
 std::vector<double> noise_variance(const NoiseData& data, std::span<const NoiseParameters> noise) {
@@ -144,6 +153,13 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
   std::vector<LadderStep> ladder;
   std::optional<double> loglik;
   Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
+  for (const AddedSurface& surface : state.surfaces()) {
+    const LinearModel& before = surface.before;
+    const Projector projector(before.problem(), without(before.problem().data, setting.heldout),
+                              state.noise(), setting.threads, before.parts());
+    ladder.push_back(ladder_step(before, setting.heldout, state.noise(), projector, effects, loglik));
+    name_step(state, ladder);
+  }
   for (std::size_t i = 0; i <= state.added().size(); ++i) {
     const LinearModel model = state.model().with_smoothing(state.smoothing_of_steps()[i]);
     Projector projector(model.problem(), without(model.problem().data, setting.heldout), state.noise(),
@@ -151,9 +167,8 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
     for (std::size_t k = 0; k < i; ++k) projector.accept(state.added()[k].columns);
     if (i > 0) append_columns(state.added()[i - 1].columns, effects);
     LadderStep step = ladder_step(model, setting.heldout, state.noise(), projector, effects, loglik);
-    step.model = std::to_string(i);
-    if (i > 0) step.added = state.family_of(state.added()[i - 1]).label();
     ladder.push_back(std::move(step));
+    name_step(state, ladder);
   }
   return ladder;
 }

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
 #include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/identify/solve/correlated_adjustment.h"
 
 namespace volcal {
@@ -47,6 +48,26 @@ ModelState ModelState::with(const FamilyTest& effect) const {
   while (next.reinstate_outliers()) next.find_noise();
   next.smoothing_of_steps_.push_back(next.model_.smoothing());
   return next;
+}
+
+ModelState ModelState::with_surface(const SurfaceTest& surface,
+                                    const std::vector<AddedEffect>& beside) const {
+  ModelState next = *this;
+  next.tests_.reset();
+  next.surfaces_.push_back({surface.spec, surface.effect, surface.finding, surface.log_evidence,
+                            model_.problem().jacobian.cols(), model_.smoothing().size(), model_});
+  next.model_ = model_.with_surface(*surface.effect);
+  next.added_ = beside;
+  next.model_ = next.model_.with_imitated_left_to_the_rest(next.projector_without({})->gram());
+  next.added_.clear();
+  next.find_noise();
+  next.smoothing_of_steps_ = {next.model_.smoothing()};
+  return next;
+}
+
+bool ModelState::has_surface(const EffectName& name) const {
+  return std::ranges::any_of(surfaces_,
+                             [&](const AddedSurface& each) { return each.effect->name() == name; });
 }
 
 ModelState ModelState::tested() const { return is_tested() ? *this : with_tests(tests_of(*this)); }
@@ -108,6 +129,17 @@ std::unique_ptr<Projector> ModelState::projector_without(const std::set<std::siz
 
 std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParameters>& noise) const {
   return make_projector(without(model_.problem().data, setting_->heldout), noise);
+}
+
+std::unique_ptr<Projector> ModelState::projector_without_surface(const AddedSurface& surface) const {
+  const LinearModel model = model_.without_surface(surface.term);
+  auto projector =
+      std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise_,
+                                  setting_->threads, model.parts());
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
+  for (const AddedEffect& effect : added_) append_columns(effect.columns, columns);
+  if (columns.cols() > 0) projector->accept(columns);
+  return projector;
 }
 
 std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,

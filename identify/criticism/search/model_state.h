@@ -12,16 +12,33 @@
 #include <set>
 #include <vector>
 
+#include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/criticism/search/model_tests.h"
 #include "volcal/identify/noise/noise_estimate.h"
 
 namespace volcal {
+
+struct SurfaceTest;
 
 /// An effect that is in the model.
 struct AddedEffect {
   FamilyTest test;                 ///< against a model with the other effects
   Eigen::MatrixXd columns;         ///< of its amplitudes, then of its shape where that is smooth
   std::vector<FamilyTest> rivals;  ///< that the readings do not tell from it, best first
+};
+
+/// A function without a formula that is in the model (kind `empirical`), its coefficients among the
+/// parameters of the linear model.
+struct AddedSurface {
+  EffectSpec spec;  ///< without coefficients
+  std::shared_ptr<const Effect> effect;
+  UnknownFinding finding;     ///< that it was drawn for
+  double log_evidence = 0.0;  ///< over the model before, when it was drawn
+  Eigen::Index first = 0;     ///< parameter
+  std::size_t term = 0;       ///< of the model's smoothing
+  LinearModel before;         ///< without it
+
+  Eigen::Index size() const { return static_cast<Eigen::Index>(effect->amplitudes().size()); }
 };
 
 class ModelState {
@@ -32,6 +49,9 @@ class ModelState {
   /// With a further effect, noise and smoothing found anew, and the readings back in use that agree with it:
   /// a fit without the effect takes what it moves most for outliers.
   ModelState with(const FamilyTest& effect) const;
+  /// With a further surface and none of the effects that were added. What `beside`, effects that are to be
+  /// added again, can imitate of it is theirs.
+  ModelState with_surface(const SurfaceTest& surface, const std::vector<AddedEffect>& beside) const;
   /// With tests().
   ModelState tested() const;
   ModelState with_tests(ModelTests tests) const;
@@ -42,6 +62,8 @@ class ModelState {
   const SearchSetting& setting() const { return *setting_; }
   const std::vector<AddedEffect>& added() const { return added_; }
   bool has(std::size_t family) const;
+  const std::vector<AddedSurface>& surfaces() const { return surfaces_; }
+  bool has_surface(const EffectName& name) const;
   const Family& family_of(const AddedEffect& added) const { return setting_->families[added.test.family]; }
   const NoiseEstimate& noise_estimate() const { return noise_estimate_; }
   const std::vector<NoiseParameters>& noise() const { return noise_; }
@@ -59,6 +81,8 @@ class ModelState {
   NoiseProblem problem() const;
   /// Without some of the added effects, by their places.
   std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
+  /// At the same noise and smoothing.
+  std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface) const;
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
   /// From all readings, those that are held out as well.
   std::unique_ptr<Projector> projector_of_all_readings() const;
@@ -74,6 +98,7 @@ class ModelState {
 
   std::shared_ptr<const SearchSetting> setting_;
   LinearModel model_;
+  std::vector<AddedSurface> surfaces_;
   std::vector<AddedEffect> added_;
   NoiseEstimate noise_estimate_;
   std::vector<NoiseParameters> noise_;

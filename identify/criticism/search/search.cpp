@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
+#include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -64,9 +65,10 @@ Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions optio
 
 void Search::run() {
   start();
-  climb();
-  settle([this] { climb(); });
-  reject();
+  explain();
+  names_before_surfaces_ = state_->added().size();
+  while (static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces && draw_surface()) explain();
+  replace_surfaces();
   if (!options_.climb) keep_one_step();
   if (something_exceeds()) return;
   report("what noise may hold", 0.92);
@@ -80,11 +82,65 @@ void Search::report(const std::string& stage, double done) const {
 void Search::start() {
   report("noise model", 0.05);
   given_.emplace(model_, setting_);
-  state_ = given_;
+  base_ = state_ = given_;
+}
+
+void Search::explain() {
+  climb();
+  settle([this] { climb(); });
+  reject();
+}
+
+/// For what exceeds and has no name. False: nothing, or no surface explains it.
+bool Search::draw_surface() {
+  const std::vector<UnknownFinding> findings = unknown_findings(*state_, rejected_);
+  if (findings.empty()) return false;
+  report("a surface for what has no name", 0.9);
+  const std::optional<SurfaceTest> surface = best_surface(*state_, findings);
+  if (!surface) return false;
+  const std::vector<FamilyTest> kept = added_tests(state_->added());
+  base_ = base_->with_surface(*surface, state_->added());
+  restart_with(kept);
+  rejected_.clear();
+  dropped_.clear();
+  tried_together_.clear();
+  return true;
+}
+
+/// With other surfaces and names in the model, names may explain what a surface was drawn for.
+void Search::replace_surfaces() {
+  for (std::size_t i = 0; i < base_->surfaces().size();) {
+    const std::vector<AddedSurface>& all = base_->surfaces();
+    if (all.size() == 1 && state_->added().size() == names_before_surfaces_) return;
+    report("names in the place of " + effect_label(*all[i].effect), 0.9);
+    const ModelState base = *base_, state = *state_;
+    const Reasons rejected = rejected_;
+    std::vector<SurfaceTest> others;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (k != i) others.push_back({all[k].spec, all[k].effect, all[k].finding, all[k].log_evidence});
+    }
+    rebuild(others, added_tests(state_->added()));
+    explain();
+    if (!something_exceeds() && unknown_findings(*state_, rejected_).empty()) continue;
+    base_ = base;
+    state_ = state;
+    rejected_ = rejected;
+    ++i;
+  }
+}
+
+void Search::rebuild(const std::vector<SurfaceTest>& surfaces, const std::vector<FamilyTest>& effects) {
+  const std::vector<AddedEffect> beside = state_->added();
+  base_ = given_;
+  for (const SurfaceTest& surface : surfaces) base_ = base_->with_surface(surface, beside);
+  restart_with(effects);
+  rejected_.clear();
+  dropped_.clear();
+  tried_together_.clear();
 }
 
 void Search::restart_with(const std::vector<FamilyTest>& effects) {
-  state_ = given_;
+  state_ = base_;
   for (const FamilyTest& effect : effects) add(effect);
 }
 
@@ -301,8 +357,21 @@ void Search::keep(const std::vector<FamilyTest>& effects) {
   test();
 }
 
-/// The first effect, and the changes of the model before it.
+/// The first effect, and the changes of the model before it; or the first surface where no effect came
+/// before.
 void Search::keep_one_step() {
+  if (!base_->surfaces().empty()) {
+    const AddedSurface first = base_->surfaces().front();
+    more_is_known_ = state_->added().size() > names_before_surfaces_;
+    if (names_before_surfaces_ == 0) {
+      rebuild({{first.spec, first.effect, first.finding, first.log_evidence}}, {});
+    } else {
+      rebuild({}, added_tests(state_->added()));
+      settle([] {});
+    }
+    test();
+    if (names_before_surfaces_ == 0) return;
+  }
   const auto is_effect = [this](const AddedEffect& each) {
     return setting_->families[each.test.family].effect != nullptr;
   };

@@ -10,7 +10,10 @@
 ///      absorbed (joint_noise.h),
 ///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
 ///   leave,
-///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place.
+///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
+///   4. while a scan exceeds, a surface or curve is drawn for it (surface_search.h), and the climb goes on
+///   with
+///      it in the model; in the end names are tried in the place of every surface.
 ///
 /// A search for one step climbs as well, so that what it names stands beside all the rest, and then keeps the
 /// first. Margins: thresholds.h. Valid as long as effects act linearly about the fit. Results do not depend
@@ -26,6 +29,7 @@
 
 #include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/criticism/search/rejection.h"
+#include "volcal/identify/criticism/search/surface_search.h"
 
 namespace volcal {
 
@@ -55,6 +59,10 @@ class Search {
  private:
   void report(const std::string& stage, double done) const;
   void start();
+  void explain();
+  bool draw_surface();
+  void replace_surfaces();
+  void rebuild(const std::vector<SurfaceTest>& surfaces, const std::vector<FamilyTest>& effects);
   void add(const FamilyTest& effect) { state_ = state_->with(effect); }
   void test() { state_ = state_->tested(); }
   void restart_with(const std::vector<FamilyTest>& effects);
@@ -79,10 +87,12 @@ class Search {
   LinearModel model_;
   std::shared_ptr<const SearchSetting> setting_;
   std::optional<ModelState> given_;
+  std::optional<ModelState> base_;  ///< the given model with the surfaces that were drawn
   std::optional<ModelState> state_;
   Reasons rejected_;
   std::set<std::size_t> dropped_;                   ///< not significant beside the others
   std::set<std::set<std::size_t>> tried_together_;  ///< added when several more were tried in vain
+  std::size_t names_before_surfaces_ = 0;
   bool more_is_known_ = false;
 };
 

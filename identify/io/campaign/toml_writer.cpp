@@ -119,6 +119,8 @@ std::string effect_toml(const EffectSpec& effect) {
       value = *flag ? "true" : "false";
     } else if (const auto vector = effect.options.vector(stem); vector && key.type == KeyType::Vector3) {
       value = array(*vector, factor);
+    } else if (const auto list = effect.options.numbers(stem); list && key.type == KeyType::Numbers) {
+      value = array(*list, factor);
     }
     if (value) text += key.key + " = " + *value + "\n";
   }

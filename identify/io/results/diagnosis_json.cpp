@@ -109,6 +109,39 @@ Json unknown_json(const UnknownFinding& unknown) {
           {"log10_p", finite_or_null(unknown.log10_p)}};
 }
 
+Json formula_json(const FormulaFinding& formula) {
+  return {{"label", formula.label},
+          {"amplitude", finite_or_null(formula.amplitude / formula.si_per_unit)},
+          {"u", finite_or_null(formula.u / formula.si_per_unit)},
+          {"unit", formula.unit},
+          {"shape_value", formula.shape_text},
+          {"log_evidence", finite_or_null(formula.log_evidence)},
+          {"model_toml", effect_toml(formula.spec)},
+          {"spec", json_parts::effect(formula.spec)}};
+}
+
+Json surface_json(const SurfaceFinding& surface) {
+  Json formulas = Json::array();
+  for (const FormulaFinding& formula : surface.formulas) formulas.push_back(formula_json(formula));
+  return {{"kind", surface.name.kind},
+          {"target", surface.name.target},
+          {"driver", surface.name.driver},
+          {"shape", surface.name.shape},
+          {"label", surface.label},
+          {"drivers", surface.drivers},
+          {"unit", surface.unit},
+          {"largest", finite_or_null(surface.largest / surface.si_per_unit)},
+          {"u", finite_or_null(surface.largest_u / surface.si_per_unit)},
+          {"at", surface.at},
+          {"rms", finite_or_null(surface.rms / surface.si_per_unit)},
+          {"log_evidence", finite_or_null(surface.log_evidence)},
+          {"effective_parameters", finite_or_null(surface.effective_parameters)},
+          {"free", surface.free},
+          {"formulas", std::move(formulas)},
+          {"model_toml", effect_toml(surface.spec)},
+          {"spec", json_parts::effect(surface.spec)}};
+}
+
 Json names_json(const std::vector<EffectName>& names) {
   Json json = Json::array();
   for (const EffectName& name : names) json.push_back(full_name(name));
@@ -154,7 +187,7 @@ Json step_json(const LadderStep& step) {
           {"heldout_loglik_gain", finite_or_null(step.heldout_loglik_gain)}};
 }
 
-Json noise_json(const Diagnosis& diagnosis) {
+Json noise_rows_json(const Diagnosis& diagnosis) {
   Json json = Json::array();
   for (const NoiseRow& row : diagnosis.noise) {
     json.push_back({{"instrument", diagnosis.noise_instruments[row.instrument]},
@@ -182,6 +215,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
+  json["surfaces"] = Json::array();
+  for (const SurfaceFinding& surface : diagnosis.surfaces) json["surfaces"].push_back(surface_json(surface));
   json["not_visible"] = list_json(diagnosis.not_visible);
   json["next_measurement"] = Json::array();
   for (const MeasurementProposal& proposal : diagnosis.proposals) {
@@ -191,7 +226,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["ladder"] = Json::array();
   for (const LadderStep& step : diagnosis.ladder) json["ladder"].push_back(step_json(step));
   json["model_changes"] = list_json(diagnosis.model_changes);
-  json["noise"] = noise_json(diagnosis);
+  json["noise"] = noise_rows_json(diagnosis);
   json["removed_readings"] = Json::array();
   for (const RemovedReading& removed : diagnosis.removed_readings) {
     json["removed_readings"].push_back(

@@ -24,7 +24,7 @@ double number_or_nan(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 double number_or_nan(const Json& json, const char* key) { return number_or_nan(json.at(key)); }
-double micro(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
+double metres_of(const Json& json, const char* key) { return number_or_nan(json, key) * kMicro; }
 std::string text(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
 
 /// Of a unit as it is printed: "um/m/K" stands for the suffix um_per_m_K.
@@ -73,6 +73,38 @@ EffectFinding effect_from(const Json& json) {
   return effect;
 }
 
+FormulaFinding formula_from(const Json& json) {
+  FormulaFinding formula;
+  formula.label = text(json, "label");
+  formula.unit = text(json, "unit");
+  formula.si_per_unit = si_per_unit(formula.unit);
+  formula.amplitude = number_or_nan(json, "amplitude") * formula.si_per_unit;
+  formula.u = number_or_nan(json, "u") * formula.si_per_unit;
+  formula.shape_text = text(json, "shape_value");
+  formula.log_evidence = number_or_nan(json, "log_evidence");
+  formula.spec = json_parts::effect_from(json.at("spec"));
+  return formula;
+}
+
+SurfaceFinding surface_from(const Json& json) {
+  SurfaceFinding surface;
+  surface.name = name_from(json);
+  surface.label = text(json, "label");
+  surface.drivers = json.at("drivers").get<std::vector<std::string>>();
+  surface.unit = text(json, "unit");
+  surface.si_per_unit = si_per_unit(surface.unit);
+  surface.largest = number_or_nan(json, "largest") * surface.si_per_unit;
+  surface.largest_u = number_or_nan(json, "u") * surface.si_per_unit;
+  surface.at = json.at("at").get<std::vector<double>>();
+  surface.rms = number_or_nan(json, "rms") * surface.si_per_unit;
+  surface.log_evidence = number_or_nan(json, "log_evidence");
+  surface.effective_parameters = number_or_nan(json, "effective_parameters");
+  surface.free = json.at("free").get<std::vector<std::string>>();
+  for (const Json& each : json.at("formulas")) surface.formulas.push_back(formula_from(each));
+  surface.spec = json_parts::effect_from(json.at("spec"));
+  return surface;
+}
+
 std::vector<EffectFinding> list_from(const Json& json) {
   std::vector<EffectFinding> effects;
   for (const Json& each : json) effects.push_back(effect_from(each));
@@ -89,7 +121,7 @@ DetectableEffect detectable_from(const Json& json) {
   effect.visible = json.at("visible").get<bool>();
   effect.visible_fraction = number_or_nan(json, "visible_fraction");
   effect.mdb = number_or_nan(json, "mdb") * effect.si_per_unit;
-  effect.volumetric = micro(json, "volumetric_um");
+  effect.volumetric = metres_of(json, "volumetric_um");
   return effect;
 }
 
@@ -152,13 +184,13 @@ LadderStep step_from(const Json& json) {
   LadderStep step;
   step.model = text(json, "model");
   step.added = text(json, "added");
-  step.rms_fit = micro(json, "rms_fit_um");
-  step.rms_heldout = micro(json, "rms_heldout_um");
+  step.rms_fit = metres_of(json, "rms_fit_um");
+  step.rms_heldout = metres_of(json, "rms_heldout_um");
   step.reduced_chi2 = number_or_nan(json, "reduced_chi2");
-  step.noise_floor = micro(json, "noise_floor_um");
-  step.systematic = micro(json, "systematic_um");
-  step.systematic_low = micro(json, "systematic_low_um");
-  step.systematic_high = micro(json, "systematic_high_um");
+  step.noise_floor = metres_of(json, "noise_floor_um");
+  step.systematic = metres_of(json, "systematic_um");
+  step.systematic_low = metres_of(json, "systematic_low_um");
+  step.systematic_high = metres_of(json, "systematic_high_um");
   step.heldout_loglik_gain = number_or_nan(json, "heldout_loglik_gain");
   return step;
 }
@@ -193,11 +225,14 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
+  for (const Json& each : json.value("surfaces", Json::array()))
+    diagnosis.surfaces.push_back(surface_from(each));
   for (const Json& each : json.at("unknown")) {
     diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
                                  each.value("with_one_of", std::vector<std::string>{}),
-                                 text(each, "direction"), each.value("rotation", ""), micro(each, "rms_um"),
-                                 number_or_nan(each, "log10_p"), wave_period(each)});
+                                 text(each, "direction"), each.value("rotation", ""),
+                                 metres_of(each, "rms_um"), number_or_nan(each, "log10_p"),
+                                 wave_period(each)});
   }
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {

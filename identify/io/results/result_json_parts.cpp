@@ -132,6 +132,11 @@ Json option_json(const OptionValue& value) {
   if (const auto* scalar = std::get_if<double>(&value)) return number(*scalar);
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) {
+    Json numbers = Json::array();
+    for (const double each : *list) numbers.push_back(number(each));
+    return {{"numbers", numbers}};
+  }
   return vector(std::get<Eigen::Vector3d>(value));
 }
 
@@ -139,6 +144,10 @@ OptionValue option_from(const Json& json) {
   if (json.is_string()) return json.get<std::string>();
   if (json.is_boolean()) return json.get<bool>();
   if (json.is_array()) return vector3_from(json);
+  if (json.is_object()) {
+    const Eigen::VectorXd numbers = vector_from(json.at("numbers"));
+    return std::vector<double>(numbers.begin(), numbers.end());
+  }
   return number(json);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kShownResolution = 1e-10;  // m; finer ones limit nothing
 
-std::vector<std::string> figures(const std::string& name, const ErrorLeft& left) {
+std::vector<std::string> left_figures(const std::string& name, const ErrorLeft& left) {
   return {name, fixed_number(left.rms / kMicro, 2), fixed_number(left.max / kMicro, 2)};
 }
 
@@ -34,13 +34,13 @@ std::string settings_text(const TableFormat& format) {
 
 std::string volume_check_text(const VolumeCheck& check, const CompensationType& type) {
   TextTable volume({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}}, "Error left in the volume");
-  volume.add_row(figures("before", check.before));
-  volume.add_row(figures("ideal " + type.name(), check.ideal));
-  volume.add_row(figures("tables read back", check.exported));
+  volume.add_row(left_figures("before", check.before));
+  volume.add_row(left_figures("ideal " + type.name(), check.ideal));
+  volume.add_row(left_figures("tables read back", check.exported));
   if (check.identification_u > 0.0)
     volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
   if (check.over_conditions)
-    volume.add_row(figures("tables, ends of the campaign's conditions", *check.over_conditions));
+    volume.add_row(left_figures("tables, ends of the campaign's conditions", *check.over_conditions));
   TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});
   for (const PartLeft& part : check.parts) {
     parts.add_row({CompensationType(part.part).name(), fixed_number(part.before.rms / kMicro, 2),

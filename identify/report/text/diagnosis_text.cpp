@@ -138,8 +138,8 @@ std::string noise_text(const Diagnosis& diagnosis) {
 std::string unknown_table(const Diagnosis& diagnosis, std::size_t most) {
   TextTable table({{"depends on", Align::Left}, {"along", Align::Left}, {"rms [um]"}, {"log10 p"}},
                   "What the generic scans still see");
-  for (std::size_t i = 0; i < std::min(most, diagnosis.unknown.size()); ++i) {
-    const UnknownFinding& unknown = diagnosis.unknown[i];
+  for (const UnknownFinding& unknown : remaining_unknown(diagnosis)) {
+    if (most-- == 0) break;
     table.add_row({unknown.dependence(), unknown.action(), edge(unknown.rms, kMicro),
                    fixed_number(unknown.log10_p, 1)});
   }
@@ -147,7 +147,7 @@ std::string unknown_table(const Diagnosis& diagnosis, std::size_t most) {
 }
 
 /// By kind; diagnosis.json and report.html have every effect.
-std::string detectable_table(const Diagnosis& diagnosis) {
+std::string detected_effects_table(const Diagnosis& diagnosis) {
   TextTable table({{"kind", Align::Left},
                    {"effects"},
                    {"not visible"},
@@ -213,7 +213,7 @@ std::string diagnosis_summary_text(const Diagnosis& diagnosis) {
   for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
   if (diagnosis.ladder.size() > 1) text += ladder_table(diagnosis);
   for (const EffectFinding& effect : diagnosis.effects) text += effect_line(effect);
-  if (!diagnosis.unknown.empty()) text += unknown_table(diagnosis, kLeadingUnknown);
+  if (!remaining_unknown(diagnosis).empty()) text += unknown_table(diagnosis, kLeadingUnknown);
   if (!diagnosis.next_measurement.empty()) text += "next: " + diagnosis.next_measurement.front() + "\n";
   const std::size_t shown = std::min(kLeadingNotes, diagnosis.notes.size());
   for (std::size_t i = 0; i < shown; ++i) text += "! " + sentence(diagnosis.notes[i]) + "\n";
@@ -232,7 +232,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
   for (const auto* set : sets_of_alternatives(diagnosis))
     text += "\n" + evidence_table(*set, ranked, "The readings cannot separate", set->size());
-  if (!diagnosis.unknown.empty()) text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
+  if (!remaining_unknown(diagnosis).empty())
+    text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);
   text +=
       "  MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from "
@@ -243,7 +244,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
   }
   if (!diagnosis.detectable.empty()) {
-    text += "\n" + detectable_table(diagnosis) +
+    text += "\n" + detected_effects_table(diagnosis) +
             "  in the volume: root mean square displacement of the functional point by the one found first\n";
   }
   text += "\n" + noise_text(diagnosis);

@@ -1,5 +1,7 @@
 #include "volcal/identify/report/text/montecarlo_text.h"
 
+#include <fmt/format.h>
+
 #include "volcal/identify/report/text/budget_text.h"
 #include "volcal/identify/report/text/campaign_notes_text.h"
 #include "volcal/identify/report/text/fit_summary.h"
@@ -99,7 +101,7 @@ std::string tolerance_words(const MonteCarloResult& result) {
                      count_number(static_cast<long long>(result.would_settle)));
 }
 
-std::string head(const MonteCarloResult& result) {
+std::string study_head(const MonteCarloResult& result) {
   static constexpr const char* kPathWords[] = {"", "linear: one matrix product, drawn among the parameters",
                                                "chord: readings drawn, steps with an exact gradient",
                                                "refit: readings drawn, the adjustment run again"};
@@ -157,7 +159,7 @@ std::string verdict_text(const MonteCarloResult& result) {
 }  // namespace
 
 std::string montecarlo_text(const MonteCarloResult& result) {
-  std::string text = head(result);
+  std::string text = study_head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
   return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
          campaign_notes_text(result.notes);

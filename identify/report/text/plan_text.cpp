@@ -1,5 +1,10 @@
 #include "volcal/identify/report/text/plan_text.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/report/text/campaign_notes_text.h"
@@ -66,7 +71,7 @@ std::set<std::string> places_of(const Campaign& campaign, const InstrumentWords&
   return places;
 }
 
-std::string head(const CampaignPlan& plan) {
+std::string plan_head(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
   const PlanBudget& budget = settings.budget;
   std::string text = fmt::format("{} ({})\n", settings.machine.name, settings.machine.structure.code);
@@ -144,7 +149,7 @@ const Observability* error_of(const ExpectedCampaign& campaign, const std::strin
   return nullptr;
 }
 
-std::string errors_table(const CampaignPlan& plan) {
+std::string planned_errors_table(const CampaignPlan& plan) {
   std::vector<TextColumn> columns = {{"error", Align::Left}, {"unit", Align::Left}};
   const std::vector<const ExpectedCampaign*> all = compared(plan);
   for (const ExpectedCampaign* each : all) columns.push_back({"U95 " + each->name});
@@ -180,7 +185,7 @@ std::string errors_table(const CampaignPlan& plan) {
   return table.text();
 }
 
-std::string detectable_table(const CampaignPlan& plan) {
+std::string planned_effects_table(const CampaignPlan& plan) {
   TextTable table({{"effect", Align::Left},
                    {"effects"},
                    {"not visible"},
@@ -263,9 +268,9 @@ double target_ratio(const CampaignPlan& plan) {
 }
 
 std::string plan_text(const CampaignPlan& plan) {
-  return head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) + "\n" +
-         errors_table(plan) + "\n" + detectable_table(plan) + invisible_text(plan) + options_table(plan) +
-         campaign_notes_text(plan.notes);
+  return plan_head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) +
+         "\n" + planned_errors_table(plan) + "\n" + planned_effects_table(plan) + invisible_text(plan) +
+         options_table(plan) + campaign_notes_text(plan.notes);
 }
 
 }  // namespace volcal

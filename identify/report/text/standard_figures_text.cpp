@@ -16,7 +16,7 @@ namespace {
 
 using Cells = std::vector<std::string>;
 
-std::string micrometres(std::optional<double> value) {
+std::string micrometres_or_dash(std::optional<double> value) {
   return value ? fixed_number(*value * kPerMicro, 2) : "-";
 }
 
@@ -54,18 +54,18 @@ std::vector<TextColumn> columns(std::initializer_list<const char*> left,
 }
 
 Cells positioning_cells(const PositioningFigures& figures) {
-  return {micrometres(figures.accuracy),
-          micrometres(figures.positive.accuracy),
-          micrometres(figures.negative.accuracy),
-          micrometres(figures.systematic),
-          micrometres(figures.positive.systematic),
-          micrometres(figures.negative.systematic),
-          micrometres(figures.mean_bidirectional),
-          micrometres(figures.repeatability),
-          micrometres(figures.positive.repeatability),
-          micrometres(figures.negative.repeatability),
-          micrometres(figures.reversal),
-          micrometres(figures.mean_reversal)};
+  return {micrometres_or_dash(figures.accuracy),
+          micrometres_or_dash(figures.positive.accuracy),
+          micrometres_or_dash(figures.negative.accuracy),
+          micrometres_or_dash(figures.systematic),
+          micrometres_or_dash(figures.positive.systematic),
+          micrometres_or_dash(figures.negative.systematic),
+          micrometres_or_dash(figures.mean_bidirectional),
+          micrometres_or_dash(figures.repeatability),
+          micrometres_or_dash(figures.positive.repeatability),
+          micrometres_or_dash(figures.negative.repeatability),
+          micrometres_or_dash(figures.reversal),
+          micrometres_or_dash(figures.mean_reversal)};
 }
 
 std::string lines_text(std::span<const NamedFigures> models) {
@@ -108,7 +108,7 @@ std::string diagonal_groups_text(std::span<const NamedFigures> models) {
     const Cells heading = {(groups[i].axes.size() == 3 ? "body " : "face ") + letters_of(groups[i].axes),
                            std::to_string(groups[i].summary.readings.diagonals)};
     const auto cells = [](const DiagonalSummary& summary) {
-      return Cells{micrometres(summary.systematic), micrometres(summary.reversal)};
+      return Cells{micrometres_or_dash(summary.systematic), micrometres_or_dash(summary.reversal)};
     };
     rows.add(heading, "readings", cells(groups[i].summary.readings));
     for (const NamedFigures& model : models) {
@@ -131,23 +131,23 @@ std::optional<double> mean_reversal(const CircularFigures& figures, int axis) {
 }
 
 std::string circle_reversal(const CircleTest& test, const CircularFigures& figures, AxisName axis) {
-  if (axis == test.first) return micrometres(mean_reversal(figures, 0));
-  if (axis == test.second) return micrometres(mean_reversal(figures, 1));
+  if (axis == test.first) return micrometres_or_dash(mean_reversal(figures, 0));
+  if (axis == test.second) return micrometres_or_dash(mean_reversal(figures, 1));
   return "-";
 }
 
 Cells circle_cells(const CircleTest& test, const CircularFigures& figures) {
   const auto of = [](const std::optional<CircularPath>& path, double CircularPath::*figure) {
-    return path ? micrometres((*path).*figure) : std::string("-");
+    return path ? micrometres_or_dash((*path).*figure) : std::string("-");
   };
   Cells cells = {of(figures.counter_clockwise, &CircularPath::circular_deviation),
                  of(figures.clockwise, &CircularPath::circular_deviation),
-                 micrometres(figures.bidirectional),
+                 micrometres_or_dash(figures.bidirectional),
                  of(figures.counter_clockwise, &CircularPath::radial_max),
                  of(figures.counter_clockwise, &CircularPath::radial_min),
                  of(figures.clockwise, &CircularPath::radial_max),
                  of(figures.clockwise, &CircularPath::radial_min),
-                 micrometres(figures.mean_radial)};
+                 micrometres_or_dash(figures.mean_radial)};
   for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
     cells.push_back(circle_reversal(test, figures, axis));
   }
@@ -174,8 +174,9 @@ std::string circles_text(std::span<const NamedFigures> models) {
 }
 
 Cells volumetric_cells(const VolumetricFigures& figures) {
-  return {std::to_string(figures.points), micrometres(figures.range.x()), micrometres(figures.range.y()),
-          micrometres(figures.range.z()), micrometres(figures.rms),       micrometres(figures.max)};
+  return {std::to_string(figures.points),         micrometres_or_dash(figures.range.x()),
+          micrometres_or_dash(figures.range.y()), micrometres_or_dash(figures.range.z()),
+          micrometres_or_dash(figures.rms),       micrometres_or_dash(figures.max)};
 }
 
 std::string points_text(std::span<const NamedFigures> models) {

@@ -7,7 +7,9 @@
 #include <set>
 
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 namespace {
@@ -98,10 +100,31 @@ int automatic_intervals(const Campaign& campaign, AxisName axis) {
   return resolved_stretch(campaign, axis).intervals;
 }
 
+namespace {
+
+/// What effects leave to the readings.
+void resolve_effects(const Campaign& campaign, ModelSpec& spec) {
+  const auto is_open = [](const EffectSpec& effect) {
+    const EffectKind* kind = find_effect(effect.kind);
+    return kind != nullptr && kind->is_open(effect);
+  };
+  if (std::ranges::none_of(spec.effects, is_open)) return;
+  ModelSpec alone = spec;
+  alone.effects.clear();
+  const MeasurementModel model(campaign, alone);
+  const std::vector<SetupView> views = setup_views(campaign, model.binding(), model.chain());
+  for (EffectSpec& effect : spec.effects) {
+    if (is_open(effect)) effect = find_effect(effect.kind)->resolved(effect, views, spec.file);
+  }
+}
+
+}  // namespace
+
 ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
   ModelSpec result = spec;
   for (const ErrorSymbol symbol : modelled_motions(campaign.machine, spec))
     result.functions[symbol] = resolved(spec.function(symbol), symbol, campaign);
+  resolve_effects(campaign, result);
   return result;
 }
 

@@ -1,27 +1,6 @@
 #pragma once
-/// Resolution of functions with `knots = "auto"`, and variance components, both by evidence.
-///
-/// The knots are as fine as the readings can separate (resolution.h); a Gaussian-process prior per function
-/// (function_prior.h) says how rough it may be. Its kind and length; its amplitude, one per function; and the
-/// variance components s_g^2 (sigma of instrument g is s_g times stated) maximise the marginal likelihood of
-/// all readings together (restricted likelihood: nuisance parameters and straight parts integrated out).
-/// Amplitudes follow MacKay's fixed point, lambda <- (rank - lambda tr(C S)) / z^T S z (MacKay 1992, Neural
-/// Computation 4, 415); variance components Foerstner's (1979), s_g^2 <- v_g^T W_g v_g / (n_g - tr(C M_g) /
-/// s_g^2).
-///
-/// Kind and length (a share of the travel) are those of an axis, whose functions ride on one guideway, and of
-/// all linear axes together but for those that very strong evidence sets apart. Six functions tell a length
-/// from the next one by a few units of log likelihood or less, so that axes left to themselves stray, and a
-/// prior that is too smooth costs more than one that is too rough.
-///
-/// Then the variances of Legendre's coefficients are corrected degree by degree, by expectation and
-/// maximisation with conjugate priors (scaled inverse chi-squared; Gelman et al. 2013, Bayesian Data
-/// Analysis, 2.6): those common to the linear axes about the shape's, those of an axis about the common ones.
-/// The correction takes the coefficients as independent, which those of stationary shapes are not; it holds
-/// where the evidence is higher with it.
-///
-/// The posterior covariance C then contains the truncation of the basis (Nychka 1988, JASA 83, 1134: such
-/// intervals cover the truth at the stated rate on average over the positions).
+/// Priors on the amplitudes, coefficient by coefficient, of functions with `knots = "auto"` and of surfaces:
+/// a shape (function_prior.h, surface_prior.h) times an amplitude, both found by evidence (evidence.h).
 
 #include <Eigen/Core>
 #include <memory>
@@ -29,49 +8,39 @@
 
 #include "volcal/identify/solve/normals/minimise.h"
 #include "volcal/identify/solve/priors/function_prior.h"
+#include "volcal/identify/solve/priors/surface_prior.h"
 
 namespace volcal {
 
+/// Of a function or of a surface.
 struct SmoothingTerm {
-  ErrorSymbol symbol;
-  int offset = 0;  ///< in the reduced vector
-  std::shared_ptr<const FunctionPriors> family;
-  std::size_t shape = 0;  ///< of the family's, that the prior is about
-  double lambda = 0.0;    ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
-  std::shared_ptr<const PriorShape> prior;
+  ErrorSymbol symbol = {};                            ///< of a function
+  int offset = 0;                                     ///< in the reduced vector
+  std::shared_ptr<const FunctionPriors> family = {};  ///< of a function, else null
+  std::size_t shape = 0;                              ///< of shapes(), that the prior is about
+  double lambda = 0.0;                                ///< 1 / amplitude^2, 1/m^2 or 1/rad^2
+  std::shared_ptr<const PriorShape> prior = {};
+  std::shared_ptr<const SurfacePriors> surface = {};  ///< of a surface, else null
 
+  bool is_function() const { return family != nullptr; }
+  const std::vector<std::shared_ptr<const PriorShape>>& shapes() const {
+    return is_function() ? family->shapes() : surface->shapes();
+  }
   const Eigen::MatrixXd& precision() const { return prior->precision; }  ///< of unit amplitude
 };
 
-/// Terms for the functions that are smoothed, with a wide start.
+/// Terms for the functions that are smoothed and for surfaces, with a wide start.
 std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const DatumSpace& datum);
+/// A term for a surface whose coefficients stand at `offset`.
+SmoothingTerm surface_term(const TensorBasis& basis, int offset);
+/// Leaves to the rest of the model what it can imitate of surfaces. `data`: normal matrix of the readings,
+/// `prior`: of everything but smoothing; reduced coordinates.
+void leave_imitated_to_the_rest(const Eigen::MatrixXd& data, const GaussianPrior& prior,
+                                std::vector<SmoothingTerm>& terms);
 /// Same shapes, amplitudes within 28 %, correlation lengths within 22 %: less than evidence knows of one, and
 /// nothing that the noise beside them would notice.
 bool alike(const std::vector<SmoothingTerm>& terms, const std::vector<SmoothingTerm>& others);
 void add_smoothing(const std::vector<SmoothingTerm>& terms, GaussianPrior& prior);
-
-/// Quadratic model of one noise group's readings about z0: M, J^T W (predicted - reading), weighted squares.
-struct NoiseGroupEquations {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd gradient;
-  double squares = 0.0;
-  double observations = 0.0;
-};
-
-struct EvidenceOptions {
-  bool variance_components = true;
-};
-
-struct EvidenceState {
-  std::vector<double> scale;  ///< s_g per instrument
-  double log_evidence = 0.0;  ///< up to a constant
-};
-
-/// Updates `terms` and the instrument scales. `equations` hold stated weights, `prior` everything but
-/// smoothing.
-EvidenceState maximise_evidence(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
-                                const GaussianPrior& prior, const EvidenceOptions& options,
-                                std::vector<double> scale, std::vector<SmoothingTerm>& terms);
 
 /// What not knowing the amplitudes exactly adds to the covariance of the reduced parameters z: J V J^T with J
 /// = dz / dlog lambda and V the inverse Hessian of minus log evidence (Kass and Steffey 1989, JASA 84, 717;

@@ -28,8 +28,8 @@ namespace {
 using Correction = std::function<Eigen::Vector3d(const AxisPosition&, const ApproachDirection&)>;
 
 // Largest ratio and volumetric error allowed are those that were asked of the exporters.
-constexpr double kTolerance = 0.5e-6;     // m, of the chosen step
-constexpr double kVolumetricGoal = 1e-6;  // m
+constexpr double kStepTolerance = 0.5e-6;  // m, of the chosen step
+constexpr double kVolumetricGoal = 1e-6;   // m
 constexpr double kRatioToIdeal = 1.2;
 constexpr double kUncompensated = 15e-6;  // m
 
@@ -115,7 +115,7 @@ std::vector<CompensationType> types_of(const TableFormat& format) {
   return types;
 }
 
-struct Loop {
+struct Left {
   double before = 0.0, ideal = 0.0, exported = 0.0;
 };
 
@@ -128,11 +128,11 @@ class TablesInTheLoop : public ::testing::TestWithParam<std::tuple<const TableFo
     const FitResult result = testing::result_of(truth);
     TableFormatOptions options = options_for(format(), type);
     options.grid_per_axis = 2;
-    options.step = choose_step(format(), result, options, kTolerance).step;
+    options.step = choose_step(format(), result, options, kStepTolerance).step;
     return format().read(write_tables(format(), result, options));
   }
 
-  static Loop loop(const sim::TruthMachine& truth, CompensationType type) {
+  static Left loop(const sim::TruthMachine& truth, CompensationType type) {
     const Eigen::Vector3d tool = truth.machine().tools[1].offset;
     const Compensation ideal = ideal_of(truth, tool, type);
     const CompensationTables tables = exported(truth, type);
@@ -149,7 +149,7 @@ TEST_P(TablesInTheLoop, LeaveWhatTheIdealCompensationLeaves) {
     if (!reversal && format().limits.both_directions) continue;
     const sim::TruthMachine truth = machine_with_errors(structure(), reversal);
     for (const CompensationType type : types_of(format())) {
-      const Loop result = loop(truth, type);
+      const Left result = loop(truth, type);
       const std::string what = std::string(format().name) + " " + type.name() +
                                (reversal ? " with reversal" : " without reversal") + ": before " +
                                std::to_string(result.before * 1e6) + ", ideal " +
@@ -181,8 +181,8 @@ TEST_P(TablesInTheLoop, MistakesAreSeen) {
   };
   const Vector tool = truth.machine().tools[1].offset;
   const double none = deviation(tool, [](const Vector& c) { return c; });
-  EXPECT_LT(none, kTolerance + 0.5 * format().limits.resolution);
-  const double noticeable = kTolerance + 3.0 * none;
+  EXPECT_LT(none, kStepTolerance + 0.5 * format().limits.resolution);
+  const double noticeable = kStepTolerance + 3.0 * none;
   EXPECT_GT(deviation(tool, [](const Vector& c) { return Vector(-c); }), noticeable) << "sign";
   EXPECT_GT(deviation(tool, [](const Vector& c) { return Vector(c / 25.4); }), noticeable) << "unit";
   EXPECT_GT(deviation(tool, [](const Vector& c) { return Vector(c.y(), c.z(), c.x()); }), noticeable)

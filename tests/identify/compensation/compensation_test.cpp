@@ -10,6 +10,7 @@
 #include "tests/support/machines.h"
 #include "volcal/identify/compensation/volume_check.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
 #include "volcal/sim/machine/random_truth.h"
 #include "volcal/sim/machine/reference_machines.h"
 
@@ -19,7 +20,6 @@ namespace {
 using Eigen::Vector3d;
 using Part = CompensationPart;
 
-constexpr double kMicrometre = 1e-6;
 constexpr ApproachDirection kTowardsPlus = {1, 1, 1, 0, 0, 0};
 constexpr ApproachDirection kTowardsMinus = {-1, -1, -1, 0, 0, 0};
 
@@ -34,7 +34,7 @@ Vector3d correction_um(const FitResult& result, CompensationType type, const Axi
                        const ApproachDirection& direction = kTowardsPlus) {
   TableFormatOptions options;
   options.type = type;
-  return ideal_compensation(result, options).correction(position, direction) / kMicrometre;
+  return ideal_compensation(result, options).correction(position, direction) / kMicro;
 }
 
 void expect_near(const Vector3d& actual, const Vector3d& expected) {

@@ -58,7 +58,7 @@ TEST(SuperimposedTables, AreJudgedAgainstTheMachineAsItWasMeasured) {
   EXPECT_NEAR(check.exported.rms, 0.0, 1e-10);
 }
 
-std::string refusal(const char* format, const TableFormatOptions& options) {
+std::string refused_tables(const char* format, const TableFormatOptions& options) {
   try {
     write_tables(*find_table_format(format), measured_again(), options);
   } catch (const InputError& error) {
@@ -70,10 +70,11 @@ std::string refusal(const char* format, const TableFormatOptions& options) {
 
 TEST(SuperimposedTables, LoseNothingThatWasActive) {
   const CompensationTables straightness = active_tables(AxisName::Y, -5e-6);
-  EXPECT_THAT(refusal("neutral-csv", superimposed("L-POS", straightness)),
+  EXPECT_THAT(refused_tables("neutral-csv", superimposed("L-POS", straightness)),
               HasSubstr("um that L-POS does not hold"));
-  EXPECT_EQ(refusal("neutral-csv", superimposed("L-VOL", straightness)), "");
-  EXPECT_THAT(refusal("csv", superimposed("L-VOL", straightness)), HasSubstr("csv cannot be superimposed"));
+  EXPECT_EQ(refused_tables("neutral-csv", superimposed("L-VOL", straightness)), "");
+  EXPECT_THAT(refused_tables("csv", superimposed("L-VOL", straightness)),
+              HasSubstr("csv cannot be superimposed"));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "volcal/identify/criticism/unknown_findings.h"
+#include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/finding_codes.h"
 

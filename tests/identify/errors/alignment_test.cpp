@@ -26,7 +26,7 @@ double location_of(const FitResult& result, const char* symbol) {
   return block == nullptr ? std::nan("") : result.parameters[block->offset];
 }
 
-double function_of(const FitResult& result, const char* symbol, double q) {
+double value_of_function(const FitResult& result, const char* symbol, double q) {
   const ErrorSymbol wanted = *ErrorSymbol::parse(symbol);
   const auto place = result.layout.find(wanted);
   return result.layout.groups[static_cast<std::size_t>(place->group)].basis->value(
@@ -59,8 +59,8 @@ TEST(Alignment, AnglesAtTheNewOriginBecomeSquarenessOfTheAxesCarried) {
   Alignment alignment = to_datum(AxisName::X, AxisName::Y);
   alignment.origin = AxisPosition{0.0, 0.5, 0.0};
   const FitResult aligned = align_result(result, alignment).result;
-  EXPECT_NEAR(function_of(aligned, "EBY", 0.5), 0.0, 1e-18);
-  EXPECT_NEAR(function_of(aligned, "EBY", 1.0), 6e-6, 1e-17);
+  EXPECT_NEAR(value_of_function(aligned, "EBY", 0.5), 0.0, 1e-18);
+  EXPECT_NEAR(value_of_function(aligned, "EBY", 1.0), 6e-6, 1e-17);
   EXPECT_NEAR(location_of(aligned, "EB0Z"), 6e-6, 1e-17);
   EXPECT_EQ(aligned.machine.axis(AxisName::Y).home, 0.5);
 }
@@ -76,15 +76,15 @@ TEST(Alignment, AlongTheSpindleTheSlopeOfZStaysInItsStraightness) {
   Alignment alignment = to_datum(AxisName::Z, AxisName::X);
   alignment.spindle_tilt = Eigen::Vector2d(0.0, 5e-6);
   const AlignedResult aligned = align_result(result, alignment);
-  EXPECT_NEAR(function_of(aligned.result, "EXZ", 1.0), -5e-6, 1e-17);
-  EXPECT_NEAR(function_of(aligned.result, "EYZ", 1.0), 0.0, 1e-18);
+  EXPECT_NEAR(value_of_function(aligned.result, "EXZ", 1.0), -5e-6, 1e-17);
+  EXPECT_NEAR(value_of_function(aligned.result, "EYZ", 1.0), 0.0, 1e-18);
   EXPECT_NEAR(aligned.frame_rotation.y(), 25e-6, 1e-17);
   // u_X = e_X - phi x e_X = e_X + 25 urad e_Z; u_s = e_s + EB0X e_Y x e_X = e_X - EB0X e_Z
   EXPECT_NEAR(location_of(aligned.result, "EB0X"), -25e-6, 1e-17);
   EXPECT_THAT(aligned.result.alignment, HasSubstr("along the spindle"));
 }
 
-FitResult random_result(std::mt19937_64& random, const std::string& code) {
+FitResult result_with_tools(std::mt19937_64& random, const std::string& code) {
   Machine machine = machine_of(code);
   for (Axis& axis : machine.axes) axis.reference_point = testing_support::random_vector(random, 0.5);
   machine.tools = {{"short", {0.0, 0.0, -0.15}, 0.0}, {"side", {0.11, 0.05, -0.24}, 0.0}};
@@ -141,7 +141,7 @@ Eigen::MatrixXd error_rows(const FitResult& result, const PointSet& set, const T
 TEST(Alignment, ErrorsAndTheirCovarianceAreTheSameUpToARigidMotion) {
   std::mt19937_64 random(17);
   for (const char* code : {"w X b Y Z t", "w X' Y' b Z t", "w b X Y Z t", "w Y' b Z X t"}) {
-    const FitResult result = random_result(random, code);
+    const FitResult result = result_with_tools(random, code);
     for (const AxisName primary : kLinearAxes) {
       for (const AxisName secondary : kLinearAxes) {
         if (primary == secondary) continue;
@@ -166,7 +166,7 @@ TEST(Alignment, ErrorsAndTheirCovarianceAreTheSameUpToARigidMotion) {
 /// Where the frame has gone and came back, nothing has changed but by rounding.
 TEST(Alignment, ThereAndBackIsTheSameResult) {
   std::mt19937_64 random(5);
-  const FitResult raw = random_result(random, "w X' b Y Z t");
+  const FitResult raw = result_with_tools(random, "w X' b Y Z t");
   const FitResult first = align_result(raw, to_datum(AxisName::X, AxisName::Y)).result;
   Alignment alignment = to_datum(AxisName::Z, AxisName::Y);
   alignment.origin = AxisPosition{0.5, 0.25, 1.0};
@@ -182,7 +182,7 @@ TEST(Alignment, ThereAndBackIsTheSameResult) {
 /// Points of two tools keep their distances: what the frame turns, it turns for all tools.
 TEST(Alignment, ToolsTurnWithTheFrame) {
   std::mt19937_64 random(23);
-  const FitResult result = random_result(random, "w X' b Y Z t");
+  const FitResult result = result_with_tools(random, "w X' b Y Z t");
   Alignment alignment = to_datum(AxisName::Z, AxisName::Y);
   alignment.origin = AxisPosition{0.4, 0.7, 0.2};
   const FitResult aligned = align_result(result, alignment).result;
@@ -200,7 +200,7 @@ TEST(Alignment, ToolsTurnWithTheFrame) {
   EXPECT_LT(sim::rms_after_alignment(points, changes), 1e-15);
 }
 
-std::string refusal(const FitResult& result, const Alignment& alignment) {
+std::string refused_alignment(const FitResult& result, const Alignment& alignment) {
   try {
     align_result(result, alignment);
   } catch (const InputError& error) {
@@ -212,28 +212,29 @@ std::string refusal(const FitResult& result, const Alignment& alignment) {
 
 TEST(Alignment, SaysWhatCannotBeDone) {
   const FitResult result = result_with(machine_of("w X' b Y Z t"), {.locations = {{"EC0Y", 30e-6}}}, 4);
-  EXPECT_THAT(refusal(result, to_datum(AxisName::X, AxisName::X)), HasSubstr("the same"));
+  EXPECT_THAT(refused_alignment(result, to_datum(AxisName::X, AxisName::X)), HasSubstr("the same"));
   Alignment alignment = to_datum(AxisName::X, AxisName::Y);
   alignment.origin = AxisPosition{2.0, 0.0, 0.0};
-  EXPECT_THAT(refusal(result, alignment), HasSubstr("outside the travel of X"));
+  EXPECT_THAT(refused_alignment(result, alignment), HasSubstr("outside the travel of X"));
   alignment = to_datum(AxisName::X, AxisName::Y);
   alignment.spindle_tilt = Eigen::Vector2d(0.0, 0.0);
-  EXPECT_THAT(refusal(result, alignment), HasSubstr("parallel to Z"));
+  EXPECT_THAT(refused_alignment(result, alignment), HasSubstr("parallel to Z"));
   alignment.datum = {AxisName::Z, AxisName::X};
-  EXPECT_EQ(refusal(result, alignment), "");
+  EXPECT_EQ(refused_alignment(result, alignment), "");
   alignment.spindle_tilt = Eigen::Vector2d(1e-6, 0.0);
-  EXPECT_THAT(refusal(result, alignment), HasSubstr("EXZ is switched off"));
+  EXPECT_THAT(refused_alignment(result, alignment), HasSubstr("EXZ is switched off"));
   alignment.spindle_tilt = Eigen::Vector2d(0.5, 0.0);
-  EXPECT_THAT(refusal(result, alignment), HasSubstr("10 mrad"));
-  EXPECT_THAT(refusal(result_with(machine_of("w X' b Y t"), {}, 4), to_datum(AxisName::X, AxisName::Y)),
-              HasSubstr("no axis Z"));
+  EXPECT_THAT(refused_alignment(result, alignment), HasSubstr("10 mrad"));
+  EXPECT_THAT(
+      refused_alignment(result_with(machine_of("w X' b Y t"), {}, 4), to_datum(AxisName::X, AxisName::Y)),
+      HasSubstr("no axis Z"));
   FitResult thermal = result;
   thermal.layout.blocks[0].kind = ParameterKind::Effect;
   thermal.layout.blocks[0].name = "thermal EXX";
   thermal.layout.blocks[0].location.reset();
   alignment = to_datum(AxisName::X, AxisName::Y);
   alignment.origin = AxisPosition{0.5, 0.0, 0.0};
-  EXPECT_THAT(refusal(thermal, alignment), HasSubstr("thermal EXX refers to the origin"));
+  EXPECT_THAT(refused_alignment(thermal, alignment), HasSubstr("thermal EXX refers to the origin"));
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ std::vector<Vector3d> volume(const Machine& machine) {
   return points;
 }
 
-struct Moments {
+struct MachineMoments {
   double sum = 0.0;
   double squares = 0.0;
 
@@ -147,7 +147,7 @@ TEST(DesignStage, BudgetIsTheMeanOfMachinesThatAreDrawn) {
   const std::vector<Vector3d> points = volume(machine);
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> band(-0.5, 0.5);
-  std::map<std::string, Moments> squares;
+  std::map<std::string, MachineMoments> squares;
   int above = 0;
   for (int drawn = 0; drawn < kMachines; ++drawn) {
     std::vector<Vector3d> whole(points.size(), Vector3d::Zero());

@@ -26,8 +26,8 @@ using testing_support::studied;
 using testing_support::TracerStudy;
 using testing_support::value_of;
 
-constexpr double kNoise = 1e-6;    // m
-constexpr double kScale = 0.5e-6;  // relative
+constexpr double kNoiseOfLines = 1e-6;    // m
+constexpr double kScaleOfLaser = 0.5e-6;  // relative
 const std::vector<double> kPositions = {0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8};
 
 /// Four lines along X of one laser whose scale has a standard uncertainty; EXX is a straight line.
@@ -54,10 +54,10 @@ struct LinesOfOneLaser {
     Setup setup;
     setup.name = name;
     setup.instrument = "displacement";
-    setup.noise.set("constant", kNoise);
+    setup.noise.set("constant", kNoiseOfLines);
     setup.has_noise = true;
     setup.options.set("direction", Eigen::Vector3d(1.0, 0.0, 0.0));
-    setup.options.set("scale_sigma", kScale);
+    setup.options.set("scale_sigma", kScaleOfLaser);
     setup.options.set("scale_group", std::string("laser"));
     setup.readings.value.emplace_back();
     for (const double x : kPositions) {
@@ -74,7 +74,7 @@ struct LinesOfOneLaser {
   static double slope_u() {
     double squares = 0.0;
     for (const double x : kPositions) squares += 4.0 * (x - 0.45) * (x - 0.45);
-    return std::sqrt(kScale * kScale + kNoise * kNoise / squares);
+    return std::sqrt(kScaleOfLaser * kScaleOfLaser + kNoiseOfLines * kNoiseOfLines / squares);
   }
 };
 
@@ -121,14 +121,14 @@ TEST(Budget, SlopeOfLinesWithASharedScale) {
   std::map<std::string, double> u;
   for (std::size_t s = 0; s < study.budget.sources.size(); ++s)
     u[study.budget.sources[s]] += study.budget.u(row, static_cast<Eigen::Index>(s));
-  const double noise = std::sqrt(std::pow(LinesOfOneLaser::slope_u(), 2) - kScale * kScale);
+  const double noise = std::sqrt(std::pow(LinesOfOneLaser::slope_u(), 2) - kScaleOfLaser * kScaleOfLaser);
   EXPECT_NEAR(u.at("noise of displacement") / noise, 1.0, 1e-6);
-  EXPECT_NEAR(u.at("prior of length scale laser") / kScale, 1.0, 1e-6);
+  EXPECT_NEAR(u.at("prior of length scale laser") / kScaleOfLaser, 1.0, 1e-6);
   EXPECT_NEAR(u.at("length scale unknown") / 0.2e-6, 1.0, 1e-6);
   const auto scale = std::ranges::find(study.budget.sources, "prior of length scale laser");
   const double halved =
       study.budget.u_with_half_of(static_cast<std::size_t>(scale - study.budget.sources.begin()))[row];
-  EXPECT_NEAR(halved / std::sqrt(noise * noise + 0.25 * kScale * kScale + 0.04e-12), 1.0, 1e-6);
+  EXPECT_NEAR(halved / std::sqrt(noise * noise + 0.25 * kScaleOfLaser * kScaleOfLaser + 0.04e-12), 1.0, 1e-6);
 }
 
 // To 0.5 %: a smoothing precision is singular for straight lines to rounding alone, which so few readings

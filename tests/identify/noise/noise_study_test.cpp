@@ -31,7 +31,7 @@ struct Moments {
   }
 };
 
-NoiseProblem campaign(std::mt19937_64& generator) {
+NoiseProblem campaign_of_grids(std::mt19937_64& generator) {
   NoiseProblem problem;
   test::GridPlan plan;
   plan.stations = 6;
@@ -44,7 +44,7 @@ NoiseProblem campaign(std::mt19937_64& generator) {
 /// intervals cover.
 TEST(NoiseStudy, RecoversWhatWasPutIn) {
   std::mt19937_64 generator(1);
-  NoiseProblem problem = campaign(generator);
+  NoiseProblem problem = campaign_of_grids(generator);
   const NoiseParameters truth{1.3, 0.4e-6, 90.0, 0.3e-6, 0.0};
   const int campaigns = testing::short_or_long(24, 60);
   Moments white, drift, tau, line;
@@ -92,7 +92,7 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
 /// White noise stays white in at least 95 % of the campaigns, 60 in every run and 200 for the night.
 TEST(NoiseStudy, WhiteStaysWhite) {
   std::mt19937_64 generator(2);
-  NoiseProblem problem = campaign(generator);
+  NoiseProblem problem = campaign_of_grids(generator);
   const int campaigns = testing::short_or_long(60, 200);
   int white = 0, without_drift = 0, without_line = 0, without_per_metre = 0;
   for (int k = 0; k < campaigns; ++k) {
@@ -148,7 +148,7 @@ Eigen::VectorXd smooth_column(const NoiseProblem& problem, bool of_time, std::mt
 /// three times as many.
 TEST(NoiseStudy, ScoresAreCalibratedWithEstimatedNoise) {
   std::mt19937_64 generator(3);
-  NoiseProblem problem = campaign(generator);
+  NoiseProblem problem = campaign_of_grids(generator);
   const NoiseParameters truth{1.0, 0.4e-6, 200.0, 0.25e-6, 0.0};
   const Whitener ordinary(problem.data, std::vector<NoiseParameters>(1));
   std::vector<double> probability;

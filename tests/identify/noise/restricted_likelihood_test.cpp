@@ -13,8 +13,8 @@
 namespace volcal {
 namespace {
 
-const std::vector<NoiseParameters> kNoise{{1.2, 0.5e-6, 40.0, 0.3e-6, 0.2e-6},
-                                          {0.8, 0.2e-6, 300.0, 0.0, 0.0}};
+const std::vector<NoiseParameters> kNoises{{1.2, 0.5e-6, 40.0, 0.3e-6, 0.2e-6},
+                                           {0.8, 0.2e-6, 300.0, 0.0, 0.0}};
 
 /// Two instruments that share the coefficients of the grid.
 NoiseProblem two_instruments(std::mt19937_64& generator) {
@@ -26,7 +26,7 @@ NoiseProblem two_instruments(std::mt19937_64& generator) {
   test::add_grid(plan, generator, problem);
   plan.group = 1;
   test::add_grid(plan, generator, problem);
-  problem.residual = test::draw_noise(problem.data, kNoise, generator);
+  problem.residual = test::draw_noise(problem.data, kNoises, generator);
   problem.residual += problem.jacobian * Eigen::VectorXd::Constant(problem.jacobian.cols(), 3e-6);
   return problem;
 }
@@ -41,11 +41,11 @@ void add_prior(NoiseProblem& problem, std::mt19937_64& generator) {
 TEST(RestrictedLikelihood, EqualsDenseFormula) {
   std::mt19937_64 generator(1);
   NoiseProblem problem = two_instruments(generator);
-  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
-              test::dense_log_likelihood(problem, kNoise), 1e-6);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoises),
+              test::dense_log_likelihood(problem, kNoises), 1e-6);
   add_prior(problem, generator);
-  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise),
-              test::dense_log_likelihood(problem, kNoise), 1e-6);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoises),
+              test::dense_log_likelihood(problem, kNoises), 1e-6);
 }
 
 /// The coefficients are those of generalised least squares with the prior.
@@ -55,10 +55,10 @@ TEST(RestrictedLikelihood, SolutionIsGeneralisedLeastSquares) {
   add_prior(problem, generator);
   RestrictedLikelihood likelihood(problem, 1);
   Eigen::MatrixXd gram = likelihood.prior().gram;
-  for (std::size_t g = 0; g < 2; ++g) gram += likelihood.share(g, kNoise[g]).gram;
+  for (std::size_t g = 0; g < 2; ++g) gram += likelihood.share(g, kNoises[g]).gram;
   const Eigen::VectorXd x = likelihood.coefficients(RestrictedLikelihood::solve(gram).at);
 
-  const Eigen::LLT<Eigen::MatrixXd> factor(test::dense_covariance(problem.data, kNoise));
+  const Eigen::LLT<Eigen::MatrixXd> factor(test::dense_covariance(problem.data, kNoises));
   const Eigen::MatrixXd weighted = factor.solve(problem.jacobian);
   const Eigen::VectorXd expected =
       (problem.jacobian.transpose() * weighted + problem.prior_precision)
@@ -90,8 +90,8 @@ TEST(RestrictedLikelihood, HoldsWhatThePriorDecides) {
   EXPECT_EQ(likelihood.variables(), p - held);
   const std::vector<NoiseParameters> white(2);
   EXPECT_NEAR(likelihood.log_likelihood(white), test::dense_log_likelihood(problem, white), 1e-6);
-  const double held_back = likelihood.log_likelihood(kNoise);
-  const double dense = test::dense_log_likelihood(problem, kNoise);
+  const double held_back = likelihood.log_likelihood(kNoises);
+  const double dense = test::dense_log_likelihood(problem, kNoises);
   EXPECT_NEAR(held_back, dense, 4.0 * kMinInformation * static_cast<double>(held));
   EXPECT_NE(held_back, dense);
   const Eigen::VectorXd at = Eigen::VectorXd::Zero(p - held);
@@ -109,7 +109,7 @@ TEST(RestrictedLikelihood, MissingReadingsAreAbsent) {
   plan.points = {6, 3, 3};
   plan.terms = 1;
   test::add_grid(plan, generator, problem);
-  problem.residual = test::draw_noise(problem.data, kNoise, generator);
+  problem.residual = test::draw_noise(problem.data, kNoises, generator);
   NoiseProblem shorter = problem;
   for (const std::size_t i : {3U, 17U, 60U}) problem.data.sigma[i] = std::numeric_limits<double>::infinity();
   problem.residual(17) = 1.0;  // a blunder
@@ -136,8 +136,8 @@ TEST(RestrictedLikelihood, MissingReadingsAreAbsent) {
   shorter.data.length = length;
   shorter.jacobian = problem.jacobian(kept, Eigen::all).eval();
   shorter.residual = problem.residual(kept).eval();
-  const double expected = test::dense_log_likelihood(shorter, kNoise);
-  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoise), expected, 1e-6);
+  const double expected = test::dense_log_likelihood(shorter, kNoises);
+  EXPECT_NEAR(RestrictedLikelihood(problem, 1).log_likelihood(kNoises), expected, 1e-6);
 }
 
 /// A column twice says nothing new: differences of the likelihood stay the same.
@@ -154,8 +154,8 @@ TEST(RestrictedLikelihood, DependentColumnsAreLeftOut) {
   EXPECT_EQ(same.variables(), p);
   const std::vector<NoiseParameters> other{{1.0, 0.1e-6, 100.0, 0.5e-6, 0.0},
                                            {1.5, 0.0, 1.0, 0.2e-6, 0.1e-6}};
-  EXPECT_NEAR(same.log_likelihood(kNoise) - same.log_likelihood(other),
-              likelihood.log_likelihood(kNoise) - likelihood.log_likelihood(other), 1e-6);
+  EXPECT_NEAR(same.log_likelihood(kNoises) - same.log_likelihood(other),
+              likelihood.log_likelihood(kNoises) - likelihood.log_likelihood(other), 1e-6);
 }
 
 TEST(RestrictedLikelihood, RefusesSizesThatDisagree) {

@@ -11,16 +11,16 @@
 namespace volcal {
 namespace {
 
-constexpr double kTolerance = 1e-13;
+constexpr double kDenseRounding = 1e-13;
 
 TEST(Dense, EigenvaluesAscendAndTheirVectorsRebuildTheMatrix) {
   Eigen::MatrixXd a(3, 3);
   a << 2.0, 1.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, -4.0;  // -4, 1 and 3
   const SymmetricEigen eigen = eigen_decomposition(a);
-  EXPECT_TRUE(eigen.values.isApprox(Eigen::Vector3d(-4.0, 1.0, 3.0), kTolerance));
+  EXPECT_TRUE(eigen.values.isApprox(Eigen::Vector3d(-4.0, 1.0, 3.0), kDenseRounding));
   EXPECT_TRUE(
-      (eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(a, kTolerance));
-  EXPECT_TRUE(eigenvalues(a).isApprox(eigen.values, kTolerance));
+      (eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose()).isApprox(a, kDenseRounding));
+  EXPECT_TRUE(eigenvalues(a).isApprox(eigen.values, kDenseRounding));
   EXPECT_EQ(eigen_decomposition(Eigen::MatrixXd(0, 0)).values.size(), 0);
 }
 
@@ -36,7 +36,7 @@ TEST(Dense, LeastSquaresOfALineThroughThreePoints) {
   a << 1.0, 0.0, 1.0, 1.0, 1.0, 2.0;
   const LeastSquares fitted = least_squares(a, Eigen::Vector3d(0.0, 1.0, 5.0));  // -1/2 + 5/2 x
   EXPECT_EQ(fitted.rank, 2);
-  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(-0.5, 2.5), kTolerance));
+  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(-0.5, 2.5), kDenseRounding));
 }
 
 TEST(Dense, LeastSquaresWithoutFullRankHasLeastNorm) {
@@ -44,9 +44,9 @@ TEST(Dense, LeastSquaresWithoutFullRankHasLeastNorm) {
   a << 1.0, 1.0, 2.0, 2.0;
   const LeastSquares fitted = least_squares(a, Eigen::Vector2d(2.0, 4.0));
   EXPECT_EQ(fitted.rank, 1);
-  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(1.0, 1.0), kTolerance));
+  EXPECT_TRUE(fitted.solution.isApprox(Eigen::Vector2d(1.0, 1.0), kDenseRounding));
   const LeastSquares wide = least_squares(Eigen::MatrixXd::Ones(1, 3), Eigen::VectorXd::Constant(1, 3.0));
-  EXPECT_TRUE(wide.solution.isApprox(Eigen::Vector3d::Ones(), kTolerance));
+  EXPECT_TRUE(wide.solution.isApprox(Eigen::Vector3d::Ones(), kDenseRounding));
   EXPECT_EQ(least_squares(Eigen::MatrixXd(0, 2), Eigen::VectorXd(0)).rank, 0);
 }
 
@@ -68,13 +68,13 @@ TEST(Dense, NullSpaceIsOrthonormalAndLosesDependentRows) {
   rows << 1.0, 1.0, 1.0, 0.0, 1.0, -1.0;
   Eigen::MatrixXd null = null_space(rows);
   ASSERT_EQ(null.cols(), 1);
-  EXPECT_NEAR((rows * null).norm(), 0.0, kTolerance);
-  EXPECT_NEAR(null.norm(), 1.0, kTolerance);
+  EXPECT_NEAR((rows * null).norm(), 0.0, kDenseRounding);
+  EXPECT_NEAR(null.norm(), 1.0, kDenseRounding);
   rows.row(1) = 2.0 * rows.row(0);
   null = null_space(rows);
   ASSERT_EQ(null.cols(), 2);
-  EXPECT_NEAR((rows * null).norm(), 0.0, kTolerance);
-  EXPECT_TRUE((null.transpose() * null).isIdentity(kTolerance));
+  EXPECT_NEAR((rows * null).norm(), 0.0, kDenseRounding);
+  EXPECT_TRUE((null.transpose() * null).isIdentity(kDenseRounding));
   EXPECT_EQ(null_space(Eigen::MatrixXd::Zero(1, 4)).cols(), 4);
 }
 
@@ -82,8 +82,8 @@ TEST(Dense, InvertsPrecisionsWithTheirDeterminants) {
   Eigen::MatrixXd precision(2, 2);
   precision << 4.0, 2.0, 2.0, 3.0;
   const PrecisionInverse inverse = invert_precision(precision);
-  EXPECT_TRUE((precision * inverse.covariance).isIdentity(kTolerance));
-  EXPECT_NEAR(inverse.log_determinant, std::log(8.0), kTolerance);
+  EXPECT_TRUE((precision * inverse.covariance).isIdentity(kDenseRounding));
+  EXPECT_NEAR(inverse.log_determinant, std::log(8.0), kDenseRounding);
 }
 
 // Two parameters, of scales 1 and 1e-6, of which only the sum is known; the other eigenvalue is negative by
@@ -106,8 +106,8 @@ TEST(Dense, InvertsPrecisionsThatRoundingMadeIndefinite) {
 TEST(Dense, SolvesPositiveDefiniteSystemsAndRefusesOthers) {
   Eigen::MatrixXd a(2, 2);
   a << 4.0, 2.0, 2.0, 3.0;
-  EXPECT_TRUE(
-      solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)).isApprox(Eigen::Vector2d(1.0, 2.0), kTolerance));
+  EXPECT_TRUE(solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0))
+                  .isApprox(Eigen::Vector2d(1.0, 2.0), kDenseRounding));
   a(1, 1) = 1.0;
   EXPECT_THROW(solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)), std::runtime_error);
 }

@@ -48,15 +48,15 @@ Machining machining(std::size_t structure, bool reversal) {
 
 /// RMS of the tool-point error of the exact machine along the feed path, the rewriting's segments paired with
 /// the programmed path; a perfect rewriting leaves second-order errors, corners and rounding.
-struct Loop {
+struct PartErrors {
   double before = 0.0;
   double after = 0.0;
   double time_ratio = 0.0;
 };
 
 /// What the check computes, with the exact machine in the place of the identified one.
-Loop run(const Machining& machining, const testing::Rewritten& rewritten, const std::string& part,
-         const Eigen::Vector3d& real_tool) {
+PartErrors run(const Machining& machining, const testing::Rewritten& rewritten, const std::string& part,
+               const Eigen::Vector3d& real_tool) {
   ProgramErrors exact;
   exact.machine = machining.truth.machine();
   const sim::TruthMachine& truth = machining.truth;
@@ -87,7 +87,7 @@ TEST_P(MachineLoop, ErrorFallsByTwentyAndTimeStays) {
   for (const bool reversal : {false, true}) {
     const Machining job = machining(GetParam(), reversal);
     const FitResult result = testing::result_of(job.truth, 200);
-    const Loop loop = run(job, rewrite(job, program_errors(result, {}, {})), kPart, real_tool(job));
+    const PartErrors loop = run(job, rewrite(job, program_errors(result, {}, {})), kPart, real_tool(job));
     RecordProperty("before_um", std::to_string(loop.before * 1e6));
     RecordProperty("after_um", std::to_string(loop.after * 1e6));
     EXPECT_GT(loop.before, 5e-6);

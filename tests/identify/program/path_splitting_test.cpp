@@ -15,7 +15,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kTolerance = 0.5e-6;
+constexpr double kSplitTolerance = 0.5e-6;
 
 struct SplitLine {
   Eigen::Vector3d from, to;
@@ -58,11 +58,12 @@ TEST(PathSplitting, TakesAboutAsManySegmentsAsTheCurvatureAsksFor) {
   const auto field = [k](const AxisPosition& q, const ApproachDirection&) {
     return Eigen::Vector3d(0, 10e-6 * std::sin(k * q[0]), 0);
   };
-  PathSplitter splitter(testing::errors_with(field, {ends, {}, {}}), Eigen::Vector3d::Zero(), kTolerance);
+  PathSplitter splitter(testing::errors_with(field, {ends, {}, {}}), Eigen::Vector3d::Zero(),
+                        kSplitTolerance);
   const SplitLine line = split(splitter, {-0.5, 0, 0}, {0.5, 0, 0});
   EXPECT_GE(line.nodes.size() - 1, 40U);
   EXPECT_LE(line.nodes.size() - 1, 100U);
-  EXPECT_LE(deviation(splitter, line, 50), kTolerance);
+  EXPECT_LE(deviation(splitter, line, 50), kSplitTolerance);
 }
 
 /// p' + e(p') = p to 1 nm, from wherever the last solution was, with errors of 0.3 mm that change by 1e-3.
@@ -70,7 +71,7 @@ TEST(PathSplitting, SolvesForTheCommandToANanometre) {
   const auto field = [](const AxisPosition& q, const ApproachDirection&) {
     return Eigen::Vector3d(3e-4 + 1e-3 * q[1], 5e-4 * q[2] - 2e-4, 1e-3 * q[0] * q[1]);
   };
-  PathSplitter splitter(testing::errors_with(field), Eigen::Vector3d::Zero(), kTolerance);
+  PathSplitter splitter(testing::errors_with(field), Eigen::Vector3d::Zero(), kSplitTolerance);
   EXPECT_GT(splitter.steepness(), 1e-3);
   std::mt19937_64 random(3);
   for (int i = 0; i < 200; ++i) {
@@ -86,12 +87,13 @@ TEST(PathSplitting, FindsANarrowTooth) {
     return Eigen::Vector3d(0, 0, std::max(0.0, 4e-6 - 4e-3 * std::abs(q[0] - 0.3171)));
   };
   const std::vector<double> ends = {-1.0, 0.3161, 0.3171, 0.3181, 1.0};
-  PathSplitter splitter(testing::errors_with(field, {ends, {}, {}}), Eigen::Vector3d::Zero(), kTolerance);
+  PathSplitter splitter(testing::errors_with(field, {ends, {}, {}}), Eigen::Vector3d::Zero(),
+                        kSplitTolerance);
   const SplitLine line = split(splitter, {0, 0, 0}, {1, 0, 0});
   EXPECT_LE(line.nodes.size(), 8U);
-  EXPECT_LE(deviation(splitter, line, 4000), kTolerance + 1e-8);
+  EXPECT_LE(deviation(splitter, line, 4000), kSplitTolerance + 1e-8);
   // Without knowing of the pieces the tooth is missed: the test sees it.
-  PathSplitter blind(testing::errors_with(field), Eigen::Vector3d::Zero(), kTolerance);
+  PathSplitter blind(testing::errors_with(field), Eigen::Vector3d::Zero(), kSplitTolerance);
   EXPECT_GT(deviation(splitter, split(blind, {0, 0, 0}, {1, 0, 0}), 4000), 2e-6);
 }
 
@@ -103,7 +105,7 @@ TEST(PathSplitting, HoldsOnRandomMachinesForRandomLines) {
         sim::random_truth(sim::reference_machines()[structure], 70 + structure, {});
     const FitResult result = testing::result_of(truth);
     const Eigen::Vector3d tool = truth.machine().tools[1].offset;
-    PathSplitter splitter(program_errors(result, {}, {}), tool, kTolerance);
+    PathSplitter splitter(program_errors(result, {}, {}), tool, kSplitTolerance);
     std::size_t segments = 0;
     for (int i = 0; i < 40; ++i) {
       Eigen::Vector3d ends[2];
@@ -117,7 +119,7 @@ TEST(PathSplitting, HoldsOnRandomMachinesForRandomLines) {
       if (i % 4 == 0) ends[1] = ends[0] + 0.02 * (ends[1] - ends[0]);  // short ones
       const SplitLine line = split(splitter, ends[0], ends[1]);
       segments += line.nodes.size() - 1;
-      EXPECT_LE(deviation(splitter, line, 60), kTolerance) << "structure " << structure << " line " << i;
+      EXPECT_LE(deviation(splitter, line, 60), kSplitTolerance) << "structure " << structure << " line " << i;
     }
     EXPECT_GT(segments, 100U);
   }

@@ -4,22 +4,23 @@
 
 #include <cmath>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 namespace {
 
-constexpr double kMicrometre = 1e-6;
-constexpr double kTolerance = 1e-15;
+constexpr double kExact = 1e-15;
 
 void add(std::vector<PositioningReading>& readings, double target_mm, int direction,
          std::initializer_list<double> deviations_um) {
   for (const double deviation : deviations_um) {
-    readings.push_back({target_mm * 1e-3, deviation * kMicrometre, direction});
+    readings.push_back({target_mm * 1e-3, deviation * kMicro, direction});
   }
 }
 
 void expect_um(const std::optional<double>& value, double expected_um) {
   ASSERT_TRUE(value.has_value());
-  EXPECT_NEAR(*value, expected_um * kMicrometre, kTolerance);
+  EXPECT_NEAR(*value, expected_um * kMicro, kExact);
 }
 
 /// Worked by hand, all in um. Three targets, three approaches each:
@@ -51,7 +52,7 @@ TEST(Iso230Part2, HandWorkedExample) {
   const PositioningFigures figures = positioning_figures(hand_example());
   ASSERT_EQ(figures.targets.size(), 3U);
   EXPECT_EQ(figures.targets[0].positive.count, 3);
-  EXPECT_NEAR(figures.targets[1].position, 0.05, kTolerance);
+  EXPECT_NEAR(figures.targets[1].position, 0.05, kExact);
   expect_um(figures.targets[0].positive.deviation_s, 1);
   expect_um(figures.targets[2].negative.deviation_s, 3);
   expect_um(figures.targets[0].repeatability(), 7);
@@ -72,7 +73,7 @@ TEST(Iso230Part2, HandWorkedExample) {
 
 TEST(Iso230Part2, OffsetOfTheReadingsChangesNoFigure) {
   auto shifted = hand_example();
-  for (auto& reading : shifted) reading.deviation += 123.0 * kMicrometre;
+  for (auto& reading : shifted) reading.deviation += 123.0 * kMicro;
   const PositioningFigures figures = positioning_figures(shifted);
   expect_um(figures.accuracy, 16);
   expect_um(figures.systematic, 8);

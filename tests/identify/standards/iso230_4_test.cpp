@@ -5,19 +5,20 @@
 #include <cmath>
 #include <functional>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180.0;
 constexpr double kRadius = 0.1;
-constexpr double kUm = 1e-6;
 
 void add_path(std::vector<CircleReading>& readings, int sense, double first_deg, double last_deg,
               double step_deg, const std::function<double(double)>& deviation_um) {
   const int count = static_cast<int>(std::lround(std::abs(last_deg - first_deg) / step_deg));
   for (int i = 0; i <= count; ++i) {
     const double degrees = first_deg + sense * i * step_deg;
-    readings.push_back({degrees * kDegree, deviation_um(degrees * kDegree) * kUm, sense});
+    readings.push_back(
+        {degrees * kRadianPerDegree, deviation_um(degrees * kRadianPerDegree) * kMicro, sense});
   }
 }
 
@@ -34,8 +35,8 @@ std::vector<CircleReading> hand_circle() {
   readings.reserve(16);
   const double ccw[] = {14, 10, 6, 10, 14, 10, 6, 10};
   const double cw[] = {-1, -3, -5, -3, -1, -3, -5, -3};
-  for (int i = 0; i < 8; ++i) readings.push_back({45.0 * i * kDegree, ccw[i] * kUm, +1});
-  for (int i = 7; i >= 0; --i) readings.push_back({45.0 * i * kDegree, cw[i] * kUm, -1});
+  for (int i = 0; i < 8; ++i) readings.push_back({45.0 * i * kRadianPerDegree, ccw[i] * kMicro, +1});
+  for (int i = 7; i >= 0; --i) readings.push_back({45.0 * i * kRadianPerDegree, cw[i] * kMicro, -1});
   return readings;
 }
 
@@ -52,7 +53,7 @@ TEST(Iso230Part4, HandWorkedExample) {
   EXPECT_NEAR(figures.clockwise->radial_min, -5e-6, 1e-12);
   EXPECT_NEAR(*figures.bidirectional, 19e-6, 1e-12);
   EXPECT_NEAR(*figures.mean_radial, 3.5e-6, 1e-12);
-  EXPECT_NEAR(figures.counter_clockwise->largest_gap, 45.0 * kDegree, 1e-12);
+  EXPECT_NEAR(figures.counter_clockwise->largest_gap, 45.0 * kRadianPerDegree, 1e-12);
   EXPECT_EQ(figures.counter_clockwise->centring, Centring::Instrument);
 }
 
@@ -63,7 +64,7 @@ TEST(Iso230Part4, CentringOfTheBarIsRemovedExactly) {
   const Eigen::Vector2d centre(1e-3, -0.5e-3);
   std::vector<CircleReading> readings;
   for (int i = 0; i < 72; ++i) {
-    const double angle = 5.0 * i * kDegree;
+    const double angle = 5.0 * i * kRadianPerDegree;
     const Eigen::Vector2d point = kRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
     readings.push_back({angle, (point - centre).norm() - kRadius, +1});
   }

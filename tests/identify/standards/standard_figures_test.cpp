@@ -16,8 +16,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr double kPi = 3.14159265358979323846;
-
 Campaign empty_campaign() {
   Campaign campaign;
   campaign.machine.name = "test";
@@ -186,7 +184,7 @@ TEST(StandardFigures, LinesWithTheirOwnZeroHaveNoReversal) {
   const PositioningFigures& line = figures.lines[0].figures.readings;
   EXPECT_FALSE(line.reversal || line.mean_reversal || line.systematic || line.repeatability || line.accuracy);
   EXPECT_NEAR(*line.positive.systematic, 8e-6, 1e-12);
-  EXPECT_THAT(figures.lines[0].notes, testing::Contains(HasSubstr("own zero")));
+  EXPECT_THAT(figures.lines[0].notes, ::testing::Contains(HasSubstr("own zero")));
 }
 
 /// X falls by 0.6 and Y rises by 0.8 per metre: a face diagonal of 0.5 m, named by its first pass. Deviations
@@ -210,7 +208,7 @@ TEST(StandardFigures, TwoMovingAxesAreAFaceDiagonal) {
   ASSERT_EQ(figures.diagonal_groups.size(), 1U);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.systematic, 12e-6, 1e-12);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.reversal, 2e-6, 1e-12);
-  EXPECT_THAT(figures.diagonals[0].notes, testing::Contains(HasSubstr("R and A are undefined")));
+  EXPECT_THAT(figures.diagonals[0].notes, ::testing::Contains(HasSubstr("R and A are undefined")));
 }
 
 /// One axis at a time: the corners of the staircase lie far off any line.
@@ -271,7 +269,7 @@ std::vector<Point> zx_circle(const Vector3d& centre, double radius) {
   std::vector<Point> points;
   for (const int sense : {+1, -1}) {
     for (int k = 0; k < 72; ++k) {
-      const double angle = sense * k * 5.0 * kPi / 180.0;
+      const double angle = sense * k * 5.0 * kRadianPerDegree;
       const double deviation_um =
           sense > 0 ? 10.0 + 4.0 * std::cos(2.0 * angle) : -3.0 + 2.0 * std::cos(2.0 * angle);
       const Vector3d radial(std::sin(angle), 0.0, std::cos(angle));

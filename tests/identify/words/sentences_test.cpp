@@ -18,16 +18,16 @@ namespace {
 using ::testing::EndsWith;
 using ::testing::IsEmpty;
 using Texts = std::vector<std::string>;
-using Rows = std::vector<std::int64_t>;
+using Integers = std::vector<std::int64_t>;
 
-struct Example {
+struct WordedFinding {
   Finding finding;
   std::string sentence;
 };
 
 /// One at least of every code.
-const std::vector<Example>& examples() {
-  static const std::vector<Example> all = {
+const std::vector<WordedFinding>& examples() {
+  static const std::vector<WordedFinding> all = {
       {verbatim("as it was"), "as it was"},
       {{FindingCode::ReadingsColumnsUnused,
         {{"setup", "X"}, {"file", "line.csv"}, {"columns", Texts{"Remark"}}}},
@@ -83,9 +83,9 @@ const std::vector<Example>& examples() {
        "readings "
        "along each line; if they do not stand in the order in which they were measured, set directions = "
        "\"as-recorded\""},
-      {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Rows{8}}, {"reason", "slip"}}},
+      {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Integers{8}}, {"reason", "slip"}}},
        "setup \"X\" leaves out row 8: slip"},
-      {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Rows{8, 9, 10}}, {"reason", "slip"}}},
+      {{FindingCode::ReadingsLeftOut, {{"setup", "X"}, {"rows", Integers{8, 9, 10}}, {"reason", "slip"}}},
        "setup \"X\" leaves out rows 8, 9, 10: slip"},
       {{FindingCode::ReadingsFlagged, {{"readings", std::int64_t{3}}, {"some_removed", false}}},
        "3 readings are flagged by the w-test and still in the adjustment; they are listed in residuals.csv "
@@ -278,6 +278,22 @@ const std::vector<Example>& examples() {
        "One of these is missing, and these readings do not tell them apart: a; b"},
       {{FindingCode::DiagnosisNearest, {{"effects", Texts{"a", "b"}}}},
        "Nearest in the catalogue, but not all of it: a; b"},
+      {{FindingCode::DiagnosisDrawn,
+        {{"effect", "EAY by y z"},
+         {"largest", FindingNumber{12.34e-6, "urad", 1e-6}},
+         {"U", FindingNumber{0.82e-6, "urad", 1e-6}},
+         {"drivers", Texts{"y", "z"}},
+         {"at", std::vector<FindingNumber>{{310.0}, {-120.0}}},
+         {"laws", Texts{"EAY by y * z^2", "EAY by y * z"}},
+         {"law_shapes", Texts{"p = 120", ""}},
+         {"law_amplitudes", std::vector<FindingNumber>{{1.234e-6, "urad", 1e-6}, {2e-6, "urad", 1e-6}}},
+         {"law_U", std::vector<FindingNumber>{{0.12e-6, "urad", 1e-6}, {0.3e-6, "urad", 1e-6}}},
+         {"left_open", Texts{"what is straight in y: the rest of the model holds it"}}}},
+       "Drawn for it: EAY by y z, up to 12.3 +- 0.82 urad at y = 310, z = -120; extend the model with it and "
+       "the error falls. A law that explains as much: EAY by y * z^2 with p = 120, 1.23 +- 0.12 urad. Or: "
+       "EAY by "
+       "y * z, 2 +- 0.3 urad. These readings leave open what is straight in y: the rest of the model holds "
+       "it."},
       {{FindingCode::DiagnosisMoreOneOf, {{"effects", Texts{"a", "b"}}}}, "More remains, one of: a; b"},
       {{FindingCode::DiagnosisMoreInCatalogue},
        "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb "
@@ -335,7 +351,7 @@ TEST(Sentences, AreMadeByOneFunctionForEveryCode) {
 
 TEST(Sentences, SayWhatIsFoundOfEveryCode) {
   std::set<FindingCode> seen;
-  for (const Example& example : examples()) {
+  for (const WordedFinding& example : examples()) {
     EXPECT_EQ(sentence(example.finding), example.sentence);
     seen.insert(example.finding.code);
   }
@@ -353,7 +369,7 @@ TEST(Sentences, AreRefusedWithoutTheirData) {
 }
 
 TEST(FindingJson, ReturnsEveryFinding) {
-  for (const Example& example : examples()) {
+  for (const WordedFinding& example : examples()) {
     const auto json = nlohmann::ordered_json::parse(finding_json(example.finding).dump());
     EXPECT_EQ(json.at("code"), to_string(example.finding.code));
     EXPECT_EQ(json.at("severity"), to_string(example.finding.severity()));

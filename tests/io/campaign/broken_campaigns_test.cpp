@@ -20,7 +20,7 @@ using testing::BrokenCampaign;
 using ::testing::HasSubstr;
 
 /// What the readers say about a campaign and its model; nothing when they accept both.
-std::optional<InputError> refusal(const fs::path& folder) {
+std::optional<InputError> refusal_of(const fs::path& folder) {
   try {
     const Campaign campaign = read_campaign((folder / "campaign.toml").string());
     read_model((folder / "model.toml").string(), campaign.machine);
@@ -43,7 +43,7 @@ TEST_P(BrokenCampaignTest, IsRefusedWithPlaceProblemAndRemedy) {
   const testing::ScratchFolder scratch;
   const fs::path folder = copy_of_good_campaign(scratch);
   testing::break_campaign(broken, folder);
-  const auto error = refusal(folder);
+  const auto error = refusal_of(folder);
   ASSERT_TRUE(error.has_value()) << "the campaign was accepted";
   EXPECT_EQ(fs::path(error->place().file).filename().string(), broken.place) << error->what();
   EXPECT_EQ(error->place().line, broken.line) << error->what();
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(All, BrokenCampaignTest, ::testing::ValuesIn(testing::b
 
 TEST(GoodCampaign, IsAccepted) {
   const testing::ScratchFolder scratch;
-  const auto error = refusal(copy_of_good_campaign(scratch));
+  const auto error = refusal_of(copy_of_good_campaign(scratch));
   EXPECT_FALSE(error.has_value()) << error->what();
 }
 
@@ -78,7 +78,7 @@ TEST(OddButGoodCampaign, IsAccepted) {
       text += c == '\n' ? std::string("\r\n") : std::string(1, c);
     testing::spill(folder / file, text + "\r\n# the end\r\n\r\n");
   }
-  const auto error = refusal(folder);
+  const auto error = refusal_of(folder);
   EXPECT_FALSE(error.has_value()) << error->what();
 }
 

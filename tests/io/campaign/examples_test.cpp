@@ -12,7 +12,7 @@ namespace volcal {
 namespace {
 
 const std::string kExamples = std::string(VOLCAL_SOURCE_DIR) + "/datasets/examples/";
-const std::string kSmall = std::string(VOLCAL_SOURCE_DIR) + "/tests/data/small/";
+const std::string kSmallExample = std::string(VOLCAL_SOURCE_DIR) + "/tests/data/small/";
 
 TEST(Examples, StructureCampaignsHoldEightTracerRuns) {
   for (const std::string name : {"structure-0", "structure-1", "structure-2", "structure-3"}) {
@@ -67,7 +67,7 @@ TEST(Examples, TruthIsReadAsPoints) {
 
 /// Headers of its own, semicolons, decimal commas, text cells, a preamble, millimetres where um are expected.
 TEST(InstrumentFile, IsReadAsTheInstrumentWroteIt) {
-  const Campaign campaign = read_campaign(kSmall + "campaign.toml");
+  const Campaign campaign = read_campaign(kSmallExample + "campaign.toml");
   const Readings& readings = campaign.setups[4].readings;
   ASSERT_EQ(readings.size(), 12U);
   EXPECT_DOUBLE_EQ(readings.position[0][0], 0.050);
@@ -78,8 +78,8 @@ TEST(InstrumentFile, IsReadAsTheInstrumentWroteIt) {
 }
 
 TEST(SmallModel, IsUnderstood) {
-  const Campaign campaign = read_campaign_description(kSmall + "campaign.toml");
-  const ModelSpec model = read_model(kSmall + "model.toml", campaign.machine);
+  const Campaign campaign = read_campaign_description(kSmallExample + "campaign.toml");
+  const ModelSpec model = read_model(kSmallExample + "model.toml", campaign.machine);
   const auto function = [&](const char* symbol) { return model.function(*ErrorSymbol::parse(symbol)); };
   EXPECT_EQ(function("EXX").degree, 2);
   EXPECT_EQ(function("EXX").intervals, 4);
@@ -98,7 +98,7 @@ TEST(SmallModel, IsUnderstood) {
 
 /// The setup's own repeatability and noise go before the campaign's.
 TEST(Noise, IsInheritedFromTheCampaign) {
-  const Machine machine = read_campaign_description(kSmall + "campaign.toml").machine;
+  const Machine machine = read_campaign_description(kSmallExample + "campaign.toml").machine;
   const std::string text =
       "format = \"volcal-campaign-1\"\nmachine = \"m\"\n[noise]\nconstant_um = 2\nconstant_urad = 3\n"
       "repeatability_um = 0.7\n"

@@ -15,6 +15,7 @@
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -23,7 +24,6 @@ using ::testing::Contains;
 
 const std::string kFolder = std::string(VOLCAL_SOURCE_DIR) + "/datasets/measured/amse2020/";
 constexpr double kIgnored = 1e3;  // m, standard deviation of a reading that shall not count
-constexpr double kMicro = 1e-6;
 
 struct Vector {
   std::size_t setup;

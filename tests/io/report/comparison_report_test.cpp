@@ -147,8 +147,8 @@ TEST(ComparisonText, DifferenceAndRatioStandBesideTheTwo) {
       compared_model("nominal machine", campaign, records_of(campaign, 10.0)),
       compared_model("result", campaign, records_of(campaign, 1.0))};
   const std::string text = comparison_text(campaign, models);
-  EXPECT_THAT(text, testing::ContainsRegex("S1 +laser-tracer +400 +4.56 +1.00 +-3.56 +0.219"));
-  EXPECT_THAT(text, testing::ContainsRegex("all +406 +4.53 +0.99 +-3.53 +0.219"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("S1 +laser-tracer +400 +4.56 +1.00 +-3.56 +0.219"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("all +406 +4.53 +0.99 +-3.53 +0.219"));
 }
 
 TEST(HeldOut, HasTheSameColumnsAndItsOwnEntryInTheJson) {

@@ -6,12 +6,12 @@
 #include <random>
 
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal::test {
 namespace {
 
-constexpr double kMicro = 1e-6;
 constexpr int kIntervals = 8;
 
 Axis linear_axis(AxisName name, double low, double high) {

@@ -75,7 +75,7 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
 }
 
 /// Same document again, numbers to rounding.
-void expect_same(const Json& a, const Json& b, const std::string& place) {
+void expect_same_json(const Json& a, const Json& b, const std::string& place) {
   if (a.is_number_float() && b.is_number()) {
     EXPECT_NEAR(a.get<double>(), b.get<double>(), 1e-14 * (1.0 + std::abs(a.get<double>()))) << place;
     return;
@@ -88,14 +88,14 @@ void expect_same(const Json& a, const Json& b, const std::string& place) {
   ASSERT_EQ(a.size(), b.size()) << place;
   for (const auto& [key, value] : a.items()) {
     const Json& other = b.is_array() ? b.at(std::stoul(key)) : b.at(key);
-    expect_same(value, other, place + "/" + key);
+    expect_same_json(value, other, place + "/" + key);
   }
 }
 
 TEST(DiagnosisJson, RoundTrips) {
   const std::string text = diagnosis_json(testing::hand_made_diagnosis());
   const Diagnosis again = diagnosis_from_json(text, "diagnosis.json");
-  expect_same(Json::parse(text), Json::parse(diagnosis_json(again)), "");
+  expect_same_json(Json::parse(text), Json::parse(diagnosis_json(again)), "");
   EXPECT_EQ(again.effects[0].spec.options.number("amplitude"), 4e-6);
   EXPECT_EQ(again.effects[0].spec.options.text("symbol"), "EXX");
   EXPECT_TRUE(again.ranking[1].resolution);

@@ -11,15 +11,15 @@
 namespace volcal {
 namespace {
 
-const std::string kHead = "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\n";
+const std::string kStudyHead = "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\n";
 const std::string kOneMeasurement = "[[measurements]]\nkind = \"diagonals\"\n";
 
-sim::Study parse(const std::string& body) {
-  return parse_study(kHead + body, "study.toml", sim::reference_machines()[0]);
+sim::Study parsed_study(const std::string& body) {
+  return parse_study(kStudyHead + body, "study.toml", sim::reference_machines()[0]);
 }
 
 TEST(SimulationFile, ReadsEverySection) {
-  const sim::Study study = parse(R"(
+  const sim::Study study = parsed_study(R"(
 seed = 42
 pause_s = 30.0
 [truth]
@@ -84,7 +84,7 @@ noise = { constant_um = 0.1, per_metre_um = 0.2, repeatability_um = 0.3 }
 }
 
 TEST(SimulationFile, ReadsStationsAndRuns) {
-  const sim::Study study = parse(R"(
+  const sim::Study study = parsed_study(R"(
 [[measurements]]
 kind = "laser-tracker"
 grid = [4, 3, 2]
@@ -111,7 +111,7 @@ tool = "short"
 }
 
 TEST(SimulationFile, DefaultsAreThoseOfTheSettings) {
-  const sim::Study study = parse(kOneMeasurement);
+  const sim::Study study = parsed_study(kOneMeasurement);
   const sim::Diagonals defaults;
   const auto& read = std::get<sim::Diagonals>(study.measurements[0].settings);
   EXPECT_EQ(read.points, defaults.points);
@@ -136,7 +136,7 @@ class BadSimulationFiles : public ::testing::TestWithParam<BadStudy> {};
 
 TEST_P(BadSimulationFiles, NamesLineAndProblem) {
   try {
-    sim::simulate(parse(GetParam().body));
+    sim::simulate(parsed_study(GetParam().body));
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_EQ(error.place().file, "study.toml");

@@ -8,11 +8,11 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <functional>
 #include <random>
 #include <thread>
 
 #include "tests/support/broken_campaigns.h"
+#include "tests/support/refusal.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/model/description/errors.h"
 
@@ -27,15 +27,6 @@ using testing::spill;
 
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-std::string refusal(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 /// One generation of a result: three files of which the last holds a hash of the others.
@@ -100,25 +91,26 @@ TEST(AtomicFolder, ReplacesWhatItWroteAndKeepsWhatTheUserPutThere) {
 TEST(AtomicFolder, NeverReplacesAForeignFolder) {
   const ScratchFolder scratch;
   spill(scratch.path() / "thesis.txt", "years of work");
-  const std::string message = refusal([&] { const AtomicFolder folder(scratch.path().string()); });
+  const std::string message = testing::refusal([&] { const AtomicFolder folder(scratch.path().string()); });
   EXPECT_THAT(message, HasSubstr("holds files that volcal did not write"));
   EXPECT_THAT(message, HasSubstr("name another folder with -o"));
   EXPECT_EQ(slurp(scratch.path() / "thesis.txt"), "years of work");
-  EXPECT_EQ(refusal([&] { require_output_folder(scratch.path().string()); }), message);
-  EXPECT_EQ(refusal([&] { require_output_folder((scratch.path() / "new").string()); }), "");
+  EXPECT_EQ(testing::refusal([&] { require_output_folder(scratch.path().string()); }), message);
+  EXPECT_EQ(testing::refusal([&] { require_output_folder((scratch.path() / "new").string()); }), "");
   EXPECT_EQ(entries(scratch.path()), 1U);
 }
 
 TEST(AtomicFolder, NeverReplacesAFileOrTheCurrentFolder) {
   const ScratchFolder scratch;
   spill(scratch.path() / "file", "content");
-  EXPECT_THAT(refusal([&] { const AtomicFolder folder((scratch.path() / "file").string()); }),
+  EXPECT_THAT(testing::refusal([&] { const AtomicFolder folder((scratch.path() / "file").string()); }),
               HasSubstr("a file of this name exists"));
-  EXPECT_THAT(refusal([&] { const AtomicFolder folder((scratch.path() / "file" / "result").string()); }),
-              HasSubstr("check the path"));
-  EXPECT_THAT(refusal([] { const AtomicFolder folder("."); }), HasSubstr("current directory"));
-  EXPECT_THAT(refusal([] { const AtomicFolder folder("/"); }), HasSubstr("cannot be used"));
-  EXPECT_THAT(refusal([] { const AtomicFolder folder(""); }), HasSubstr("cannot be used"));
+  EXPECT_THAT(
+      testing::refusal([&] { const AtomicFolder folder((scratch.path() / "file" / "result").string()); }),
+      HasSubstr("check the path"));
+  EXPECT_THAT(testing::refusal([] { const AtomicFolder folder("."); }), HasSubstr("current directory"));
+  EXPECT_THAT(testing::refusal([] { const AtomicFolder folder("/"); }), HasSubstr("cannot be used"));
+  EXPECT_THAT(testing::refusal([] { const AtomicFolder folder(""); }), HasSubstr("cannot be used"));
 }
 
 TEST(AtomicFolder, TakesAnEmptyFolderAndCreatesParents) {

@@ -5,6 +5,8 @@
 
 #include <numeric>
 
+#include "tests/support/refusal.h"
+
 namespace volcal {
 namespace {
 
@@ -19,12 +21,7 @@ CsvColumns read(const std::string& text, const CsvFormat& format = {}) {
 }
 
 std::string refusal_of_table(const std::string& text, const CsvFormat& format = {}) {
-  try {
-    read(text, format);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal([&] { read(text, format); });
 }
 
 TEST(CsvTable, ReadsNumbersInAllTheirSpellings) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/schema_keys.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
@@ -33,10 +34,6 @@ std::vector<Candidate> candidates_of(const Campaign& campaign) {
     }
   }
   return all;
-}
-
-bool has_key(const EffectSchema& schema, const std::string& key) {
-  return std::ranges::find(schema.keys, key, &KeySchema::key) != schema.keys.end();
 }
 
 ModelSpec model_without_functions() {
@@ -85,7 +82,8 @@ TEST_F(EffectContract, CandidatesHaveNamesUnitsAndKeys) {
     ASSERT_FALSE(effect->amplitudes().empty()) << spec.kind;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
       EXPECT_TRUE(labels.insert(amplitude.label).second) << amplitude.label << " twice";
-      EXPECT_TRUE(has_key(kind->schema(), amplitude.key)) << amplitude.label << ": " << amplitude.key;
+      EXPECT_TRUE(testing_support::has_key(kind->schema(), amplitude.key))
+          << amplitude.label << ": " << amplitude.key;
       EXPECT_FALSE(amplitude.unit().empty()) << amplitude.label;
       EXPECT_EQ(amplitude.guess, 0.0) << amplitude.label;
       if (amplitude.target.kind != TargetKind::Motion) {
@@ -95,7 +93,7 @@ TEST_F(EffectContract, CandidatesHaveNamesUnitsAndKeys) {
     }
     for (const EffectShape& shape : effect->shapes()) {
       EXPECT_TRUE(labels.insert(shape.label).second) << shape.label << " twice";
-      EXPECT_TRUE(has_key(kind->schema(), shape.key)) << shape.label << ": " << shape.key;
+      EXPECT_TRUE(testing_support::has_key(kind->schema(), shape.key)) << shape.label << ": " << shape.key;
       EXPECT_LE(shape.scan_min, shape.scan_max) << shape.label;
       EXPECT_TRUE(std::isfinite(shape.value)) << shape.label;
     }
@@ -109,7 +107,7 @@ TEST_F(EffectContract, IdentifiedValuesSurviveInTheOptions) {
   for (const auto& [kind, spec, effect] : candidates_) {
     EffectSpec identified = spec;
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-      identified.options.set(std::string(stem_of_key(amplitude.key)), 3.0 * amplitude.si_per_unit());
+      amplitude.keep(3.0 * amplitude.si_per_unit(), identified.options);
     }
     for (const EffectShape& shape : effect->shapes()) {
       identified.options.set(std::string(stem_of_key(shape.key)), 1.1 * shape.value);
@@ -151,7 +149,7 @@ TEST_F(EffectContract, DerivativesAreThoseOfThePrediction) {
     spec_with.effects.push_back(spec);
     EffectSpec& added = spec_with.effects.back();
     for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-      added.options.set(std::string(stem_of_key(amplitude.key)), 5.0 * amplitude.si_per_unit());
+      amplitude.keep(5.0 * amplitude.si_per_unit(), added.options);
     }
     const MeasurementModel model(campaign_, spec_with);
     const Eigen::VectorXd at = model.initial_parameters();

@@ -65,14 +65,14 @@ struct Case {
   std::size_t column_set;
 };
 
-std::string name_of(const Case& tested) {
+std::string name_of_case(const Case& tested) {
   std::string name = tested.instrument->schema().name;
   std::ranges::replace(name, '-', '_');
   return name + (tested.all_keys ? "_all_keys_" : "_required_keys_") + std::to_string(tested.choice) +
          "_columns_" + std::to_string(tested.column_set);
 }
 
-void PrintTo(const Case& tested, std::ostream* out) { *out << name_of(tested); }
+void PrintTo(const Case& tested, std::ostream* out) { *out << name_of_case(tested); }
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 
+#include "tests/support/schema_keys.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
 #include "volcal/model/observation/channels.h"
@@ -76,24 +77,20 @@ TEST(InstrumentTraits, AnUnknownInstrumentHasNone) {
   EXPECT_FALSE(none.stands_on_floor({}));
 }
 
-bool has_key(const InstrumentSchema& schema, const std::string& key) {
-  return std::ranges::find(schema.keys, key, &KeySchema::key) != schema.keys.end();
-}
-
 /// What reads a trait reads the keys and columns that come with it.
 TEST(InstrumentTraits, AgreeWithTheSchema) {
   for (const Instrument* instrument : instruments()) {
     const InstrumentSchema& schema = instrument->schema();
     const InstrumentTraits& traits = schema.traits;
     if (traits.laser_length == LaserLength::Distance) {
-      EXPECT_TRUE(has_key(schema, "station_mm")) << schema.name;
+      EXPECT_TRUE(testing_support::has_key(schema, "station_mm")) << schema.name;
     }
     if (traits.laser_length == LaserLength::Displacement) {
-      EXPECT_TRUE(has_key(schema, "direction")) << schema.name;
+      EXPECT_TRUE(testing_support::has_key(schema, "direction")) << schema.name;
     }
     if (traits.has_bar) {
-      EXPECT_TRUE(has_key(schema, "centre_mm")) << schema.name;
-      EXPECT_TRUE(has_key(schema, "length_sigma_um")) << schema.name;
+      EXPECT_TRUE(testing_support::has_key(schema, "centre_mm")) << schema.name;
+      EXPECT_TRUE(testing_support::has_key(schema, "length_sigma_um")) << schema.name;
     }
     volcal::Setup setup = setup_of(schema.name);
     for (setup.readings.column_set = 0; setup.readings.column_set < schema.column_sets.size();

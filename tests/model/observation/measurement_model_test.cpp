@@ -14,12 +14,12 @@ namespace {
 
 using testing_support::random_parameters;
 
-constexpr std::size_t kRows = 20;
+constexpr std::size_t kReadings = 20;
 
 class MeasurementModelOnRandomChains : public ::testing::TestWithParam<std::uint64_t> {
  protected:
   std::mt19937_64 random_{GetParam()};
-  Campaign campaign_ = testing_support::random_campaign(random_, kRows);
+  Campaign campaign_ = testing_support::random_campaign(random_, kReadings);
   MeasurementModel model_{campaign_, testing_support::rich_model(campaign_.machine)};
   Eigen::VectorXd parameters_ = random_parameters(model_, random_);
 };
@@ -30,11 +30,11 @@ TEST_P(MeasurementModelOnRandomChains, LengthIsFromStationToTheDisplacedPoint) {
     if (block.kind == ParameterKind::Effect) parameters_[block.offset] = 0.0;
   }
   volcal::Setup& setup = campaign_.setups[0];
-  for (auto& [channel, values] : setup.readings.temperature) values.assign(kRows, 20.0);
+  for (auto& [channel, values] : setup.readings.temperature) values.assign(kReadings, 20.0);
   const Eigen::Vector3d tool = campaign_.machine.tools[setup.tool].offset;
   const ParameterBlock& station = *model_.layout().find_block("station S0");
   const ParameterBlock& dead_path = *model_.layout().find_block("S0: dead path");
-  for (std::size_t row = 0; row < kRows; ++row) {
+  for (std::size_t row = 0; row < kReadings; ++row) {
     const AxisPosition position = commanded_position(campaign_.machine, setup.readings, row);
     const ToolTwist twist =
         model_.chain().first_order(position, tool, model_.errors_at(position, parameters_));
@@ -61,7 +61,7 @@ TEST_P(MeasurementModelOnRandomChains, SecondOrderRemainderMakesTheLengthExact) 
 TEST_P(MeasurementModelOnRandomChains, DerivativesEqualDifferences) {
   constexpr double kStep = 1e-5;
   for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-    for (std::size_t row = 0; row < kRows; row += 7) {
+    for (std::size_t row = 0; row < kReadings; row += 7) {
       RowJacobian jacobian;
       model_.linearize(setup, row, parameters_, jacobian);
       for (int channel = 0; channel < jacobian.channels; ++channel) {
@@ -93,7 +93,7 @@ TEST_P(MeasurementModelOnRandomChains, TabulatedFunctionsChangeNothing) {
   const TabulatedFunctions tabulated = model_.tabulate(parameters_);
   RowJacobian plain, with_table;
   for (std::size_t setup = 0; setup < campaign_.setups.size(); ++setup) {
-    for (std::size_t row = 0; row < kRows; ++row) {
+    for (std::size_t row = 0; row < kReadings; ++row) {
       model_.linearize(setup, row, parameters_, plain);
       model_.linearize(setup, row, parameters_, with_table, &tabulated);
       expect_same_row(model_, plain, with_table);

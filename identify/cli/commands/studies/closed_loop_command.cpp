@@ -152,7 +152,8 @@ std::string closed_loop_text(const ClosedLoopArguments& arguments, const ClosedL
       arguments.options.campaigns, arguments.options.seed, table.text(), symbols.text());
 }
 
-nlohmann::ordered_json json_of(const ClosedLoopArguments& arguments, const ClosedLoopCampaigns& campaigns) {
+nlohmann::ordered_json closed_loop_json(const ClosedLoopArguments& arguments,
+                                        const ClosedLoopCampaigns& campaigns) {
   nlohmann::ordered_json json = {{"study", "closed-loop"},
                                  {"seed", arguments.options.seed},
                                  {"shared_sources", arguments.options.shared_sources}};
@@ -203,7 +204,7 @@ int run_closed_loop_study(ClosedLoopArguments arguments) {
   const ClosedLoopCampaigns campaigns = closed_loop(arguments.options);
   bar.finish();
   return print_outcome(
-      arguments.json, [&] { return json_of(arguments, campaigns); },
+      arguments.json, [&] { return closed_loop_json(arguments, campaigns); },
       [&] { return closed_loop_text(arguments, campaigns); });
 }
 

@@ -58,7 +58,7 @@ std::string ratio_to(double ideal, double applied) {
   return ideal < kNothing ? "-" : fixed_number(applied / ideal, 2);
 }
 
-std::string rows_text(const CompensationArguments& arguments, const CompensationRows& rows) {
+std::string compensation_rows_text(const CompensationArguments& arguments, const CompensationRows& rows) {
   TextTable table(
       {{"structure", Align::Left},
        {"format", Align::Left},
@@ -94,7 +94,8 @@ std::string rows_text(const CompensationArguments& arguments, const Compensation
       summary.ratio, summary.ratio_format, summary.volumetric / kMicro);
 }
 
-nlohmann::ordered_json rows_json(const CompensationArguments& arguments, const CompensationRows& rows) {
+nlohmann::ordered_json compensation_rows_json(const CompensationArguments& arguments,
+                                              const CompensationRows& rows) {
   nlohmann::ordered_json json = {{"study", "compensation"},
                                  {"seed", arguments.options.seed},
                                  {"tool", kCompensatedTool},
@@ -128,7 +129,8 @@ int run_compensation_study(CompensationArguments arguments) {
   const CompensationRows rows = compensation_study(arguments.options);
   bar.finish();
   return print_outcome(
-      arguments.json, [&] { return rows_json(arguments, rows); }, [&] { return rows_text(arguments, rows); });
+      arguments.json, [&] { return compensation_rows_json(arguments, rows); },
+      [&] { return compensation_rows_text(arguments, rows); });
 }
 
 std::function<int()> define_compensation_study(CLI::App& app) {

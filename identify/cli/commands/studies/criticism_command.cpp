@@ -27,7 +27,7 @@ struct CriticismArguments {
   bool json = false;
 };
 
-std::string figures_text(const CriticismArguments& arguments, const Campaigns& campaigns) {
+std::string criticism_text(const CriticismArguments& arguments, const Campaigns& campaigns) {
   TextTable figures({{"", Align::Left}, {"share (95 % interval), count", Align::Left}, {"goal", Align::Left}},
                     "Figures; s is the visible signal to noise |g~ a|");
   for (const Figure& figure : figures_of(campaigns))
@@ -53,7 +53,7 @@ std::string figures_text(const CriticismArguments& arguments, const Campaigns& c
       detections.empty() ? "" : "\n", confusion.text());
 }
 
-nlohmann::ordered_json json_of(const CriticismArguments& arguments, const Campaigns& campaigns) {
+nlohmann::ordered_json criticism_json(const CriticismArguments& arguments, const Campaigns& campaigns) {
   nlohmann::ordered_json json = {
       {"study", "criticism"}, {"seed", arguments.options.seed}, {"readings", arguments.options.readings}};
   for (const Figure& figure : figures_of(campaigns)) {
@@ -117,8 +117,8 @@ int run_criticism_study(CriticismArguments arguments) {
   const Campaigns campaigns = criticism(options);
   bar.finish();
   return print_outcome(
-      arguments.json, [&] { return json_of(arguments, campaigns); },
-      [&] { return figures_text(arguments, campaigns); }, 1);
+      arguments.json, [&] { return criticism_json(arguments, campaigns); },
+      [&] { return criticism_text(arguments, campaigns); }, 1);
 }
 
 std::function<int()> define_criticism_study(CLI::App& app) {

@@ -55,7 +55,8 @@ int count_rows(const std::vector<EffectTablesRow>& rows, Test test) {
   return static_cast<int>(std::ranges::count_if(rows, test));
 }
 
-std::string rows_text(const EffectTablesArguments& arguments, const std::vector<EffectTablesRow>& rows) {
+std::string effect_rows_text(const EffectTablesArguments& arguments,
+                             const std::vector<EffectTablesRow>& rows) {
   TextTable table({{"structure", Align::Left},
                    {"effect", Align::Left},
                    {"format", Align::Left},
@@ -86,8 +87,8 @@ std::string rows_text(const EffectTablesArguments& arguments, const std::vector<
       count_rows(rows, is_printed_wrong));
 }
 
-nlohmann::ordered_json rows_json(const EffectTablesArguments& arguments,
-                                 const std::vector<EffectTablesRow>& rows) {
+nlohmann::ordered_json effect_rows_json(const EffectTablesArguments& arguments,
+                                        const std::vector<EffectTablesRow>& rows) {
   nlohmann::ordered_json json = {{"study", "effect-tables"},
                                  {"seed", arguments.options.seed},
                                  {"rows", nlohmann::ordered_json::array()}};
@@ -115,7 +116,8 @@ int run_effect_tables(EffectTablesArguments arguments) {
   const std::vector<EffectTablesRow> rows = effect_tables_study(arguments.options);
   bar.finish();
   return print_outcome(
-      arguments.json, [&] { return rows_json(arguments, rows); }, [&] { return rows_text(arguments, rows); });
+      arguments.json, [&] { return effect_rows_json(arguments, rows); },
+      [&] { return effect_rows_text(arguments, rows); });
 }
 
 std::function<int()> define_effect_tables(CLI::App& app) {

@@ -17,15 +17,15 @@ constexpr double kLeastLength = 0.1;    // m, below which a tool says nothing ab
 constexpr double kUsualLength = 0.3;    // m
 constexpr double kSidewaysShare = 0.3;  // of the length: makes the roll of the last axis visible
 
-double length_of(const Tool& tool) { return tool.offset.norm(); }
+double length_of_tool(const Tool& tool) { return tool.offset.norm(); }
 
 /// Twice the longest tool, and to the side.
 Tool longer_tool(const Machine& machine) {
-  Tool longest = *std::ranges::max_element(machine.tools, {}, length_of);
-  if (length_of(longest) < kLeastLength) longest.offset = {0.0, 0.0, -kUsualLength / kLonger};
+  Tool longest = *std::ranges::max_element(machine.tools, {}, length_of_tool);
+  if (length_of_tool(longest) < kLeastLength) longest.offset = {0.0, 0.0, -kUsualLength / kLonger};
   Tool tool = longest;
   tool.offset = kLonger * longest.offset;
-  tool.offset.x() += kSidewaysShare * length_of(longest);
+  tool.offset.x() += kSidewaysShare * length_of_tool(longest);
   tool.name = fmt::format("of [{:.0f}, {:.0f}, {:.0f}] mm", tool.offset.x() * kPerMilli,
                           tool.offset.y() * kPerMilli, tool.offset.z() * kPerMilli);
   return tool;

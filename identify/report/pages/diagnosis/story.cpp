@@ -43,7 +43,7 @@ std::string level(Verdict verdict) {
   return "bad";
 }
 
-std::string headline(Verdict verdict) {
+std::string headline_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::Named:
       return "Named: the missing effect is known";
@@ -120,7 +120,8 @@ Json after_json(const Diagnosis& diagnosis) {
       lines.push_back("The noise was estimated beside what remains, and its floor may hold part of that.");
     }
   } else if (std::isfinite(last.rms_heldout)) {
-    const bool only_alternative = diagnosis.effects.empty() && diagnosis.model_changes.empty();
+    const bool only_alternative =
+        diagnosis.effects.empty() && diagnosis.model_changes.empty() && diagnosis.surfaces.empty();
     const std::string with =
         only_alternative ? fmt::format("With {}, one of the alternatives, the", last.added) : "The";
     lines.push_back(
@@ -129,7 +130,7 @@ Json after_json(const Diagnosis& diagnosis) {
                     with, micrometres(first.systematic), interval(last), micrometres(first.rms_heldout),
                     micrometres(last.rms_heldout), micrometres(last.noise_floor)));
   }
-  for (const UnknownFinding& unknown : diagnosis.unknown) {
+  for (const UnknownFinding& unknown : remaining_unknown(diagnosis)) {
     lines.push_back(
         fmt::format("Still seen by the scan without a catalogue: something that depends on {}, along {}, "
                     "about {} RMS (log10 p {:.1f}).",
@@ -164,6 +165,8 @@ Json story_page(const DiagnosisInput& input) {
   const Diagnosis& diagnosis = input.diagnosis;
   Json ladder = Json::array();
   for (const LadderStep& step : diagnosis.ladder) ladder.push_back(step_json(step));
+  Json surfaces = Json::array();
+  for (const SurfaceFinding& surface : diagnosis.surfaces) surfaces.push_back(surface_json(surface));
   Json one_of = Json::array();
   for (const auto* set : sets_of_alternatives(diagnosis)) {
     Json alternatives = Json::array();
@@ -172,10 +175,11 @@ Json story_page(const DiagnosisInput& input) {
   }
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
-          {"headline", headline(diagnosis.verdict)},
+          {"headline", headline_of(diagnosis.verdict)},
           {"words", sentences(diagnosis.findings)},
           {"before", Json::array({before_text(diagnosis.ladder.front())})},
           {"missing", missing_json(diagnosis)},
+          {"surfaces", std::move(surfaces)},
           {"one_of", std::move(one_of)},
           {"after", after_json(diagnosis)},
           {"next_measurement", diagnosis.next_measurement},

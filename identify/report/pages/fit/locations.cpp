@@ -11,7 +11,7 @@
 namespace volcal::report {
 namespace {
 
-std::string meaning(LocationSymbol symbol) {
+std::string meaning_of_location(LocationSymbol symbol) {
   const char axis = letter_of(symbol.axis);
   if (is_rotary(symbol.axis)) {
     return is_rotation(symbol.component)
@@ -36,7 +36,7 @@ Json identified(const FitResult& result, const ParameterBlock& block) {
   const bool visible = error == nullptr || error->visible;
   Json row = {{"symbol", symbol.name()},
               {"axis", axis_letter(symbol.axis)},
-              {"meaning", meaning(symbol)},
+              {"meaning", meaning_of_location(symbol)},
               {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
               {"state", visible ? "identified" : "invisible"},
               {"reason", visible ? "" : explanation(error->cause).reason},
@@ -61,7 +61,7 @@ Json locations_page(const PageInput& input) {
   for (const LocationSymbol symbol : result.identified.locations_off) {
     rows.push_back({{"symbol", symbol.name()},
                     {"axis", axis_letter(symbol.axis)},
-                    {"meaning", meaning(symbol)},
+                    {"meaning", meaning_of_location(symbol)},
                     {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
                     {"state", "off"}});
   }

@@ -8,7 +8,7 @@
 namespace volcal::report {
 namespace {
 
-bool is_angle(const std::string& symbol) {
+bool turns(const std::string& symbol) {
   if (const auto error = ErrorSymbol::parse(symbol)) return is_rotation(error->component);
   if (const auto location = LocationSymbol::parse(symbol)) return is_rotation(location->component);
   return false;
@@ -20,7 +20,7 @@ Json error_rows(const FitResult& result) {
     const Explanation words = explanation(error.cause);
     rows.push_back({{"symbol", error.symbol},
                     {"axis", std::string(1, error.symbol.back())},
-                    {"unit", is_angle(error.symbol) ? "µrad" : "µm"},
+                    {"unit", turns(error.symbol) ? "µrad" : "µm"},
                     {"visible", error.visible},
                     {"visible_fraction", rounded(error.visible_fraction, 4)},
                     {"u_rms", rounded(error.u_rms * kPerMicro, 3)},

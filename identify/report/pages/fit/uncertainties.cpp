@@ -7,7 +7,7 @@
 namespace volcal::report {
 namespace {
 
-Json counts(const MonteCarloResult& study) {
+Json verdict_counts(const MonteCarloResult& study) {
   std::size_t validated = 0, undecided = 0;
   for (const QuantityResult& value : study.quantities) {
     if (value.verdict == LinearVerdict::Validated) ++validated;
@@ -19,7 +19,7 @@ Json counts(const MonteCarloResult& study) {
 }
 
 /// One direction of one error function.
-Json curve(const MonteCarloResult& study, const std::vector<std::size_t>& values) {
+Json curve_of_study(const MonteCarloResult& study, const std::vector<std::size_t>& values) {
   Json result = {
       {"q", Json::array()}, {"linear", Json::array()}, {"u", Json::array()}, {"bias", Json::array()}};
   for (const std::size_t i : values) {
@@ -49,7 +49,7 @@ Json functions(const MonteCarloResult& study) {
         if (study.quantities[i].quantity.direction == direction) own.push_back(i);
       }
       if (own.empty()) continue;
-      Json values = curve(study, own);
+      Json values = curve_of_study(study, own);
       values["direction"] = direction;
       function["curves"].push_back(std::move(values));
     }
@@ -86,7 +86,7 @@ Json uncertainties_page(const MonteCarloPageInput& input) {
           {"digits", study.digits},
           {"not_converged", study.not_converged},
           {"disturbances", study.disturbances},
-          {"verdicts", counts(study)},
+          {"verdicts", verdict_counts(study)},
           {"refits", study.check.linear.draws},
           {"linear_share", rounded(study.check.linear.largest_share, 2)},
           {"chord_share", rounded(study.check.chord.largest_share, 2)},

@@ -17,7 +17,7 @@
 namespace volcal {
 namespace {
 
-const Campaign& campaign() {
+const Campaign& campaign_of_tracking() {
   static const sim::SimulatedCampaign simulated = [] {
     sim::Study study;
     study.machine = sim::reference_machines()[0];
@@ -38,7 +38,7 @@ ModelSpec without(std::initializer_list<const char*> symbols) {
 }
 
 std::set<std::string> targets(const ModelSpec& model) {
-  const MeasurementModel bound(campaign(), resolve_knots(model, campaign()));
+  const MeasurementModel bound(campaign_of_tracking(), resolve_knots(model, campaign_of_tracking()));
   std::set<std::string> names;
   for (const LeftOutError& error : left_out_errors(bound)) names.insert(error.effect->name().target);
   return names;
@@ -53,8 +53,8 @@ TEST(LeftOut, ListsWhatTheModelLacks) {
 
 TEST(LeftOut, IsNamedAndGivenBack) {
   const ModelSpec model = without({"EBX"});
-  const FitResult result = fit(campaign(), model);
-  const Diagnosis diagnosis = diagnose(campaign(), result, DiagnoseOptions{});
+  const FitResult result = fit(campaign_of_tracking(), model);
+  const Diagnosis diagnosis = diagnose(campaign_of_tracking(), result, DiagnoseOptions{});
   ASSERT_FALSE(diagnosis.effects.empty());
   const EffectFinding& found = diagnosis.effects.front();
   EXPECT_EQ(found.name, (EffectName{"left-out", "EBX", "x", "function"}));
@@ -63,7 +63,7 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   ModelSpec extended = model;
   ASSERT_TRUE(restore_left_out(found.spec, extended));
   EXPECT_TRUE(extended.functions.empty());
-  EXPECT_LT(fit(campaign(), extended).chi2, 0.8 * result.chi2);
+  EXPECT_LT(fit(campaign_of_tracking(), extended).chi2, 0.8 * result.chi2);
 }
 
 TEST(LeftOut, GoesBackToTheModelItCameFrom) {

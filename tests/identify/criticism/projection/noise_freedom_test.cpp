@@ -16,7 +16,7 @@ namespace {
 constexpr Eigen::Index kLines = 24;
 constexpr Eigen::Index kReadings = 8;  // of a line
 constexpr Eigen::Index kAll = kLines * kReadings;
-constexpr double kSigma = 1e-6;
+constexpr double kWhiteSigma = 1e-6;
 
 NoiseProblem balanced_layout(double line_offset) {
   std::mt19937_64 random(3);
@@ -30,8 +30,8 @@ NoiseProblem balanced_layout(double line_offset) {
     if (i % kReadings == 0) offset = line_offset * normal(random);
     sequence.observation.push_back(static_cast<std::size_t>(i));
     sequence.line.push_back(static_cast<std::int32_t>(i / kReadings));
-    problem.data.sigma.push_back(kSigma);
-    problem.residual[i] = offset + kSigma * normal(random);
+    problem.data.sigma.push_back(kWhiteSigma);
+    problem.residual[i] = offset + kWhiteSigma * normal(random);
   }
   problem.data.sequences.push_back(sequence);
   return problem;

@@ -80,19 +80,19 @@ struct BruteForce {
   }
 };
 
-const NoiseParameters kNoise{.white = 1.1, .drift = 0.6, .tau = 60.0, .line = 0.4, .per_metre = 0.0};
+const NoiseParameters kProjectedNoise{.white = 1.1, .drift = 0.6, .tau = 60.0, .line = 0.4, .per_metre = 0.0};
 
 TEST(Projector, EqualsAnOrthogonalBasis) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     std::mt19937_64 random(seed);
     const NoiseProblem problem = random_problem(random);
     const Eigen::MatrixXd columns = random_matrix(random, kObservations, 3);
-    const BruteForce exact(problem, kNoise);
+    const BruteForce exact(problem, kProjectedNoise);
     const Eigen::MatrixXd remaining = exact.projected(
         exact.augmented(columns, Eigen::MatrixXd::Zero(exact.prior_root.rows(), columns.cols())));
     const Eigen::VectorXd residual = exact.projected(exact.residual);
 
-    const Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+    const Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
     const ProjectedColumns projected = projector.project(columns);
     EXPECT_LT((projected.gram(0, 3) - remaining.transpose() * remaining).norm(),
               1e-10 * remaining.squaredNorm());
@@ -177,7 +177,7 @@ TEST(Projector, LocalColumnsChangeNothing) {
   NoiseProblem with_local = problem;
   with_local.local = local;
   const NoiseParameters white{.white = 1.1, .drift = 0.0, .tau = 60.0, .line = 0.0, .per_metre = 0.0};
-  for (const NoiseParameters& noise : {kNoise, white}) {
+  for (const NoiseParameters& noise : {kProjectedNoise, white}) {
     Projector dense(problem, problem.data, {&noise, 1}, 1);
     Projector fast(with_local, problem.data, {&noise, 1}, 1, {0, half, kObservations});
     for (int accepted = 0; accepted < 2; ++accepted) {
@@ -212,8 +212,8 @@ TEST(Projector, PartsAndGroupsChangeNothing) {
   const NoiseProblem problem = problem_in_two_parts(random);
 
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 5);
-  const Projector whole(problem, problem.data, {&kNoise, 1}, 1);
-  const Projector parted(problem, problem.data, {&kNoise, 1}, 2, {0, kHalf, kObservations});
+  const Projector whole(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  const Projector parted(problem, problem.data, {&kProjectedNoise, 1}, 2, {0, kHalf, kObservations});
   const ProjectedColumns expected = whole.project(columns);
   const ProjectedColumns found =
       parted.project({5, {2, 3}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
@@ -230,7 +230,7 @@ TEST(Projector, WeighedResidualGivesEveryScore) {
   std::mt19937_64 random(7);
   const NoiseProblem problem = problem_in_two_parts(random);
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 4);
-  Projector projector(problem, problem.data, {&kNoise, 1}, 1, {0, kHalf, kObservations});
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1, {0, kHalf, kObservations});
   for (const bool accepted : {false, true}) {
     if (accepted) projector.accept(random_matrix(random, kObservations, 2));
     const Eigen::VectorXd weighed = projector.weighed_residual();
@@ -244,7 +244,7 @@ TEST(Projector, AcceptedColumnsAreExplained) {
   std::mt19937_64 random(5);
   const NoiseProblem problem = random_problem(random);
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
-  Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
   const ScoreTest before = score_test(projector.project(columns), 0, 2);
   const double squares = projector.residual_squares();
   projector.accept(columns);
@@ -259,7 +259,7 @@ TEST(ScoreTest, AColumnThatTheModelCanImitateIsInvisible) {
   std::mt19937_64 random(6);
   NoiseProblem problem = random_problem(random);
   problem.prior_precision.setZero();
-  const Projector projector(problem, problem.data, {&kNoise, 1}, 1);
+  const Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
   const Eigen::MatrixXd imitated = problem.jacobian * random_matrix(random, kParameters, 1);
   const ScoreTest test = score_test(projector.project(imitated), 0, 1);
   EXPECT_EQ(test.dof, 0);

@@ -6,13 +6,10 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 namespace volcal {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Columns of length 3 and 5 at an angle.
 Eigen::MatrixXd two_columns(double angle) {
@@ -22,15 +19,15 @@ Eigen::MatrixXd two_columns(double angle) {
 }
 
 TEST(Separation, TwoColumnsAtAKnownAngle) {
-  const Eigen::MatrixXd gram = two_columns(30.0 * kDegree);
-  EXPECT_NEAR(canonical_cosine(gram, {0, 1}, {1, 1}), std::cos(30.0 * kDegree), 1e-14);
+  const Eigen::MatrixXd gram = two_columns(30.0 * kRadianPerDegree);
+  EXPECT_NEAR(canonical_cosine(gram, {0, 1}, {1, 1}), std::cos(30.0 * kRadianPerDegree), 1e-14);
   // 9 sin^2 30 = 9 / 4.
   EXPECT_NEAR(projected_off(gram, {0, 1}, {1, 1})(0, 0), 2.25, 1e-14);
   const Eigen::VectorXd reference = Eigen::VectorXd::Constant(1, 9.0);
   const double alone = amplitude_uncertainty(gram.topLeftCorner(1, 1), reference)[0];
   const double beside = amplitude_uncertainty(projected_off(gram, {0, 1}, {1, 1}), reference)[0];
   EXPECT_NEAR(alone, 1.0 / 3.0, 1e-15);
-  EXPECT_NEAR(beside / alone, 1.0 / std::sin(30.0 * kDegree), 1e-12);  // MIB = MDB / sin
+  EXPECT_NEAR(beside / alone, 1.0 / std::sin(30.0 * kRadianPerDegree), 1e-12);  // MIB = MDB / sin
 }
 
 TEST(Separation, TheSamePredictionIsNeverToldApart) {
@@ -62,7 +59,7 @@ TEST(Separation, SubspacesAgreeWithLeastSquares) {
 }
 
 TEST(Separation, ProjectionOffGivenColumnsKeepsPlaces) {
-  const Eigen::MatrixXd left = projected_off(two_columns(60.0 * kDegree), ColumnRange{1, 1});
+  const Eigen::MatrixXd left = projected_off(two_columns(60.0 * kRadianPerDegree), ColumnRange{1, 1});
   EXPECT_NEAR(left(0, 0), 9.0 * 0.75, 1e-14);
   EXPECT_EQ(left(1, 1), 0.0);
   EXPECT_EQ(left(0, 1), 0.0);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kAlways = 1, kNever = std::numeric_limits<std::size_t>::max();
 
-Campaign tracked_campaign() {
+Campaign campaign_with_moved_stations() {
   sim::Tracking tracking;
   tracking.grid = {14, 8, 8};
   sim::Study study;
@@ -68,7 +68,7 @@ class SampleStartOfTracking : public ::testing::Test {
     return options;
   }
 
-  Campaign campaign_ = tracked_campaign();
+  Campaign campaign_ = campaign_with_moved_stations();
   MeasurementModel model_{campaign_, splines_of_tracking(campaign_.machine)};
   ReadingIndex index_{model_};
   Eigen::VectorXd start_ = model_.initial_parameters();

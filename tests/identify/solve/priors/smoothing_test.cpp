@@ -1,8 +1,6 @@
 // Priors of smooth functions against Gaussian-process regression written down by its covariances (Rasmussen
 // and Williams 2006, eq. 2.25-2.30 and 2.41), which knows nothing of splines or precisions.
 
-#include "volcal/identify/solve/priors/smoothing.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -12,6 +10,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/normals/datum.h"
+#include "volcal/identify/solve/priors/evidence.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/sim/machine/reference_machines.h"
 

@@ -1,5 +1,6 @@
 import { decimalsFor, el, fixed, longTable, note, significant, table } from '../dom.js';
 import { addPlot, layout2d, legendAbove, plain } from '../plot.js';
+import { renderSurface } from '../lenses/surface.js';
 import { color, series, transparent } from '../theme.js';
 
 const kRaised = '⁰¹²³⁴⁵⁶⁷⁸⁹';
@@ -83,6 +84,11 @@ const missingItem = (effect) => el('div', { class: 'found' }, [
   el('div', { class: 'muted' }, `${effect.kind}, ${effect.shape} in ${effect.driver}; ${printed(effect.how)}.`),
 ]);
 
+const drawnItem = (surface) => el('div', { class: 'found' }, [
+  el('strong', {}, surface.label),
+  el('div', { class: 'muted' }, `no name of the catalogue explains it as well as a smooth function does; log evidence over the model without it +${fixed(surface.log_evidence, 0)}.`),
+]);
+
 const ladderTable = (ladder) => table([
   { name: 'Model', align: 'left', cell: (row) => row.model },
   { name: 'Added', align: 'left', cell: (row) => (row.added === '' ? 'as given' : row.added) },
@@ -110,10 +116,11 @@ export function renderStory(body, data) {
   body.append(el('div', { class: `status ${data.level}`, 'data-verdict': data.verdict }, [
     el('strong', {}, data.headline), ...data.words.map((text) => el('p', {}, printed(text))),
   ]));
+  for (const surface of data.surfaces) renderSurface(body, surface);
   body.append(el('h3', {}, 'Before'), ...data.before.map((text) => el('p', {}, text)));
   body.append(el('h3', {}, 'What was missing, and how we know'));
-  body.append(...data.missing.map(missingItem));
-  if (data.missing.length === 0 && data.one_of.length === 0) {
+  body.append(...data.surfaces.map(drawnItem), ...data.missing.map(missingItem));
+  if (data.missing.length === 0 && data.one_of.length === 0 && data.surfaces.length === 0) {
     body.append(el('p', {}, `Nothing was added: none of the ${data.families} effects tested is above the noise and separated from the others.`));
   }
   for (const set of data.one_of) {

@@ -1,4 +1,4 @@
-#include "volcal/identify/criticism/unknown_findings.h"
+#include "volcal/identify/criticism/search/unknown_findings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,111 @@
+#include "volcal/identify/criticism/formulas/elementary_functions.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace volcal {
+namespace {
+
+using Names = std::vector<std::string>;
+using Shape = std::vector<double>;
+
+constexpr int kPlaces = 9;  // of a kink or step along the range
+
+/// "y", or "(T_column - 20)".
+std::string from_zero(const std::string& variable, double zero) {
+  return zero == 0.0 ? variable : fmt::format("({} - {:g})", variable, zero);
+}
+
+/// Along the range, its ends left out.
+std::vector<Shape> places(const DriverRange& driver) {
+  std::vector<Shape> all;
+  for (int i = 1; i <= kPlaces; ++i)
+    all.push_back({driver.from + (driver.to - driver.from) * static_cast<double>(i) / (kPlaces + 1)});
+  return all;
+}
+
+ElementaryFunction power(const std::string& variable, double zero, int exponent) {
+  const std::string base = from_zero(variable, zero);
+  return {[=](const Names&) { return exponent == 1 ? base : fmt::format("{}^{}", base, exponent); },
+          [=](double value, const Shape&) { return std::pow(value - zero, exponent); },
+          {{}}};
+}
+
+ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
+  return {[=, variable = driver.variable](const Names& names) {
+            const std::string base = fmt::format("({} - {})", variable, names[0]);
+            return exponent == 1 ? base : fmt::format("{}^{}", base, exponent);
+          },
+          [=](double value, const Shape& shape) { return std::pow(value - shape[0], exponent); },
+          places(driver)};
+}
+
+ElementaryFunction kink(const DriverRange& driver, const std::string& pattern, double (*at)(double beyond)) {
+  return {[=, variable = driver.variable](const Names& names) {
+            return fmt::format(fmt::runtime(pattern), variable, names[0]);
+          },
+          [=](double value, const Shape& shape) { return at(value - shape[0]); }, places(driver)};
+}
+
+ElementaryFunction step(const DriverRange& driver) {
+  ElementaryFunction function =
+      kink(driver, "({} > {})", [](double beyond) { return beyond > 0.0 ? 1.0 : 0.0; });
+  function.smooth_in_shape = false;
+  return function;
+}
+
+ElementaryFunction saturation(const DriverRange& driver) {
+  std::vector<Shape> starts;
+  for (const Shape& place : places(driver)) {
+    for (const double share : {0.05, 0.15}) starts.push_back({place[0], share * (driver.to - driver.from)});
+  }
+  return {[variable = driver.variable](const Names& names) {
+            return fmt::format("tanh(({} - {}) / {})", variable, names[0], names[1]);
+          },
+          [](double value, const Shape& shape) { return std::tanh((value - shape[0]) / shape[1]); }, starts};
+}
+
+ElementaryFunction wave(const DriverRange& driver) {
+  std::vector<Shape> starts;
+  const double range = driver.to - driver.from;
+  for (const double share : {0.25, 0.35, 0.5, 0.7, 1.0, 1.4}) {
+    for (const double phase : {0.0, 0.25}) starts.push_back({share * range, phase * share * range});
+  }
+  return {[variable = driver.variable](const Names& names) {
+            return fmt::format("sin(2 * pi * ({} - {}) / {})", variable, names[1], names[0]);
+          },
+          [](double value, const Shape& shape) {
+            return std::sin(2.0 * std::numbers::pi * (value - shape[1]) / shape[0]);
+          },
+          starts};
+}
+
+ElementaryFunction approach(const DriverRange& driver) {
+  std::vector<Shape> starts;
+  for (const double share : {0.05, 0.1, 0.2, 0.4, 0.8}) starts.push_back({share * (driver.to - driver.from)});
+  return {[variable = driver.variable](const Names& names) {
+            return fmt::format("(1 - exp(-{} / {}))", variable, names[0]);
+          },
+          [](double value, const Shape& shape) { return 1.0 - std::exp(-value / shape[0]); }, starts};
+}
+
+}  // namespace
+
+std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, double zero) {
+  std::vector<ElementaryFunction> functions;
+  for (const int exponent : {1, 2, 3}) functions.push_back(power(driver.variable, zero, exponent));
+  for (const int exponent : {1, 2}) functions.push_back(shifted_power(driver, exponent));
+  functions.push_back(kink(driver, "abs({} - {})", [](double beyond) { return std::abs(beyond); }));
+  functions.push_back(kink(driver, "max(0, {} - {})", [](double beyond) { return std::max(0.0, beyond); }));
+  functions.push_back(
+      kink(driver, "max(0, -({} - {}))", [](double beyond) { return std::max(0.0, -beyond); }));
+  functions.push_back(step(driver));
+  functions.push_back(saturation(driver));
+  functions.push_back(wave(driver));
+  if (driver.variable == "t") functions.push_back(approach(driver));
+  return functions;
+}
+
+}  // namespace volcal

@@ -1,0 +1,157 @@
+#include "volcal/identify/criticism/search/surface_search.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/data/variable.h"
+#include "volcal/identify/solve/priors/evidence.h"
+#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/instruments/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kMostFindings = 6;
+constexpr const char* kEmpirical = "empirical";
+
+/// What variables of a scan are in the table of an empirical effect.
+struct Table {
+  std::vector<std::string> drivers;
+  std::string factor;
+  std::string only;
+  std::string station;   ///< that moves
+  bool complete = true;  ///< every variable has its place
+
+  void add(const Variable& variable) {
+    switch (variable.kind) {
+      case Variable::Kind::Position:
+      case Variable::Kind::Length:
+      case Variable::Kind::Feed:
+        return drivers.push_back(variable.name());
+      case Variable::Kind::Direction:
+        factor += (factor.empty() ? "" : " ") + variable.name();
+        return;
+      case Variable::Kind::Time:
+        return drivers.push_back("t");
+      case Variable::Kind::Temperature:
+        return drivers.push_back(channel_variable(variable.subject));
+      case Variable::Kind::Tool:
+        only = variable.name();
+        return;
+      case Variable::Kind::Station:
+        only = variable.name();
+        station = variable.subject;
+        return;
+      case Variable::Kind::Speed:
+      case Variable::Kind::Elevation:
+      case Variable::Kind::Run:
+      case Variable::Kind::Instrument:
+      case Variable::Kind::TravelSinceTurning:
+        complete = false;
+    }
+  }
+};
+
+/// First column of an instrument that measures distances.
+std::string beam_column(const Campaign& campaign) {
+  for (const Setup& setup : campaign.setups) {
+    if (traits_of(setup).laser_length != LaserLength::Distance) continue;
+    return find_instrument(setup.instrument)->schema().column_sets[setup.readings.column_set].front().column;
+  }
+  return {};
+}
+
+/// What moves along the direction of a finding: the error motion along it of the axis of that name, a station
+/// against it, or the reading itself.
+std::string target_of(const Campaign& campaign, const UnknownFinding& finding, const Table& table) {
+  if (!finding.rotation.empty()) return finding.rotation;
+  if (finding.direction == kScanDirections[3]) return beam_column(campaign);
+  const char letter = finding.direction.front();
+  if (!table.station.empty())
+    return "station " + table.station + " " + std::string(1, static_cast<char>(letter - 'X' + 'x'));
+  const auto axis = axis_from_letter(letter);
+  if (!axis || !campaign.machine.has_axis(*axis)) return {};
+  return std::string("E") + letter + letter;
+}
+
+std::optional<EffectSpec> spec_for(const LinearModel& model, const UnknownFinding& finding,
+                                   const std::vector<std::string>& variables) {
+  Table table;
+  for (const std::string& name : variables) {
+    if (const auto variable = Variable::parse(name)) table.add(*variable);
+  }
+  const std::string target = target_of(model.campaign(), finding, table);
+  if (target.empty() || table.drivers.empty() || !table.complete) return std::nullopt;
+  std::string drivers;
+  for (const std::string& driver : table.drivers) drivers += (drivers.empty() ? "" : " ") + driver;
+  EffectSpec spec = effect_spec(kEmpirical, {{"target", target}, {"drivers", drivers}});
+  if (!table.factor.empty()) spec.options.set("factor", table.factor);
+  if (!table.only.empty() && table.station.empty()) spec.options.set("only", table.only);
+  if (!table.station.empty() && !target.starts_with("station ")) spec.options.set("only", table.only);
+  try {
+    return find_effect(kEmpirical)->resolved(spec, model.views(), {});
+  } catch (const InputError&) {
+    return std::nullopt;  // a driver that does not change where the effect acts
+  }
+}
+
+}  // namespace
+
+std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFinding& finding) {
+  std::vector<std::vector<std::string>> sets;
+  if (finding.with_one_of.empty()) {
+    sets.push_back(finding.variables);
+    if (finding.variables.size() > 1) {
+      for (const std::string& variable : finding.variables) sets.push_back({variable});
+    }
+  } else {
+    sets.push_back(finding.variables);
+    for (const std::string& other : finding.with_one_of) {
+      sets.push_back(finding.variables);
+      sets.back().push_back(other);
+    }
+  }
+  std::vector<EffectSpec> specs;
+  for (const auto& variables : sets) {
+    if (auto spec = spec_for(model, finding, variables)) specs.push_back(*std::move(spec));
+  }
+  return specs;
+}
+
+double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface) {
+  const auto count = static_cast<Eigen::Index>(surface.amplitudes().size());
+  const ProjectedColumns projected =
+      projector.project({count, {count}, [&](std::size_t part, Eigen::Ref<Eigen::MatrixXd> rows) {
+                           model.columns(surface, surface.shape_values(), part, rows);
+                         }});
+  const NoiseGroupEquations equations{projected.gram(0, count), -projected.score, 0.0,
+                                      static_cast<double>(projector.observations())};
+  std::vector<SmoothingTerm> terms = {surface_term(*surface.surface(), 0)};
+  return maximise_evidence({equations}, Eigen::VectorXd::Zero(count),
+                           GaussianPrior::none(static_cast<int>(count)), {.variance_components = false},
+                           {1.0}, terms)
+      .log_evidence;
+}
+
+std::optional<SurfaceTest> best_surface(const ModelState& state,
+                                        const std::vector<UnknownFinding>& findings) {
+  std::optional<SurfaceTest> best;
+  std::vector<EffectName> tried;
+  for (std::size_t i = 0; i < std::min(findings.size(), kMostFindings); ++i) {
+    for (EffectSpec& spec : surfaces_for(state.model(), findings[i])) {
+      std::shared_ptr<const Effect> effect = find_effect(kEmpirical)->make(spec, {});
+      if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
+        continue;
+      tried.push_back(effect->name());
+      const double evidence = surface_evidence(state.model(), state.projector(), *effect);
+      if (evidence < kThresholds.surface_evidence || (best && evidence <= best->log_evidence)) continue;
+      best = SurfaceTest{std::move(spec), std::move(effect), findings[i], evidence};
+    }
+  }
+  return best;
+}
+
+}  // namespace volcal

@@ -1,0 +1,202 @@
+#include "volcal/identify/criticism/surface_findings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "volcal/identify/criticism/formulas/formula_search.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/model/effects/recorded_variable.h"
+#include "volcal/model/functions/tensor_basis.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kFree = 0.1;  // of a function's square that is left when what is imitated is taken out
+constexpr Eigen::Index kPlacesOfCurve = 121, kPlacesOfSurface = 41;
+constexpr std::size_t kMostDots = 1500;
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// Coefficients of a power of one variable, constant along the others.
+Eigen::VectorXd coefficients_of_power(const TensorBasis& basis, std::size_t variable, int power) {
+  Eigen::VectorXd product = Eigen::VectorXd::Ones(1);
+  for (std::size_t side = 0; side < basis.sides().size(); ++side) {
+    const Eigen::VectorXd own = side == variable
+                                    ? Eigen::VectorXd(basis.nodes(side).array().pow(power).matrix())
+                                    : Eigen::VectorXd(Eigen::VectorXd::Ones(basis.size(side)));
+    Eigen::VectorXd next(product.size() * own.size());
+    for (Eigen::Index k = 0; k < product.size(); ++k)
+      next.segment(k * own.size(), own.size()) = product[k] * own;
+    product = std::move(next);
+  }
+  return product;
+}
+
+bool is_imitated(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& imitated) {
+  const Eigen::VectorXd left = coefficients - imitated * imitated.colPivHouseholderQr().solve(coefficients);
+  return left.squaredNorm() < kFree * coefficients.squaredNorm();
+}
+
+/// What the readings do not tell from the rest of the model, in words.
+std::vector<std::string> free_parts(const TensorBasis& basis, const Eigen::MatrixXd& imitated,
+                                    const std::vector<std::string>& drivers, bool has_factor) {
+  if (imitated.cols() == 0 || has_factor) return {};
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < drivers.size(); ++i) {
+    if (is_imitated(coefficients_of_power(basis, i, 1), imitated) &&
+        is_imitated(coefficients_of_power(basis, i, 2), imitated)) {
+      words.push_back(fmt::format("any function of {} alone: the error functions hold it", drivers[i]));
+    } else if (is_imitated(coefficients_of_power(basis, i, 1), imitated)) {
+      words.push_back(fmt::format("what is straight in {}: the rest of the model holds it", drivers[i]));
+    }
+  }
+  if (words.empty() && is_imitated(coefficients_of_power(basis, 0, 0), imitated))
+    words.emplace_back("a constant: the rest of the model holds it");
+  return words;
+}
+
+class SurfaceSummary {
+ public:
+  SurfaceSummary(const ModelState& state, const AddedSurface& surface, const Projector& projector)
+      : state_(state),
+        surface_(surface),
+        projector_(projector),
+        basis_(*surface.effect->surface()),
+        coefficients_(projector.solution().segment(surface.first, surface.size())) {
+    const EffectAmplitude& amplitude = surface.effect->amplitudes().front();
+    out_.name = surface.effect->name();
+    out_.label = effect_label(*surface.effect);
+    out_.spec = surface.spec;
+    out_.unit = amplitude.unit();
+    out_.si_per_unit = amplitude.si_per_unit();
+    out_.log_evidence = surface.log_evidence;
+    out_.drivers = words_of(*surface.spec.options.text("drivers"));
+  }
+
+  SurfaceFinding run() {
+    for (std::size_t k = 0; k < surface_.effect->amplitudes().size(); ++k)
+      surface_.effect->amplitudes()[k].keep(coefficients_[static_cast<Eigen::Index>(k)], out_.spec.options);
+    find_size();
+    const SmoothingTerm& term = state_.model().smoothing()[surface_.term];
+    out_.effective_parameters =
+        term.prior->rank - term.lambda * covariance_of_coefficients().cwiseProduct(term.precision()).sum();
+    out_.free = free_parts(basis_, term.surface->imitated(), out_.drivers,
+                           surface_.spec.options.text("factor").has_value());
+    draw();
+    return std::move(out_);
+  }
+
+ private:
+  /// Derivatives of values to all parameters.
+  Eigen::MatrixXd all_rows(const Eigen::MatrixXd& own) const {
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(own.rows(), projector_.parameters());
+    rows.middleCols(surface_.first, own.cols()) = own;
+    return rows;
+  }
+
+  Eigen::MatrixXd covariance_of_coefficients() const {
+    const Eigen::MatrixXd rotated =
+        projector_.rotated_rows(all_rows(Eigen::MatrixXd::Identity(surface_.size(), surface_.size())));
+    return rotated.transpose() * rotated;
+  }
+
+  Eigen::VectorXd uncertainty(const Eigen::MatrixXd& own) const {
+    return projector_.prediction_variance(all_rows(own)).cwiseMax(0.0).cwiseSqrt();
+  }
+
+  /// Over the readings on which it acts.
+  void find_size() {
+    double squares = 0.0;
+    std::size_t count = 0;
+    Eigen::RowVectorXd largest_row;
+    for (const SetupView& view : state_.model().views()) {
+      const Eigen::MatrixXd rows = surface_.effect->drivers(view, surface_.effect->shape_values());
+      for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+        if (rows.row(row).isZero(0.0)) continue;
+        const double value = rows.row(row).dot(coefficients_);
+        squares += value * value;
+        ++count;
+        keep_dot(view, row);
+        if (std::abs(value) <= std::abs(out_.largest)) continue;
+        out_.largest = value;
+        largest_row = rows.row(row);
+        out_.at.clear();
+        for (const std::string& driver : out_.drivers)
+          out_.at.push_back((*recorded_variable(view, driver))[row]);
+      }
+    }
+    if (count == 0) return;
+    out_.rms = std::sqrt(squares / static_cast<double>(count));
+    if (largest_row.size() > 0) out_.largest_u = uncertainty(largest_row)[0];
+  }
+
+  void keep_dot(const SetupView& view, Eigen::Index row) {
+    if (++seen_ % stride() != 0) return;
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, out_.drivers.size()); ++i) {
+      if (out_.figure.dots.size() <= i) out_.figure.dots.emplace_back();
+      out_.figure.dots[i].push_back((*recorded_variable(view, out_.drivers[i]))[row]);
+    }
+  }
+
+  std::size_t stride() const { return 1 + state_.model().size() / kMostDots; }
+
+  /// Over the range of the first two drivers, a third in the middle of its range; a factor is 1.
+  void draw() {
+    const auto& sides = basis_.sides();
+    std::vector<double> place;
+    for (const TensorBasis::Side& side : sides) place.push_back(0.5 * (side.from + side.to));
+    const Eigen::Index first = sides.size() == 1 ? kPlacesOfCurve : kPlacesOfSurface;
+    const Eigen::Index second = sides.size() == 1 ? 1 : kPlacesOfSurface;
+    const auto at = [](const TensorBasis::Side& side, Eigen::Index i, Eigen::Index count) {
+      return side.from + (side.to - side.from) * static_cast<double>(i) / static_cast<double>(count - 1);
+    };
+    Eigen::MatrixXd rows(first * second, basis_.size());
+    for (Eigen::Index i = 0; i < first; ++i) {
+      place[0] = at(sides[0], i, first);
+      for (Eigen::Index j = 0; j < second; ++j) {
+        if (second > 1) place[1] = at(sides[1], j, second);
+        rows.row(i * second + j) = basis_.row(place).transpose();
+      }
+    }
+    SurfaceFigure& figure = out_.figure;
+    figure.places.resize(sides.size() == 1 ? 1 : 2);
+    for (Eigen::Index i = 0; i < first; ++i) figure.places[0].push_back(at(sides[0], i, first));
+    if (second > 1) {
+      for (Eigen::Index j = 0; j < second; ++j) figure.places[1].push_back(at(sides[1], j, second));
+    }
+    figure.value = rows * coefficients_;
+    figure.u = uncertainty(rows);
+    if (sides.size() > 2) figure.third = place[2];
+  }
+
+  const ModelState& state_;
+  const AddedSurface& surface_;
+  const Projector& projector_;
+  const TensorBasis& basis_;
+  Eigen::VectorXd coefficients_;
+  SurfaceFinding out_;
+  std::size_t seen_ = 0;
+};
+
+}  // namespace
+
+std::vector<SurfaceFinding> surface_findings(const ModelState& reached) {
+  std::vector<SurfaceFinding> findings;
+  if (reached.surfaces().empty()) return findings;
+  const auto projector = reached.projector_of_all_readings();
+  for (std::size_t i = 0; i < reached.surfaces().size(); ++i) {
+    findings.push_back(SurfaceSummary(reached, reached.surfaces()[i], *projector).run());
+    findings.back().formulas = formulas_for(reached, i);
+  }
+  return findings;
+}
+
+}  // namespace volcal

@@ -1,0 +1,150 @@
+// A function without a formula: heat map with its readings and cuts with their bands, or a curve with its band.
+import { el, note, significant } from '../dom.js';
+import { addPlot, colorBar, layout2d, legendAbove, plain } from '../plot.js';
+import { color, series, transparent } from '../theme.js';
+
+const kBands = 12; // of the heat map, so that their edges are contours
+const kPixels = 12; // of the picture, between neighbouring places
+
+const largest = (values) => Math.max(...values.map(Math.abs), 1e-12);
+
+/** Value in −1..1 as a colour: one hue below zero, another above, the page's colour at zero. */
+function shade(share, rgb) {
+  const strong = share < 0 ? rgb.below : rgb.above;
+  const weight = Math.abs(share);
+  return strong.map((v, i) => Math.round(weight * v + (1 - weight) * rgb.page[i]));
+}
+
+const channels = (hex) => [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16));
+const palette = () => ({ below: channels(color('series-0')), above: channels(color('bad')), page: channels(color('page')) });
+
+/** Filled contours of values on a grid, as a picture. */
+function picture(data, limit) {
+  const [x, y] = data.axes.map((axis) => axis.places.length);
+  const canvas = document.createElement('canvas');
+  canvas.width = (x - 1) * kPixels;
+  canvas.height = (y - 1) * kPixels;
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(canvas.width, canvas.height);
+  const rgb = palette();
+  const value = (i, j) => data.value[i * y + j];
+  for (let row = 0; row < canvas.height; row += 1) {
+    const v = (canvas.height - row - 0.5) / kPixels;
+    const j = Math.min(y - 2, Math.floor(v));
+    for (let column = 0; column < canvas.width; column += 1) {
+      const u = (column + 0.5) / kPixels;
+      const i = Math.min(x - 2, Math.floor(u));
+      const [a, b] = [u - i, v - j];
+      const here = (1 - a) * ((1 - b) * value(i, j) + b * value(i, j + 1)) + a * ((1 - b) * value(i + 1, j) + b * value(i + 1, j + 1));
+      const band = Math.round((here / limit) * (kBands / 2)) / (kBands / 2);
+      image.data.set([...shade(Math.max(-1, Math.min(1, band)), rgb), 255], 4 * (row * canvas.width + column));
+    }
+  }
+  context.putImageData(image, 0, 0);
+  return canvas.toDataURL();
+}
+
+function scale() {
+  const rgb = palette();
+  return [0, 0.25, 0.5, 0.75, 1].map((at) => [at, `rgb(${shade(2 * at - 1, rgb).join(',')})`]);
+}
+
+function heatMap(data) {
+  const [x, y] = data.axes;
+  const limit = largest(data.value);
+  const hover = x.places.flatMap((u) => y.places.map((v) => [u, v]));
+  const ends = (axis) => [axis.places[0], axis.places.at(-1)];
+  return {
+    data: [
+      {
+        x: hover.map(([u]) => u), y: hover.map(([, v]) => v), type: 'scatter', mode: 'markers', showlegend: false,
+        marker: { size: 9, opacity: 0, color: data.value, colorscale: scale(), cmin: -limit, cmax: limit, showscale: true, colorbar: colorBar(plain(data.unit), 1.01) },
+        text: data.value.map((value, k) => `${significant(value, 3)} ± ${significant(data.U95[k], 2)} ${plain(data.unit)}`),
+        hovertemplate: `${plain(x.name)} %{x:.4g}, ${plain(y.name)} %{y:.4g}: %{text}<extra></extra>`,
+      },
+      { x: x.dots, y: y.dots, type: 'scatter', mode: 'markers', name: 'readings', marker: { size: 2.5, color: color('muted'), opacity: 0.7 }, hoverinfo: 'skip' },
+      {
+        x: [data.at[0]], y: [data.at[1]], type: 'scatter', mode: 'markers', name: 'largest', marker: { size: 11, symbol: 'circle-open', line: { width: 2 }, color: color('text') }, hoverinfo: 'skip',
+      },
+    ],
+    layout: layout2d({
+      height: 560, margin: { r: 70, t: 24 }, hovermode: 'closest',
+      annotations: [{
+        x: data.at[0], y: data.at[1], ax: 0, ay: -26, arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
+        text: `${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${plain(data.unit)}`,
+      }],
+      x: { title: plain(x.title), range: ends(x), showgrid: false, zeroline: false }, y: { title: plain(y.title), range: ends(y), showgrid: false, zeroline: false },
+      images: [{ source: picture(data, limit), xref: 'x', yref: 'y', x: ends(x)[0], y: ends(y)[1], sizex: ends(x)[1] - ends(x)[0], sizey: ends(y)[1] - ends(y)[0], sizing: 'stretch', layer: 'below' }],
+    }),
+  };
+}
+
+const nearest = (places, at) => places.reduce((best, place, k) => (Math.abs(place - at) < Math.abs(places[best] - at) ? k : best), 0);
+
+/** A line with its 95 % band. */
+function banded(places, values, bands, hue, name) {
+  return [
+    {
+      x: [...places, ...[...places].reverse()], y: [...values.map((v, k) => v + bands[k]), ...values.map((v, k) => v - bands[k]).reverse()],
+      type: 'scatter', mode: 'lines', fill: 'toself', fillcolor: transparent(hue, 0.16), line: { width: 0 }, hoverinfo: 'skip', showlegend: false,
+    },
+    { x: places, y: values, type: 'scatter', mode: 'lines', line: { color: hue, width: 2 }, name, hovertemplate: `%{x:.4g}: %{y:.3g}<extra>${name}</extra>` },
+  ];
+}
+
+/** Along one axis, at the place of the largest value and near both ends of the other. */
+function cuts(data, along) {
+  const other = 1 - along;
+  const [axis, across] = [data.axes[along], data.axes[other]];
+  const y = data.axes[1].places.length;
+  const last = across.places.length - 1;
+  const chosen = [...new Set([nearest(across.places, data.at[other]), Math.round(0.15 * last), Math.round(0.85 * last)])];
+  const index = (k, m) => (along === 0 ? k * y + m : m * y + k);
+  return {
+    data: chosen.flatMap((m, n) => banded(
+      axis.places, axis.places.map((_, k) => data.value[index(k, m)]), axis.places.map((_, k) => data.U95[index(k, m)]),
+      series(n), `${plain(across.name)} = ${significant(across.places[m], 3)}`,
+    )),
+    layout: layout2d({ height: 260, ...legendAbove(), margin: { t: 30 }, hovermode: 'closest', x: { title: plain(axis.title) }, y: { title: `${plain(data.target)} [${plain(data.unit)}]` } }),
+  };
+}
+
+function curve(data) {
+  const [axis] = data.axes;
+  return {
+    data: [
+      ...banded(axis.places, data.value, data.U95, color('bad'), '± U95'),
+      { x: axis.dots, y: axis.dots.map(() => 0), type: 'scatter', mode: 'markers', name: 'readings', marker: { size: 5, symbol: 'line-ns-open', color: color('muted') }, hoverinfo: 'skip' },
+    ],
+    layout: layout2d({ height: 320, ...legendAbove(), margin: { t: 30 }, hovermode: 'closest', x: { title: plain(axis.title) }, y: { title: `${plain(data.target)} [${plain(data.unit)}]` } }),
+  };
+}
+
+function plotOf(make, caption) {
+  const node = el('div', { class: 'plot' });
+  addPlot(node, make);
+  return el('figure', {}, [el('figcaption', {}, caption), node]);
+}
+
+const place = (data) => [...data.axes.map((axis) => axis.name), ...(data.third ? [data.third] : [])]
+  .map((name, i) => `${name} = ${significant(data.at[i], 3)}`).join(', ');
+
+export function renderSurface(body, data) {
+  const times = data.factor === '' ? '' : `, times ${data.factor}`;
+  body.append(el('p', { class: 'surface' }, [
+    el('strong', {}, data.label), `: ${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over the readings ${significant(data.rms, 2)} ${data.unit}.`,
+  ]));
+  if (data.axes.length === 1) {
+    body.append(plotOf(() => curve(data), 'What has no name, as the readings show it'));
+  } else {
+    body.append(el('div', { class: 'pair' }, [
+      plotOf(() => heatMap(data), `What has no name, as the readings show it${data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : ''}`),
+      el('div', { class: 'cuts' }, [plotOf(() => cuts(data, 0), `Cuts along ${data.axes[0].name}, 95 % bands`), plotOf(() => cuts(data, 1), `Cuts along ${data.axes[1].name}, 95 % bands`)]),
+    ]));
+  }
+  for (const [k, formula] of data.formulas.entries()) {
+    body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${significant(formula.amplitude, 4)} ± ${significant(formula.U95, 2)} ${formula.unit}.`]));
+  }
+  const open = data.free.length > 0 ? ` These readings leave open ${data.free.join('; ')}.` : '';
+  body.append(note(`A smooth function found by the readings alone: they determine about ${significant(data.effective_parameters, 2)} of its parameters.${open} ${data.formulas.length > 0 ? 'extended.toml holds the law as an effect of the kind custom.' : 'extended.toml holds it as an effect of the kind empirical.'}`));
+}

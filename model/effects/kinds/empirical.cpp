@@ -1,0 +1,380 @@
+// What no name explains: a function of one to three recorded variables without a formula. Its coefficients
+// are amplitudes that a prior ties together, so that it is as smooth as the readings say.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/recorded_variable.h"
+#include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/written_target.h"
+#include "volcal/model/functions/tensor_basis.h"
+
+namespace volcal {
+namespace {
+
+constexpr std::size_t kMostDrivers = 3;
+constexpr double kMostPieces = 40;
+constexpr int kMostCoefficients = 400;
+constexpr std::array<int, kMostDrivers> kPieces = {24, 6, 3};  // by number of drivers
+constexpr double kSameValue = 1.0 / 200.0;                     // of the range
+const std::string kListedDrivers = "name one to three variables, as in drivers = \"y z\"";
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// The part of the campaign on which an effect acts, from the key `only`.
+struct Owner {
+  enum class Kind { All, Tool, Station, Setup } kind = Kind::All;
+  std::string name;
+
+  bool holds(const Campaign& campaign, const Setup& setup) const {
+    switch (kind) {
+      case Kind::Tool:
+        return campaign.machine.tools[setup.tool].name == name;
+      case Kind::Station:
+        return station_of(setup) == name;
+      case Kind::Setup:
+        return setup.name == name;
+      case Kind::All:
+        break;
+    }
+    return true;
+  }
+
+  void check(const Campaign& campaign, const SourcePlace& place) const {
+    if (kind == Kind::Tool) check_tool(campaign, name, place);
+    if (kind == Kind::Station) check_station(campaign, name, place);
+    if (kind == Kind::Setup) check_setup(campaign, name, place);
+  }
+};
+
+Owner owner_of(const EffectTable& table) {
+  const std::string text = table.spec.options.text("only").value_or("");
+  if (text.empty()) return {};
+  for (const auto& [word, kind] : {std::pair{"tool ", Owner::Kind::Tool},
+                                   {"station ", Owner::Kind::Station},
+                                   {"setup ", Owner::Kind::Setup}}) {
+    if (text.starts_with(word)) return {kind, text.substr(std::string_view(word).size())};
+  }
+  table.fail("only = \"" + text + "\" is no part of a campaign",
+             "write \"tool NAME\", \"station NAME\" or \"setup NAME\"");
+}
+
+/// Its table, without the campaign.
+struct Statement {
+  explicit Statement(const EffectTable& table)
+      : place(table.place), target(written_target(table)), owner(owner_of(table)) {
+    drivers = words_of(table.text("drivers", kListedDrivers));
+    factors = words_of(table.spec.options.text("factor").value_or(""));
+    if (drivers.empty() || drivers.size() > kMostDrivers)
+      table.fail(std::to_string(drivers.size()) + " drivers", kListedDrivers);
+    for (const std::string& name : drivers) check_name(table, name, "drivers");
+    for (const std::string& name : factors) check_name(table, name, "factor");
+    read_sides(table);
+  }
+
+  std::string name() const {
+    std::string text = drivers.size() == 1 ? "curve " : "surface ";
+    text += target_text() + " by";
+    for (const std::string& factor : factors) text += " " + factor;
+    for (const std::string& driver : drivers) text += " " + driver;
+    return text;
+  }
+  std::string target_text() const {
+    return target.text + (owner.kind == Owner::Kind::All ? "" : " of " + owner.name);
+  }
+  std::string driver_text() const {
+    std::string text;
+    for (const std::string& name : factors) text += name + " ";
+    for (const std::string& name : drivers) text += name + " ";
+    text.pop_back();
+    return text;
+  }
+
+  bool acts_on(const Campaign& campaign, const Setup& setup) const {
+    return target.acts_on(campaign, setup) && owner.holds(campaign, setup);
+  }
+  bool all_recorded(const Setup& setup) const {
+    const auto is_recorded = [&](const std::string& name) { return has_variable(setup, name); };
+    return std::ranges::all_of(drivers, is_recorded) && std::ranges::all_of(factors, is_recorded);
+  }
+
+  SourcePlace place;
+  WrittenTarget target;
+  Owner owner;
+  std::vector<std::string> drivers;
+  std::vector<std::string> factors;
+  std::vector<TensorBasis::Side> sides;
+  bool has_range = false;
+
+ private:
+  static void check_name(const EffectTable& table, const std::string& name, const std::string& key) {
+    if (is_recorded_variable(name)) return;
+    table.fail(key + ": \"" + name + "\" is no variable",
+               "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()));
+  }
+
+  /// One number per driver.
+  std::optional<std::vector<double>> list(const EffectTable& table, const std::string& key) const {
+    auto values = table.spec.options.numbers(key);
+    if (values && values->size() != drivers.size()) {
+      table.fail(fmt::format("{} holds {} numbers for {} drivers", key, values->size(), drivers.size()),
+                 "write one number per driver");
+    }
+    return values;
+  }
+
+  void read_sides(const EffectTable& table) {
+    const auto from = list(table, "from"), to = list(table, "to"), pieces = list(table, "pieces");
+    if (from.has_value() != to.has_value())
+      table.fail("from and to belong together", "write both, or neither and let the readings tell");
+    has_range = from.has_value();
+    int coefficients = 1;
+    for (std::size_t i = 0; i < drivers.size(); ++i) {
+      TensorBasis::Side side{0.0, 1.0, kPieces[drivers.size() - 1]};
+      if (pieces) {
+        const double count = (*pieces)[i];
+        if (count != std::floor(count) || count < 1.0 || count > kMostPieces)
+          table.fail(fmt::format("pieces: {:g} is no number of pieces", count),
+                     fmt::format("write whole numbers from 1 to {:g}", kMostPieces));
+        side.pieces = static_cast<int>(count);
+      }
+      if (has_range) {
+        side.from = (*from)[i];
+        side.to = (*to)[i];
+        if (!(side.from < side.to))
+          table.fail(fmt::format("the range of {} is empty", drivers[i]), "write from less than to");
+      }
+      coefficients *= side.pieces + 3;
+      sides.push_back(side);
+    }
+    if (coefficients > kMostCoefficients) {
+      table.fail(fmt::format("these pieces need {} coefficients", coefficients),
+                 fmt::format("use fewer pieces: at most {} coefficients", kMostCoefficients));
+    }
+  }
+};
+
+class EmpiricalEffect final : public Effect {
+ public:
+  explicit EmpiricalEffect(const EffectTable& table) : stated_(table), basis_(stated_.sides) {
+    name_ = {"empirical", stated_.target_text(), stated_.driver_text(),
+             stated_.drivers.size() == 1 ? "curve" : "surface"};
+    const std::vector<double> known =
+        table.spec.options.numbers("coefficients").value_or(std::vector<double>{});
+    const auto size = static_cast<std::size_t>(basis_.size());
+    if (!known.empty() && known.size() != size) {
+      table.fail(fmt::format("{} coefficients for {} functions", known.size(), size),
+                 "leave them out to have them identified");
+    }
+    for (std::size_t k = 0; k < size; ++k) {
+      amplitudes_.push_back({.label = stated_.name() + " " + std::to_string(k + 1),
+                             .target = stated_.target.target(),
+                             .key = stated_.target.amplitude_key("coefficients"),
+                             .guess = known.empty() ? 0.0 : known[k],
+                             .element = static_cast<int>(k)});
+    }
+  }
+
+  const TensorBasis* surface() const override { return &basis_; }
+
+  void check(const Campaign& campaign, const SourcePlace& place) const override {
+    const std::string what = "empirical effect \"" + stated_.name() + "\"";
+    stated_.target.check(campaign, what, place);
+    stated_.owner.check(campaign, place);
+    const auto acts = [&](const Setup& setup) { return stated_.acts_on(campaign, setup); };
+    for (const std::string& name : stated_.drivers)
+      check_variable(campaign, name, acts, what, "it is driven by " + name, place);
+    for (const std::string& name : stated_.factors)
+      check_variable(campaign, name, acts, what, "it is multiplied with " + name, place);
+  }
+
+  Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& /*shape*/) const override {
+    const auto rows = static_cast<Eigen::Index>(view.rows());
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(rows, basis_.size());
+    if (!stated_.acts_on(view.campaign, view.setup) || !stated_.all_recorded(view.setup)) return values;
+    require_range();
+    Eigen::VectorXd factor = Eigen::VectorXd::Ones(rows);
+    for (const std::string& name : stated_.factors) {
+      const auto own = recorded_variable(view, name);
+      if (own->size() != rows) return values;
+      factor.array() *= own->array();
+    }
+    Eigen::MatrixXd places(static_cast<Eigen::Index>(stated_.drivers.size()), rows);
+    for (std::size_t i = 0; i < stated_.drivers.size(); ++i) {
+      const auto own = recorded_variable(view, stated_.drivers[i]);
+      if (own->size() != rows) return values;
+      places.row(static_cast<Eigen::Index>(i)) = own->transpose();
+    }
+    for (Eigen::Index row = 0; row < rows; ++row) {
+      const std::span<const double> place(places.col(row).data(), stated_.drivers.size());
+      values.row(row) = factor[row] * basis_.row(place).transpose();
+    }
+    return values;
+  }
+
+  std::size_t unrecorded(const SetupView& view) const override {
+    return stated_.acts_on(view.campaign, view.setup) && !stated_.all_recorded(view.setup) ? view.rows() : 0;
+  }
+
+ private:
+  void require_range() const {
+    if (stated_.has_range) return;
+    throw InputError(stated_.place, stated_.name() + " has no range",
+                     "write from = [...] and to = [...], one number per driver, or let volcal fit find them");
+  }
+
+  Statement stated_;
+  TensorBasis basis_;
+};
+
+/// What readings of a driver say about its range.
+class DriverRange {
+ public:
+  void add(const Eigen::VectorXd& values) { values_.insert(values_.end(), values.begin(), values.end()); }
+
+  /// As many pieces as values can be told apart, at most those asked for; nothing where all are the same.
+  std::optional<TensorBasis::Side> side(int most_pieces) {
+    if (values_.empty()) return std::nullopt;
+    std::ranges::sort(values_);
+    const double from = values_.front(), to = values_.back();
+    if (!(to > from)) return std::nullopt;
+    int different = 1;
+    double last = from;
+    for (const double value : values_) {
+      if (value - last <= kSameValue * (to - from)) continue;
+      ++different;
+      last = value;
+    }
+    return TensorBasis::Side{from, to, std::clamp(different - 1, 1, most_pieces)};
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+class EmpiricalKind final : public EffectKind {
+ public:
+  const EffectSchema& schema() const override {
+    static const EffectSchema kSchema = {
+        .kind = "empirical",
+        .summary =
+            "what has no name: a smooth function of one to three recorded variables, found by the "
+            "readings alone and added to a target",
+        .source =
+            "tensor products of cubic B-splines under a Gaussian-process prior (de Boor 1978, ch. XVII; "
+            "Rasmussen and Williams 2006, ch. 5)",
+        .keys = {
+            written_target_key(),
+            text_key("drivers",
+                     "one to three of x y z (mm) a b c (deg) as commanded, t (s since the first reading), "
+                     "T_<channel> (degC), length (mm to the station), feed (mm/min), tool_length tool_x "
+                     "tool_y tool_z (mm)"),
+            text_key("factor", "what the function is multiplied with: dir_x ... dir_c", false),
+            text_key("only", "where it acts: \"tool NAME\", \"station NAME\" or \"setup NAME\"", false),
+            {.key = "from",
+             .type = KeyType::Numbers,
+             .help = "least value of each driver; absent = of the readings",
+             .plausible_max = 1e9},
+            {.key = "to",
+             .type = KeyType::Numbers,
+             .help = "largest value of each driver; absent = of the readings",
+             .plausible_max = 1e9},
+            {.key = "pieces",
+             .type = KeyType::Numbers,
+             .help = "pieces of the splines of each driver; absent = as many as the readings resolve, at "
+                     "most 24, 6 or 3 for one, two or three drivers",
+             .plausible_max = 1e3},
+            {.key = "coefficients_um",
+             .type = KeyType::Numbers,
+             .help = "identified values, those of the last driver next to each other",
+             .plausible_max = 1e9},
+            {.key = "coefficients_urad",
+             .type = KeyType::Numbers,
+             .help = "the same of a target that turns",
+             .plausible_max = 1e9}}};
+    return kSchema;
+  }
+
+  std::unique_ptr<Effect> make(const EffectSpec& spec, const std::string& model_file) const override {
+    return std::make_unique<EmpiricalEffect>(EffectTable(spec, model_file));
+  }
+
+  bool is_open(const EffectSpec& spec) const override { return !spec.options.numbers("from").has_value(); }
+
+  EffectSpec resolved(const EffectSpec& spec, const std::vector<SetupView>& views,
+                      const std::string& model_file) const override {
+    const Statement stated(EffectTable(spec, model_file));
+    if (stated.has_range) return spec;
+    std::vector<double> from, to, pieces;
+    for (std::size_t i = 0; i < stated.drivers.size(); ++i) {
+      const auto side = range_of(stated, views, stated.drivers[i]).side(stated.sides[i].pieces);
+      if (!side) {
+        throw InputError(stated.place, stated.name() + ": " + stated.drivers[i] + " does not change",
+                         "remove it from the drivers, or measure where it changes");
+      }
+      from.push_back(side->from);
+      to.push_back(side->to);
+      pieces.push_back(side->pieces);
+    }
+    EffectSpec resolved = spec;
+    resolved.options.set("from", from);
+    resolved.options.set("to", to);
+    if (!spec.options.numbers("pieces")) resolved.options.set("pieces", pieces);
+    return resolved;
+  }
+
+  /// Shown by what scans find (identify/criticism), not by trying.
+  std::vector<EffectSpec> candidates(const Campaign& /*campaign*/) const override { return {}; }
+
+  std::vector<EffectSpec> examples(const Campaign& campaign) const override {
+    const std::vector<AxisName> axes = linear_axes(campaign.machine);
+    const Axis &first = campaign.machine.axis(axes.front()), &last = campaign.machine.axis(axes.back());
+    const auto driver = [](const Axis& axis) { return std::string(1, lower_letter_of(axis.name)); };
+    const auto edge = [](double position) { return position / kMetrePerMillimetre; };
+    const ErrorSymbol symbol{Component::A, first.name};
+    const std::vector<double> from = {edge(first.travel_min), edge(last.travel_min)},
+                              to = {edge(first.travel_max), edge(last.travel_max)};
+    return {effect_spec("empirical", {{"target", symbol.name()},
+                                      {"drivers", driver(first) + " " + driver(last)},
+                                      {"from", from},
+                                      {"to", to},
+                                      {"pieces", std::vector<double>{2, 2}}}),
+            effect_spec("empirical", {{"target", std::string("tool z")},
+                                      {"drivers", driver(first)},
+                                      {"factor", "dir_" + driver(first)},
+                                      {"from", std::vector<double>{from.front()}},
+                                      {"to", std::vector<double>{to.front()}},
+                                      {"pieces", std::vector<double>{3}}})};
+  }
+
+ private:
+  static DriverRange range_of(const Statement& stated, const std::vector<SetupView>& views,
+                              const std::string& driver) {
+    DriverRange range;
+    for (const SetupView& view : views) {
+      if (!stated.acts_on(view.campaign, view.setup)) continue;
+      if (const auto values = recorded_variable(view, driver)) range.add(*values);
+    }
+    return range;
+  }
+};
+
+}  // namespace
+
+const EffectKind& empirical_effect() {
+  static const EmpiricalKind kind;
+  return kind;
+}
+
+}  // namespace volcal

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include "volcal/identify/criticism/formulas/formula_search.h"
@@ -17,13 +16,6 @@ namespace {
 constexpr double kFree = 0.1;  // of a function's square that is left when what is imitated is taken out
 constexpr Eigen::Index kPlacesOfCurve = 121, kPlacesOfSurface = 41;
 constexpr std::size_t kMostDots = 1500;
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 /// Coefficients of a power of one variable, constant along the others.
 Eigen::VectorXd coefficients_of_power(const TensorBasis& basis, std::size_t variable, int power) {
@@ -78,7 +70,7 @@ class SurfaceSummary {
     out_.unit = amplitude.unit();
     out_.si_per_unit = amplitude.si_per_unit();
     out_.log_evidence = surface.log_evidence;
-    out_.drivers = words_of(*surface.spec.options.text("drivers"));
+    out_.drivers = variables_in(*surface.spec.options.text("drivers"));
   }
 
   SurfaceFinding run() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 #include "volcal/model/description/units.h"
 
@@ -42,6 +43,13 @@ bool is_recorded_variable(const std::string& name) {
   if (name.starts_with("T_")) return name.size() > 2;
   if (std::ranges::find(plain_variables(), name) != plain_variables().end()) return true;
   return axis_of(name.starts_with("dir_") ? name.substr(4) : name).has_value();
+}
+
+std::vector<std::string> variables_in(const std::string& list) {
+  std::istringstream stream(list);
+  std::vector<std::string> names;
+  for (std::string name; stream >> name;) names.push_back(name);
+  return names;
 }
 
 std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const std::string& name) {

@@ -17,6 +17,9 @@ bool is_recorded_variable(const std::string& name);
 /// Those that are neither positions, directions nor temperatures.
 const std::vector<std::string>& plain_variables();
 
+/// Names in a list with blanks: "y T_column".
+std::vector<std::string> variables_in(const std::string& list);
+
 /// Of a setup's readings; nothing when it was not recorded there.
 std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const std::string& name);
 /// Whether the readings of a setup have a variable's column.

@@ -199,7 +199,7 @@ class CampaignRun {
     options.leave_out = plan_.leave_out;
     const Diagnosis diagnosis = diagnose(simulated.campaign, given, options);
     judge(diagnosis);
-    if (row_ == "listed" || row_ == "pairs") recover(simulated, given, diagnosis);
+    if (!right_.empty() && row_ != "partial") recover(simulated, given, diagnosis);
     return std::move(record_);
   }
 
@@ -377,21 +377,38 @@ class CampaignRun {
   void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
     record_.recovery = true;
     record_.ms_given = unseen_square(simulated, given);
-    ModelSpec oracle, named;
-    for (const RightAnswer& right : right_) {
-      if (right.spec) oracle.effects.push_back(*right.spec);
-    }
+    ModelSpec named;
     for (const EffectFinding& finding : diagnosis.effects) named.effects.push_back(finding.spec);
-    record_.ms_oracle = unseen_square(simulated, fitted(simulated.campaign, oracle));
+    record_.ms_oracle = oracle_square(simulated);
     record_.ms_named = named.effects.empty() ? record_.ms_given
                                              : unseen_square(simulated, fitted(simulated.campaign, named));
-    record_.ms_told = record_.ms_named;
-    if (record_.sets.empty()) return;
+    record_.ms_told = record_.ms_offered = record_.ms_named;
     ModelSpec with_sets;
     for (const EffectFinding& finding : with_first_of_sets(diagnosis)) {
       if (!finding.resolution) with_sets.effects.push_back(finding.spec);
     }
-    record_.ms_told = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+    if (!record_.sets.empty())
+      record_.ms_told = record_.ms_offered = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+    if (diagnosis.surfaces.empty()) return;
+    for (const SurfaceFinding& surface : diagnosis.surfaces) {
+      with_sets.effects.push_back(surface.accepted_spec());
+      record_.drawn.push_back(surface.accepted_label());
+    }
+    record_.ms_offered = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+  }
+
+  /// With the hidden effects in the model where the catalogue has them, else with nothing hidden.
+  double oracle_square(const sim::SimulatedCampaign& simulated) const {
+    ModelSpec oracle;
+    for (const RightAnswer& right : right_) {
+      if (right.spec) oracle.effects.push_back(*right.spec);
+    }
+    if (oracle.effects.size() == right_.size())
+      return unseen_square(simulated, fitted(simulated.campaign, oracle));
+    sim::Study clean = plan_.study;
+    clean.hidden.clear();
+    const sim::SimulatedCampaign without = sim::simulate(clean);
+    return unseen_square(without, fitted(without.campaign, {}));
   }
 
   std::string row_;

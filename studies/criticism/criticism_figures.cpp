@@ -340,6 +340,12 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
       [&](const CampaignRecord& record) { return row("listed", 12.0)(record) && record.verdict == "NAMED"; },
       ">= 97 %");
   add("  the first name of every set added as well", recovered_by_sets, row("listed", 12.0), ">= 97 %");
+  const auto offered = [](const CampaignRecord& record) {
+    return recovered_share(record, record.ms_offered) >= kRecovered;
+  };
+  for (const char* name : {"listed", "unlisted", "left-out", "pairs"})
+    add(fmt::format("the model offered recovers >= 0.9, s >= 12: {}", name), offered, row(name, 12.0),
+        ">= 97 %");
   figures.push_back({"amplitude inside its 95 % interval, s >= 5", coverage(campaigns, false), "93 to 97 %"});
   figures.push_back({"  effects whose shape was scanned", coverage(campaigns, true), "93 to 97 %"});
   std::erase_if(figures, [](const Figure& figure) { return figure.share.of == 0; });

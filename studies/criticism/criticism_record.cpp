@@ -18,7 +18,8 @@ struct Fields : CampaignRecord {};
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fields, row, index, seed, wanted_readings, readings, structure, layout,
                                    noise, failure, hidden, verdict, named, sets, ranking, unknown,
                                    model_changes, noise_terms, families, removed_readings, named_explain,
-                                   told_explain, recovery, ms_given, ms_named, ms_told, ms_oracle)
+                                   told_explain, recovery, ms_given, ms_named, ms_told, ms_oracle, drawn,
+                                   ms_offered)
 }  // namespace
 
 void to_json(nlohmann::json& json, const CampaignRecord& record) { to_json(json, Fields{record}); }

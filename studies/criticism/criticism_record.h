@@ -73,11 +73,14 @@ struct CampaignRecord {
   int removed_readings = 0;
   double named_explain = 0.0;  ///< cos^2 of everything hidden with everything named
   double told_explain = 0.0;   ///< the same with the first of every set of alternatives
-  bool recovery = false;       ///< the next four were computed
+  bool recovery = false;       ///< the next were computed
   double ms_given = 0.0;       ///< um^2: noise-free prediction error at unseen positions, the given model
   double ms_named = 0.0;       ///< with the named effects, fitted again
   double ms_told = 0.0;        ///< the same with the first of every set of alternatives
-  double ms_oracle = 0.0;      ///< with the hidden effects' kind and shape, fitted again
+  double ms_oracle = 0.0;  ///< with the hidden effects' kind and shape, fitted again; of what no catalogue
+                           ///< holds: with nothing hidden
+  std::vector<std::string> drawn;  ///< surfaces, curves and laws of the model that is offered
+  double ms_offered = 0.0;  ///< with all that is offered: names, the first of every set, what was drawn
 };
 
 void to_json(nlohmann::json& json, const CampaignRecord& record);

@@ -37,6 +37,8 @@ inline std::string sample_value(const KeySchema& key, bool symbol) {
       return "true";
     case KeyType::Vector3:
       return unit_of_key(key.key).suffix.empty() ? "[1, 0, 0]" : "[-350.0, -300.0, -250.0]";
+    case KeyType::Numbers:
+      return "[1.0]";
     case KeyType::Number:
       break;
   }

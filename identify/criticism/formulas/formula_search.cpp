@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "volcal/identify/criticism/data/thresholds.h"
@@ -15,6 +14,7 @@
 #include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/tensor_basis.h"
 
@@ -27,13 +27,6 @@ constexpr int kRefinements = 60;        // evaluations of one law's shape
 constexpr double kFirstStep = 0.03;     // of the driver's range
 constexpr double kLastStep = 3e-4;
 const std::vector<std::string> kNames = {"p", "q"};
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 /// From where a variable counts in a law.
 double zero_of(const Machine& machine, const std::string& variable) {
@@ -75,7 +68,7 @@ class FormulaSearch {
         basis_(*surface.effect->surface()),
         projector_(state.projector_without_surface(surface)),
         log_count_(std::log(static_cast<double>(projector_->observations()))) {
-    const std::vector<std::string> drivers = words_of(*surface.spec.options.text("drivers"));
+    const std::vector<std::string> drivers = variables_in(*surface.spec.options.text("drivers"));
     for (std::size_t i = 0; i < drivers.size(); ++i) {
       const DriverRange range{drivers[i], basis_.sides()[i].from, basis_.sides()[i].to};
       functions_.push_back(elementary_functions(range, zero_of(model_.campaign().machine, drivers[i])));
@@ -214,7 +207,7 @@ class FormulaSearch {
   }
 
   std::string expression(const Law& law) const {
-    std::vector<std::string> parts = words_of(surface_.spec.options.text("factor").value_or(""));
+    std::vector<std::string> parts = variables_in(surface_.spec.options.text("factor").value_or(""));
     std::size_t at = 0;
     for (const ElementaryFunction* function : law.functions) {
       const std::size_t count = function->shapes();

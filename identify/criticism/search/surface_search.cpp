@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/search/surface_search.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,7 @@
 namespace volcal {
 namespace {
 
-constexpr std::size_t kMostFindings = 6;
+constexpr std::size_t kMostFindings = 4;
 constexpr const char* kEmpirical = "empirical";
 
 /// What variables of a scan are in the table of an empirical effect.
@@ -136,19 +137,39 @@ double surface_evidence(const LinearModel& model, const Projector& projector, co
       .log_evidence;
 }
 
+namespace {
+
+/// The variables of every leading finding on the target of every other: a scan may see an effect best through
+/// another target than its own.
+std::vector<UnknownFinding> combinations(const std::vector<UnknownFinding>& findings) {
+  const std::span leading(findings.data(), std::min(findings.size(), kMostFindings));
+  std::vector<UnknownFinding> all(leading.begin(), leading.end());
+  for (const UnknownFinding& of_target : leading) {
+    for (const UnknownFinding& of_variables : leading) {
+      UnknownFinding combined = of_target;
+      combined.variables = of_variables.variables;
+      combined.with_one_of = of_variables.with_one_of;
+      all.push_back(std::move(combined));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 std::optional<SurfaceTest> best_surface(const ModelState& state,
                                         const std::vector<UnknownFinding>& findings) {
   std::optional<SurfaceTest> best;
   std::vector<EffectName> tried;
-  for (std::size_t i = 0; i < std::min(findings.size(), kMostFindings); ++i) {
-    for (EffectSpec& spec : surfaces_for(state.model(), findings[i])) {
+  for (const UnknownFinding& finding : combinations(findings)) {
+    for (EffectSpec& spec : surfaces_for(state.model(), finding)) {
       std::shared_ptr<const Effect> effect = find_effect(kEmpirical)->make(spec, {});
       if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
         continue;
       tried.push_back(effect->name());
       const double evidence = surface_evidence(state.model(), state.projector(), *effect);
       if (evidence < kThresholds.surface_evidence || (best && evidence <= best->log_evidence)) continue;
-      best = SurfaceTest{std::move(spec), std::move(effect), findings[i], evidence};
+      best = SurfaceTest{std::move(spec), std::move(effect), finding, evidence};
     }
   }
   return best;

@@ -10,6 +10,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/report/values/surface_values.h"
 #include "volcal/identify/words/noise_words.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
@@ -105,7 +106,10 @@ std::string errors_table(const FitResult& result) {
                   fixed_number(error.visible_fraction, 2), error.visible ? "1.0" : "0.0",
                   error.visible ? "" : "NOT VISIBLE"});
   }
-  return text.text();
+  std::string surfaces;
+  for (const report::SurfaceValues& surface : report::surface_values(result))
+    surfaces += "  " + report::surface_line(surface, result.coverage_factor) + "\n";
+  return text.text() + surfaces;
 }
 
 std::string setups_table(const FitResult& result) {
@@ -270,6 +274,8 @@ std::string effects_lines(const FitResult& result) {
   }
   if (more > 0)
     text += fmt::format("  and {} more amplitude{} of effects (--verbose)\n", more, more == 1 ? "" : "s");
+  for (const report::SurfaceValues& surface : report::surface_values(result))
+    text += "  " + report::surface_line(surface, result.coverage_factor) + "\n";
   return text;
 }
 

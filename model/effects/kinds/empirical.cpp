@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
@@ -24,13 +23,6 @@ constexpr int kMostCoefficients = 400;
 constexpr std::array<int, kMostDrivers> kPieces = {24, 6, 3};  // by number of drivers
 constexpr double kSameValue = 1.0 / 200.0;                     // of the range
 const std::string kListedDrivers = "name one to three variables, as in drivers = \"y z\"";
-
-std::vector<std::string> words_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
 
 /// The part of the campaign on which an effect acts, from the key `only`.
 struct Owner {
@@ -74,8 +66,8 @@ Owner owner_of(const EffectTable& table) {
 struct Statement {
   explicit Statement(const EffectTable& table)
       : place(table.place), target(written_target(table)), owner(owner_of(table)) {
-    drivers = words_of(table.text("drivers", kListedDrivers));
-    factors = words_of(table.spec.options.text("factor").value_or(""));
+    drivers = variables_in(table.text("drivers", kListedDrivers));
+    factors = variables_in(table.spec.options.text("factor").value_or(""));
     if (drivers.empty() || drivers.size() > kMostDrivers)
       table.fail(std::to_string(drivers.size()) + " drivers", kListedDrivers);
     for (const std::string& name : drivers) check_name(table, name, "drivers");
@@ -349,13 +341,13 @@ class EmpiricalKind final : public EffectKind {
                                       {"drivers", driver(first) + " " + driver(last)},
                                       {"from", from},
                                       {"to", to},
-                                      {"pieces", std::vector<double>{2, 2}}}),
+                                      {"pieces", std::vector<double>{1, 1}}}),
             effect_spec("empirical", {{"target", std::string("tool z")},
                                       {"drivers", driver(first)},
                                       {"factor", "dir_" + driver(first)},
                                       {"from", std::vector<double>{from.front()}},
                                       {"to", std::vector<double>{to.front()}},
-                                      {"pieces", std::vector<double>{3}}})};
+                                      {"pieces", std::vector<double>{2}}})};
   }
 
  private:

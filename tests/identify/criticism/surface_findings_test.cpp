@@ -93,8 +93,8 @@ TEST(SurfaceFindings, AFitWithItExplainsTheReadings) {
   const FitResult before = fit(campaign, ModelSpec{}, options), after = fit(campaign, model, options);
   EXPECT_GT(before.sigma0, 1.3);
   EXPECT_LT(after.sigma0, 1.1);
-  const auto& kept = *after.identified.effects.front().options.numbers("coefficients");
-  const auto& linear = *diagnosis_of_bump().surfaces.front().spec.options.numbers("coefficients");
+  const auto kept = *after.identified.effects.front().options.numbers("coefficients");
+  const auto linear = *diagnosis_of_bump().surfaces.front().spec.options.numbers("coefficients");
   ASSERT_EQ(kept.size(), linear.size());
   const Eigen::Map<const Eigen::VectorXd> a(kept.data(), static_cast<Eigen::Index>(kept.size())),
       b(linear.data(), static_cast<Eigen::Index>(linear.size()));

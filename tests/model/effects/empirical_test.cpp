@@ -147,7 +147,11 @@ TEST_F(Empirical, IdentifiedCoefficientsComeBack) {
 }
 
 TEST_F(Empirical, RefusesWhatItCannotBe) {
-  const auto refused = [](const EffectSpec& spec) { return problem([&] { effect_of(spec); }); };
+  const auto refused = [](const EffectSpec& spec) {
+    const std::string text = problem([&] { effect_of(spec); }), of = "effect \"empirical\": ";
+    EXPECT_TRUE(text.starts_with(of)) << text;
+    return text.substr(std::min(of.size(), text.size()));
+  };
   EXPECT_EQ(refused(stated("EAY", "x q", {0, 0}, {1, 1}, {2, 2})), "drivers: \"q\" is no variable");
   EXPECT_EQ(refused(stated("EAY", "x y z a", {0}, {1}, {2})), "4 drivers");
   EXPECT_EQ(refused(stated("EAY", "x y", {0}, {1, 1}, {2, 2})), "from holds 1 numbers for 2 drivers");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/values/surface_values.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
@@ -42,6 +43,21 @@ Json parameter_row(const FitResult& result, const ParameterBlock& block, int i) 
           {"weak_default_prior", block.weak_default_prior}};
 }
 
+/// Its largest value.
+Json surface_row(const SurfaceValues& surface) {
+  const double per_si = 1.0 / surface.si_per_unit;
+  return {{"name", surface.label},
+          {"label", "largest"},
+          {"kind", kind_name(ParameterKind::Effect)},
+          {"unit", shown_unit(surface.unit)},
+          {"value", rounded(surface.largest * per_si, 9)},
+          {"u", rounded(surface.largest_u * per_si, 3)},
+          {"guess", 0.0},
+          {"change", rounded(surface.largest * per_si, 4)},
+          {"prior_sigma", nullptr},
+          {"weak_default_prior", false}};
+}
+
 }  // namespace
 
 Json nuisance_page(const PageInput& input) {
@@ -49,10 +65,14 @@ Json nuisance_page(const PageInput& input) {
   Json rows = Json::array();
   std::size_t count = 0;
   for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.location) continue;
+    if (block.location || is_surface(block)) continue;
     for (int i = 0; i < block.size(); ++i) {
       if (++count <= kListedParameters) rows.push_back(parameter_row(result, block, i));
     }
+  }
+  for (const SurfaceValues& surface : surface_values(result)) {
+    ++count;
+    rows.push_back(surface_row(surface));
   }
   return {
       {"count", count}, {"held_by_prior", sentences(result.rank.held_by_prior)}, {"rows", std::move(rows)}};

@@ -1,0 +1,99 @@
+// What a diagnosis has drawn, in diagnosis.json and back.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/hand_made_diagnosis.h"
+#include "tests/support/scratch_folder.h"
+#include "volcal/identify/io/results/diagnosis_json.h"
+#include "volcal/identify/report/text/diagnosis_text.h"
+
+namespace volcal {
+namespace {
+
+Diagnosis with_a_drawn_surface() {
+  Diagnosis diagnosis = testing::hand_made_diagnosis();
+  SurfaceFinding surface;
+  surface.name = {"empirical", "EAY", "y z", "surface"};
+  surface.label = "surface EAY by y z";
+  surface.spec.kind = "empirical";
+  surface.spec.options.set("target", std::string("EAY"));
+  surface.spec.options.set("drivers", std::string("y z"));
+  surface.spec.options.set("from", std::vector<double>{0.0, -300.0});
+  surface.spec.options.set("to", std::vector<double>{400.0, 0.0});
+  surface.spec.options.set("pieces", std::vector<double>{1.0, 1.0});
+  surface.spec.options.set("coefficients", std::vector<double>(16, 2.5e-6));
+  surface.drivers = {"y", "z"};
+  surface.unit = "urad";
+  surface.si_per_unit = 1e-6;
+  surface.log_evidence = 88.5;
+  surface.effective_parameters = 12.25;
+  surface.rms = 1.25e-6;
+  surface.largest = -4.5e-6;
+  surface.largest_u = 0.5e-6;
+  surface.at = {310.0, -120.0};
+  surface.free = {"any function of y alone: the error functions hold it"};
+  FormulaFinding law;
+  law.label = "EAY by y * z^2";
+  law.spec.kind = "custom";
+  law.spec.options.set("target", std::string("EAY"));
+  law.spec.options.set("expression", std::string("y * z^2"));
+  law.spec.options.set("amplitude", 1e-12);
+  law.amplitude = 1e-12;
+  law.u = 1e-13;
+  law.unit = "urad";
+  law.si_per_unit = 1e-6;
+  law.log_evidence = 90.0;
+  surface.formulas = {law};
+  diagnosis.surfaces = {surface};
+  diagnosis.unknown.insert(diagnosis.unknown.begin(), {{"y", "z"}, {}, "Z", "EAY", 0.4e-6, -60.0});
+  return diagnosis;
+}
+
+TEST(SurfaceJson, HoldsEveryKeyInEdgeUnits) {
+  const auto json = nlohmann::json::parse(diagnosis_json(with_a_drawn_surface())).at("surfaces").at(0);
+  EXPECT_EQ(json.at("label"), "surface EAY by y z");
+  EXPECT_EQ(json.at("unit"), "urad");
+  EXPECT_DOUBLE_EQ(json.at("largest").get<double>(), -4.5);
+  EXPECT_DOUBLE_EQ(json.at("u").get<double>(), 0.5);
+  EXPECT_EQ(json.at("at"), (nlohmann::json{310.0, -120.0}));
+  EXPECT_THAT(json.at("model_toml").get<std::string>(),
+              ::testing::HasSubstr("coefficients_urad = [2.5, 2.5"));
+  EXPECT_THAT(json.at("formulas").at(0).at("model_toml").get<std::string>(),
+              ::testing::HasSubstr("expression = \"y * z^2\""));
+}
+
+TEST(SurfaceJson, ComesBack) {
+  const testing::ScratchFolder scratch;
+  const Diagnosis diagnosis = with_a_drawn_surface();
+  std::ofstream(scratch.path() / "diagnosis.json") << diagnosis_json(diagnosis);
+  const Diagnosis again = read_diagnosis((scratch.path() / "diagnosis.json").string());
+  ASSERT_EQ(again.surfaces.size(), 1u);
+  const SurfaceFinding &before = diagnosis.surfaces.front(), &after = again.surfaces.front();
+  EXPECT_EQ(after.name, before.name);
+  EXPECT_EQ(after.spec.options.all(), before.spec.options.all());
+  EXPECT_EQ(after.drivers, before.drivers);
+  EXPECT_DOUBLE_EQ(after.largest, before.largest);
+  EXPECT_DOUBLE_EQ(after.largest_u, before.largest_u);
+  EXPECT_EQ(after.at, before.at);
+  EXPECT_EQ(after.free, before.free);
+  EXPECT_DOUBLE_EQ(after.log_evidence, before.log_evidence);
+  EXPECT_DOUBLE_EQ(after.effective_parameters, before.effective_parameters);
+  ASSERT_EQ(after.formulas.size(), 1u);
+  EXPECT_EQ(after.formulas.front().spec.options.all(), before.formulas.front().spec.options.all());
+  EXPECT_EQ(after.accepted_spec().kind, "custom");
+  EXPECT_EQ(diagnosis_text(again), diagnosis_text(diagnosis));
+}
+
+/// What a surface was drawn for is in the model; only the rest is still seen.
+TEST(SurfaceJson, TheRestAloneIsStillSeen) {
+  const Diagnosis diagnosis = with_a_drawn_surface();
+  EXPECT_EQ(remaining_unknown(diagnosis).size(), diagnosis.unknown.size() - 1);
+  EXPECT_EQ(remaining_unknown(diagnosis).front().variables, (std::vector<std::string>{"x", "time"}));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -240,7 +240,8 @@ std::string plan_json(const CampaignPlan& plan) {
   if (plan.given) json["campaigns"].push_back(campaign_json(*plan.given));
   json["options"] = PlanJson::array();
   for (const PlanOption& option : plan.options) {
-    json["options"].push_back({{"words", option.words},
+    json["options"].push_back({{"words", sentence(option.what)},
+                               {"finding", finding_json(option.what)},
                                {"new_station", option.new_station},
                                {"new_tool", option.new_tool},
                                {"readings", option.readings},

@@ -36,7 +36,7 @@ struct ExpectedCampaign {
 
 /// One setup more.
 struct PlanOption {
-  std::string words;  ///< "tool side_x at P1", "a station at [...] mm with tool short"
+  Finding what;  ///< "plan.setup-more"
   bool new_station = false;
   bool new_tool = false;  ///< that the machine file does not have
   std::size_t readings = 0;

@@ -88,10 +88,13 @@ Json findings_json(const std::vector<Finding>& findings) {
   return list;
 }
 
+void add_findings(const std::string& key, const std::vector<Finding>& findings, Json& json) {
+  json[key] = sentences(findings);
+  json[key + "_findings"] = findings_json(findings);
+}
+
 void add_notes(const std::vector<Finding>& notes, Json& json) {
-  if (notes.empty()) return;
-  json["notes"] = sentences(notes);
-  json["notes_findings"] = findings_json(notes);
+  if (!notes.empty()) add_findings("notes", notes, json);
 }
 
 Finding finding_from(const Json& json, const Finding& otherwise) {

@@ -14,6 +14,9 @@ namespace volcal {
 nlohmann::ordered_json finding_json(const Finding& finding);
 nlohmann::ordered_json findings_json(const std::vector<Finding>& findings);
 
+/// json[key] = a sentence each; json[key_findings] = the same as codes.
+void add_findings(const std::string& key, const std::vector<Finding>& findings, nlohmann::ordered_json& json);
+
 /// Adds "notes", a sentence each, and the same as "notes_findings"; nothing without notes.
 void add_notes(const std::vector<Finding>& notes, nlohmann::ordered_json& json);
 

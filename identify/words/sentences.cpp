@@ -25,7 +25,8 @@ Makers makers_by_code() {
 std::vector<SentenceMaker> sentence_makers() {
   std::vector<SentenceMaker> all = {{FindingCode::Verbatim, verbatim_sentence}};
   for (const auto& room :
-       {campaign_sentences(), noise_sentences(), rank_sentences(), fit_sentences(), criticism_sentences()}) {
+       {campaign_sentences(), noise_sentences(), rank_sentences(), fit_sentences(), criticism_sentences(),
+        measurement_sentences(), standards_sentences(), error_sentences()}) {
     all.insert(all.end(), room.begin(), room.end());
   }
   return all;

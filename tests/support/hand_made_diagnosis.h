@@ -64,9 +64,14 @@ inline Diagnosis hand_made_diagnosis() {
   visit.plain_gain = 1.25;
   visit.reached = 7.5;
   visit.plain = 3.125;
-  visit.words = "visit station P1 again after two hours";
+  visit.finding = {FindingCode::MeasurementSeparates,
+                   {{"action", "revisit"},
+                    {"measurement", "visit station P1 again after two hours"},
+                    {"readings", std::int64_t{48}},
+                    {"effects", std::vector<std::string>{"reversal EXX", "reversal EYY"}},
+                    {"gain", FindingNumber{3.0}},
+                    {"plain_gain", FindingNumber{1.25}}}};
   diagnosis.proposals = {visit};
-  diagnosis.next_measurement = {visit.words};
   diagnosis.confounding.names = {reversal.name, other.name, third.name};
   diagnosis.confounding.labels = {reversal.label, other.label, third.label};
   diagnosis.confounding.cosine.setIdentity(3, 3);

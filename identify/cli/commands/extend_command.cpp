@@ -18,8 +18,8 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/identify/words/finding_json.h"
@@ -171,7 +171,7 @@ void report(const Changes& changes, const std::string& output, std::size_t effec
   for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);
   for (const std::string& label : changes.added) fmt::print("added: {}\n", label);
   fmt::print("written: {} ({} effect{})\n", output, effects, effects == 1 ? "" : "s");
-  fmt::print("{}", campaign_notes_text(notes));
+  fmt::print("{}", findings_text(notes));
 }
 
 int run_extend(const ExtendArguments& arguments) {

@@ -16,7 +16,7 @@
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/standards/comparison.h"
@@ -214,7 +214,7 @@ std::string tried_text(const TryArguments& arguments, const Tried& tried) {
   if (!tried.not_visible.empty()) values = "NOT VISIBLE: " + tried.not_visible;
   if (tried.status == FitStatus::NotConverged) values += " (the fit has not converged)";
   return fmt::format("{}: {}\nheld out: {}\nremains: {}\n{}", arguments.effect, values, heldout_line(tried),
-                     remains_line(tried.remains), campaign_notes_text(tried.remains.notes));
+                     remains_line(tried.remains), findings_text(tried.remains.notes));
 }
 
 nlohmann::ordered_json judged_json(const Comparison& comparison) {

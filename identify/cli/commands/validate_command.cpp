@@ -12,7 +12,7 @@
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
@@ -137,7 +137,7 @@ int run_validate(const ValidateArguments& arguments) {
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}", validation_text(validation, fitted));
-    fmt::print("{}", campaign_notes_text(campaign.notes));
+    fmt::print("{}", findings_text(campaign.notes));
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * kPerMicro > arguments.max_rms_um;

@@ -60,6 +60,12 @@ std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagno
   return sets;
 }
 
+std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals) {
+  std::vector<Finding> findings;
+  for (const MeasurementProposal& each : proposals) findings.push_back(each.finding);
+  return findings;
+}
+
 std::optional<Finding> finding_of(const Screening& screening) {
   if (!screening.contradicts) return std::nullopt;
   return Finding{FindingCode::ModelContradicted,

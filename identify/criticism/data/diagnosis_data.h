@@ -160,7 +160,7 @@ struct MeasurementProposal {
   double plain_gain = 0.0;  ///< with as many plain readings
   double reached = 0.0;     ///< s^2 with the measurement; 0 when it makes effects visible
   double plain = 0.0;       ///< s^2 with as many plain readings
-  std::string words;
+  Finding finding = {};     ///< "measurement..."
 };
 
 /// What is asked about the next measurement.
@@ -192,7 +192,6 @@ struct Diagnosis {
   std::vector<NoiseRow> noise;
   std::vector<std::string> noise_instruments;
   Confounding confounding;
-  std::vector<std::string> next_measurement;  ///< in words
   std::vector<MeasurementProposal> proposals;
   std::vector<Finding> not_looked_for;           ///< what no file records, and which kinds need it
   std::vector<Finding> notes;                    ///< of the campaign
@@ -207,6 +206,9 @@ std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
+
+/// What the proposals say.
+std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals);
 
 /// Whether a diagnosis pays (screening.h).
 struct Screening {

@@ -160,7 +160,8 @@ Json proposal_json(const MeasurementProposal& proposal) {
           {"separation_plain", finite_or_null(proposal.plain)},
           {"gain", finite_or_null(proposal.gain)},
           {"plain_gain", finite_or_null(proposal.plain_gain)},
-          {"words", proposal.words}};
+          {"words", sentence(proposal.finding)},
+          {"finding", finding_json(proposal.finding)}};
 }
 
 Json confounding_json(const Confounding& confounding) {

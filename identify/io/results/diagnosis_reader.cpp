@@ -160,7 +160,8 @@ MeasurementProposal proposal_from(const Json& json) {
   proposal.plain = number_or_nan(json, "separation_plain");
   proposal.gain = gain_from(json, "gain");
   proposal.plain_gain = gain_from(json, "plain_gain");
-  proposal.words = text(json, "words");
+  const Finding in_words = verbatim(text(json, "words"));
+  proposal.finding = json.contains("finding") ? finding_from(json.at("finding"), in_words) : in_words;
   return proposal;
 }
 
@@ -237,7 +238,6 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {
     diagnosis.proposals.push_back(proposal_from(each));
-    diagnosis.next_measurement.push_back(diagnosis.proposals.back().words);
   }
   diagnosis.confounding = confounding_from(json.at("confounding"));
   for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "volcal/identify/report/text/comparison_report.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/signed_means_text.h"
 #include "volcal/identify/report/text/standard_figures_text.h"
 #include "volcal/identify/report/text/text_tables.h"
@@ -355,7 +356,7 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
   }
   const Comparisons comparisons = comparisons_of(models);
   if (two) text += against_sentence(*comparisons[0], *comparisons[1], "all readings");
-  for (const std::string& note : sentences(campaign.notes)) text += "! " + note + '\n';
+  text += findings_text(campaign.notes);
   text += '\n' + setups_text(campaign, comparisons, options.all_cells, "Residuals by setup");
   const std::string places = places_text(comparisons, options);
   if (!places.empty()) text += '\n' + places;

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/report/values/surface_values.h"
@@ -323,7 +324,7 @@ std::string leading_messages(const FitResult& result) {
 
 std::string notes(const FitResult& result) {
   std::string text = rank_text(result) + "\n";
-  for (const std::string& message : sentences(result.findings)) text += "! " + message + "\n";
+  text += findings_text(result.findings);
   for (const std::string& held : sentences(result.rank.held_by_prior)) text += "  " + held + "\n";
   return text;
 }

@@ -5,7 +5,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
+#include <regex>
 #include <set>
 #include <stdexcept>
 
@@ -16,9 +21,11 @@ namespace volcal {
 namespace {
 
 using ::testing::EndsWith;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Texts = std::vector<std::string>;
 using Integers = std::vector<std::int64_t>;
+using Numbers = std::vector<FindingNumber>;
 
 struct WordedFinding {
   Finding finding;
@@ -327,6 +334,95 @@ const std::vector<WordedFinding>& examples() {
        "Not looked for, as no reading records dir_x: reversal."},
       {{FindingCode::TimesUnrecorded, {{"kinds", Texts{"station-drift", "thermal-drift"}}}},
        "Not looked for, as no reading records its time (time_s): station-drift, thermal-drift."},
+      {{FindingCode::MeasurementNoneSeparates, {{"effects", Texts{"EXX reversal", "P1 drift"}}}},
+       "Nothing on the menu tells EXX reversal from P1 drift: they predict nearly the same readings."},
+      {{FindingCode::MeasurementSeparates,
+        {{"action", "revisit"},
+         {"measurement", "measure P1 with tool short again after 3 h"},
+         {"readings", std::int64_t{48}},
+         {"effects", Texts{"EXX reversal", "P1 drift"}},
+         {"gain", FindingNumber{150.4}},
+         {"plain_gain", FindingNumber{1.042}}}},
+       "Measure P1 with tool short again after 3 h (48 readings): tells EXX reversal from P1 drift 150 times "
+       "better; as many further plain readings: 1.04 times."},
+      {{FindingCode::MeasurementSeparates,
+        {{"action", "revisit"},
+         {"measurement", "measure P1 again"},
+         {"readings", std::int64_t{48}},
+         {"effects", Texts{"a", "b"}},
+         {"gain", FindingNumber{std::numeric_limits<double>::infinity()}},
+         {"plain_gain", FindingNumber{std::numeric_limits<double>::infinity()}}}},
+       "Measure P1 again (48 readings): tells a from b, which the present readings cannot at all; as many "
+       "further plain readings: some."},
+      {{FindingCode::MeasurementShows,
+        {{"action", "calibrated-length"},
+         {"measurement", "measure a circle"},
+         {"readings", std::int64_t{48}},
+         {"effects", Texts{"length scale"}},
+         {"of", std::int64_t{1}},
+         {"detectable", FindingNumber{0.52e-6, "um/m", 1e-6}}}},
+       "Measure a circle (48 readings): makes visible length scale, from 0.52 um/m on."},
+      {{FindingCode::MeasurementShows,
+        {{"action", "calibrated-length"},
+         {"measurement", "measure a circle"},
+         {"readings", std::int64_t{48}},
+         {"effects", Texts{"a", "b", "c", "d", "e"}},
+         {"of", std::int64_t{7}}}},
+       "Measure a circle (48 readings): makes visible 5 of 7 effects that are not: a, b, c, d, ...."},
+      {{FindingCode::PlanSetupMore, {{"tool", "side_x"}, {"place", "P1"}, {"kind_of_place", "station"}}},
+       "tool side_x at P1"},
+      {{FindingCode::PlanSetupMore,
+        {{"tool", "sideways"},
+         {"place", "P3"},
+         {"kind_of_place", "station"},
+         {"offset_of_new_tool", Numbers{{0.1, "mm", 1e-3}, {0.0, "mm", 1e-3}, {-0.2, "mm", 1e-3}}},
+         {"new_place", Numbers{{0.5, "mm", 1e-3}, {-0.2, "mm", 1e-3}, {0.35, "mm", 1e-3}}}}},
+       "a further station at [500, -200, 350] mm with a tool of offset [100, 0, -200] mm"},
+      {{FindingCode::StandardsRemovedReadingsUsed, {{"readings", std::int64_t{3}}}},
+       "3 readings that the adjustment left out are in these figures"},
+      {{FindingCode::StandardsLinesOwnZero},
+       "every line has its own zero: reversal and bidirectional figures are not seen"},
+      {{FindingCode::StandardsLinesOwnZero, {{"targets_of_own", true}}},
+       "every line has its own zero and targets of its own: no figure compares them"},
+      {{FindingCode::StandardsTargetsSpread, {{"spread", FindingNumber{2.345e-6, "um", 1e-6}}}},
+       "recorded positions within 2.3 um were taken as one target"},
+      {{FindingCode::StandardsApproachUnknown, {{"readings", std::int64_t{4}}}},
+       "4 readings of unknown approach are left out"},
+      {{FindingCode::StandardsTargetsOneSided, {{"targets", std::int64_t{1}}, {"of", std::int64_t{3}}}},
+       "1 of 3 targets were met from one direction only"},
+      {{FindingCode::StandardsRepeatabilityUndefined},
+       "R and A are undefined: they need two approaches of every target from a direction"},
+      {{FindingCode::StandardsBarUncalibrated},
+       "the bar is not calibrated: F and D contain its length error"},
+      {{FindingCode::StandardsRigidMotionRemoved}, "readings and model each without their best rigid motion"},
+      {{FindingCode::NoTestWithoutReadings, {{"setup", "bar"}}}, "bar: there are no readings"},
+      {{FindingCode::NoTestRotaryAxisMoves, {{"setup", "bar"}}}, "bar: a rotary axis moves"},
+      {{FindingCode::NoTestNoAxisMoves,
+        {{"setup", "line_X"}, {"line", std::int64_t{3}}, {"more_lines", std::int64_t{0}}}},
+       "line_X: line 3: no axis moves"},
+      {{FindingCode::NoTestNotTwoAxesMove,
+        {{"setup", "bar"}, {"line", std::int64_t{3}}, {"more_lines", std::int64_t{2}}}},
+       "bar: line 3 and 2 more: not two axes move"},
+      {{FindingCode::NoTestNoCircle, {{"setup", "bar"}}}, "bar: the commanded points do not lie on a circle"},
+      {{FindingCode::NoTestNoStraightLine, {{"setup", "line_X"}}},
+       "line_X: the commanded points do not lie on a straight line"},
+      {{FindingCode::NoTestBeamAcross, {{"setup", "line_X"}, {"path", "X"}}},
+       "line_X: the beam does not lie along the motion of X"},
+      {{FindingCode::NoTestComponentsMissing, {{"setup", "points"}, {"components", std::int64_t{1}}}},
+       "points: one component of the error vectors only"},
+      {{FindingCode::NoTestComponentsMissing, {{"setup", "points"}, {"components", std::int64_t{2}}}},
+       "points: two components of the error vectors only"},
+      {{FindingCode::ErrorsHeldBeyondReadings,
+        {{"axis", "X"},
+         {"measured_from", FindingNumber{0.05, "mm", 1e-3}},
+         {"measured_to", FindingNumber{0.9, "mm", 1e-3}},
+         {"travel_from", FindingNumber{0.0, "mm", 1e-3}},
+         {"travel_to", FindingNumber{1.0, "mm", 1e-3}}}},
+       "X was measured from 50 to 900 of 0 to 1000 mm: beyond it the last measured error is held"},
+      {{FindingCode::EffectInNoTable, {{"effect", "following error X"}}},
+       "following error X was identified and is in no table: it acts along a path or in one setup"},
+      {{FindingCode::RotaryErrorsInNoTable, {{"axis", "C"}}},
+       "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
   };
   return all;
 }
@@ -356,6 +452,66 @@ TEST(Sentences, SayWhatIsFoundOfEveryCode) {
     seen.insert(example.finding.code);
   }
   EXPECT_EQ(seen.size(), finding_codes().size());
+}
+
+/// "{}", "{0}", "{:.2f}" of a format that was never applied; "{ dir_x = -1 }" is TOML.
+TEST(Sentences, HoldNoPlaceholder) {
+  const std::regex placeholder(R"(\{[0-9]*(:[^}]*)?\})");
+  for (const WordedFinding& example : examples())
+    EXPECT_FALSE(std::regex_search(sentence(example.finding), placeholder)) << sentence(example.finding);
+}
+
+/// Sources that may find something: all but those that name and word the codes.
+std::string sources_that_find() {
+  std::string text;
+  const std::filesystem::path root = VOLCAL_SOURCE_DIR;
+  for (const char* part : {"model", "identify", "studies"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / part)) {
+      const std::string path = entry.path().generic_string();
+      const bool words =
+          path.find("identify/words") != std::string::npos || path.ends_with("/finding_codes.h");
+      if (words || !(path.ends_with(".cpp") || path.ends_with(".h"))) continue;
+      std::ifstream file(entry.path());
+      text.append(std::istreambuf_iterator<char>(file), {});
+    }
+  }
+  return text;
+}
+
+/// Names of the enumeration in its order, from its header.
+std::vector<std::string> names_of_codes() {
+  std::ifstream file(std::filesystem::path(VOLCAL_SOURCE_DIR) / "model/description/finding_codes.h");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto from = text.find("enum class FindingCode"), to = text.find("  End,", from);
+  const std::string enumeration = text.substr(from, to - from);
+  const std::regex name(R"(\n  (\w+),)");
+  std::vector<std::string> names;
+  for (std::sregex_iterator found(enumeration.begin(), enumeration.end(), name), end; found != end; ++found)
+    names.push_back((*found)[1]);
+  return names;
+}
+
+/// docs/findings.md has a row of every code, with the sentence of its first example.
+TEST(FindingCodes, StandOnTheirPage) {
+  std::ifstream file(std::filesystem::path(VOLCAL_SOURCE_DIR) / "docs/findings.md");
+  const std::string page(std::istreambuf_iterator<char>(file), {});
+  for (const FindingCodeRow& row : finding_codes()) {
+    const auto example = std::ranges::find_if(
+        examples(), [&](const WordedFinding& each) { return each.finding.code == row.code; });
+    const std::string as = row.code == FindingCode::Verbatim ? "" : example->sentence + " |\n";
+    EXPECT_THAT(page, HasSubstr("\n| `" + std::string(row.name) + "` | " +
+                                std::string(to_string(row.severity)) + " | " + as));
+  }
+}
+
+TEST(FindingCodes, AreAllFoundSomewhere) {
+  const std::string sources = sources_that_find();
+  const std::vector<std::string> names = names_of_codes();
+  ASSERT_EQ(names.size(), finding_codes().size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::regex use("FindingCode::" + names[i] + R"(\b)");
+    EXPECT_TRUE(std::regex_search(sources, use)) << names[i] << ", " << finding_codes()[i].name;
+  }
 }
 
 TEST(Sentences, AreRefusedWithoutTheirData) {

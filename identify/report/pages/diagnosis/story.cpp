@@ -182,7 +182,7 @@ Json story_page(const DiagnosisInput& input) {
           {"surfaces", std::move(surfaces)},
           {"one_of", std::move(one_of)},
           {"after", after_json(diagnosis)},
-          {"next_measurement", diagnosis.next_measurement},
+          {"next_measurement", sentences(findings_of(diagnosis.proposals))},
           {"ladder", std::move(ladder)},
           {"below", below_json(diagnosis)},
           {"families", diagnosis.families},

@@ -96,7 +96,7 @@ Json plan_layout_page(const PlanPageInput& input) {
   if (plan.given) campaigns.push_back(campaign_of_page(*plan.given, plan));
   Json options = Json::array();
   for (const PlanOption& option : plan.options) {
-    options.push_back({{"words", option.words},
+    options.push_back({{"words", sentence(option.what)},
                        {"readings", option.readings},
                        {"u_um", rounded(option.volumetric_rms * kPerMicro, 4)},
                        {"made_visible", option.made_visible},

@@ -66,7 +66,7 @@ TEST(NextMeasurement, AnInvisibleLengthScaleAsksForACalibratedLength) {
   EXPECT_TRUE(among(kLengthScale, proposal.makes_visible));
   EXPECT_GT(proposal.gain, 100.0);
   EXPECT_LT(proposal.plain_gain, 1.2);
-  EXPECT_THAT(diagnosis.next_measurement.front(), HasSubstr("ball-bar of calibrated length"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("ball-bar of calibrated length"));
 }
 
 /// A drift of 17 um/h: ONE_OF before, NAMED once the station was visited again.
@@ -107,8 +107,8 @@ TEST(NextMeasurement, APeriodThatDividesTheGridStepAsksForJitteredPositions) {
   const MeasurementProposal& proposal = diagnosis.proposals.front();
   EXPECT_EQ(proposal.action, "jittered-positions");
   EXPECT_TRUE(among(kLead, proposal.makes_visible));
-  EXPECT_THAT(proposal.words, HasSubstr("period 10 mm"));
-  EXPECT_THAT(proposal.words, HasSubstr("X off its step of 160 mm"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("period 10 mm"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("X off its step of 160 mm"));
   EXPECT_LT(proposal.plain_gain, 1.2);
 }
 

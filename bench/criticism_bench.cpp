@@ -32,7 +32,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr Eigen::Index kBlockColumns = 512;
 
-struct Arguments {
+struct CriticismArguments {
   int threads = 1;
   int repeats = 5;
   Eigen::Vector3i grid = sim::Tracking{}.grid;
@@ -48,8 +48,8 @@ Eigen::Vector3i grid_from(const std::string& text) {
   return grid;
 }
 
-Arguments parse(int count, char** values) {
-  Arguments arguments;
+CriticismArguments parse_criticism(int count, char** values) {
+  CriticismArguments arguments;
   read_options(count, values, 1,
                {{"--threads", into(arguments.threads)},
                 {"--repeats", into(arguments.repeats)},
@@ -154,7 +154,7 @@ void write_step(const Step& step, const std::vector<double>& lm, const std::stri
   write_matrix(folder + "/columns.f64", step.columns);
 }
 
-Json run(const Arguments& arguments) {
+Json run_criticism(const CriticismArguments& arguments) {
   const Campaign campaign = reference_campaign(arguments.grid);
   const Step step(campaign);
   std::vector<double> setup_s, step_s, families_s, generic_s;
@@ -193,6 +193,6 @@ Json run(const Arguments& arguments) {
 
 int main(int count, char** values) {
   return volcal::bench::run_program("criticism_bench", [&] {
-    std::cout << volcal::bench::run(volcal::bench::parse(count, values)).dump(1) << '\n';
+    std::cout << volcal::bench::run_criticism(volcal::bench::parse_criticism(count, values)).dump(1) << '\n';
   });
 }

@@ -55,17 +55,17 @@ constexpr std::size_t kPoses = 16384;
 constexpr std::size_t kReadings = 1'000'000;
 constexpr std::uint64_t kSeedOfEvaluation = 5;
 
-struct Arguments {
+struct EvaluationArguments {
   std::string part;
   std::string folder = ".";
   int threads = 1;
   int repeats = 7;
 };
 
-Arguments parse(int count, char** values) {
+EvaluationArguments parse_evaluation(int count, char** values) {
   if (count < 2)
     throw std::invalid_argument("evaluation_bench PART [--folder DIR] [--threads N] [--repeats N]");
-  Arguments arguments;
+  EvaluationArguments arguments;
   arguments.part = values[1];
   read_options(count, values, 2,
                {{"--folder", into(arguments.folder)},
@@ -113,7 +113,7 @@ void write_numbers(const std::string& path, const double* numbers, std::size_t c
   file.write(reinterpret_cast<const char*>(numbers), static_cast<std::streamsize>(count * sizeof(double)));
 }
 
-Json covariance_part(const Arguments& arguments) {
+Json covariance_part(const EvaluationArguments& arguments) {
   const CovariancePeers peers(reference_problem(kGrid), arguments.threads);
   Eigen::MatrixXd own, of_ceres;
   Rounds rounds;
@@ -140,7 +140,7 @@ Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> error_row
   return rows;
 }
 
-Json volume_part(const Arguments& arguments) {
+Json volume_part(const EvaluationArguments& arguments) {
   const Identified machine(arguments.threads);
   const AxisGrid grid = axis_grid(machine.result.machine, kCovarianceNodes);
   std::vector<Covariance3> covariances;
@@ -189,7 +189,7 @@ void write_streaming(double* begin, const double* end) {
 #endif
 }
 
-Json field_part(const Arguments& arguments) {
+Json field_part(const EvaluationArguments& arguments) {
   const Identified machine(arguments.threads);
   const AxisGrid grid = axis_grid(machine.result.machine, kFieldNodes);
   const auto [a, b, c] = grid.counts();
@@ -211,7 +211,7 @@ double largest_difference(const std::vector<Eigen::Vector3d>& a, const std::vect
   return largest;
 }
 
-Json points_part(const Arguments& arguments) {
+Json points_part(const EvaluationArguments& arguments) {
   const Identified machine(arguments.threads);
   sim::RandomStream random(kSeedOfEvaluation, "points");
   std::vector<AxisPosition> positions(kPoints);
@@ -239,7 +239,7 @@ Json points_part(const Arguments& arguments) {
   return json;
 }
 
-Json transforms_of(const std::string& structure, const Arguments& arguments) {
+Json transforms_of(const std::string& structure, const EvaluationArguments& arguments) {
   const Poses poses = random_poses(structure, kPoses);
   std::vector<Eigen::Vector3d> exact, small, twists, lanes;
   Rounds rounds;
@@ -255,9 +255,13 @@ Json transforms_of(const std::string& structure, const Arguments& arguments) {
   return json;
 }
 
-Json transforms_3_part(const Arguments& arguments) { return transforms_of("w X' b Y Z t", arguments); }
+Json transforms_3_part(const EvaluationArguments& arguments) {
+  return transforms_of("w X' b Y Z t", arguments);
+}
 
-Json transforms_5_part(const Arguments& arguments) { return transforms_of("w C' A' X' b Y Z t", arguments); }
+Json transforms_5_part(const EvaluationArguments& arguments) {
+  return transforms_of("w C' A' X' b Y Z t", arguments);
+}
 
 void write_readings(const std::string& path) {
   sim::RandomStream random(kSeedOfEvaluation, "readings");
@@ -286,7 +290,7 @@ double sum_of_numbers(const std::string& text) {
   return sum;
 }
 
-Json csv_part(const Arguments& arguments) {
+Json csv_part(const EvaluationArguments& arguments) {
   const std::string path = arguments.folder + "/readings.csv";
   write_readings(path);
   const ReferenceProblem problem = reference_problem({2, 2, 2});
@@ -314,7 +318,7 @@ void write_bytes(const std::string& path, std::size_t bytes) {
     file.write(text.data(), static_cast<std::streamsize>(std::min(text.size(), bytes - done)));
 }
 
-Json grid_file_part(const Arguments& arguments) {
+Json grid_file_part(const EvaluationArguments& arguments) {
   const Identified machine(arguments.threads);
   const std::string path = arguments.folder + "/volumetric_grid.csv";
   const TableFile grid = spatial_grid_file("volumetric_grid.csv", machine.result, kFileNodes,
@@ -336,15 +340,16 @@ Json grid_file_part(const Arguments& arguments) {
   return json;
 }
 
-Json run(const Arguments& arguments) {
-  const std::map<std::string, Json (*)(const Arguments&)> parts = {{"covariance", covariance_part},
-                                                                   {"volume", volume_part},
-                                                                   {"field", field_part},
-                                                                   {"points", points_part},
-                                                                   {"transforms_3", transforms_3_part},
-                                                                   {"transforms_5", transforms_5_part},
-                                                                   {"csv", csv_part},
-                                                                   {"grid_file", grid_file_part}};
+Json run_evaluation(const EvaluationArguments& arguments) {
+  const std::map<std::string, Json (*)(const EvaluationArguments&)> parts = {
+      {"covariance", covariance_part},
+      {"volume", volume_part},
+      {"field", field_part},
+      {"points", points_part},
+      {"transforms_3", transforms_3_part},
+      {"transforms_5", transforms_5_part},
+      {"csv", csv_part},
+      {"grid_file", grid_file_part}};
   const auto found = parts.find(arguments.part);
   if (found == parts.end()) throw std::invalid_argument("there is no part " + arguments.part);
   use_single_threaded_blas();
@@ -360,6 +365,6 @@ Json run(const Arguments& arguments) {
 
 int main(int count, char** values) {
   return volcal::bench::run_program("evaluation_bench", [&] {
-    std::cout << volcal::bench::run(volcal::bench::parse(count, values)) << '\n';
+    std::cout << volcal::bench::run_evaluation(volcal::bench::parse_evaluation(count, values)) << '\n';
   });
 }

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kSameCost = 1e-11;  // relative
 constexpr int kMaxIterations = 50;
 
-struct Arguments {
+struct FitArguments {
   std::array<int, 3> grid{};
   int threads = 1;
   int repeats = 5;
@@ -36,9 +36,9 @@ struct Arguments {
   std::string folder;
 };
 
-Arguments parse(int count, char** values) {
+FitArguments parse_fit(int count, char** values) {
   if (count < 4) throw std::invalid_argument("fit_bench NX NY NZ [--threads N] [--repeats N] ...");
-  Arguments arguments;
+  FitArguments arguments;
   for (int i = 0; i < 3; ++i) arguments.grid[static_cast<std::size_t>(i)] = std::stoi(values[i + 1]);
   read_options(count, values, 4,
                {{"--threads", into(arguments.threads)},
@@ -79,7 +79,7 @@ struct Problem {
   std::vector<double> weight;
 };
 
-MinimiseOptions options_for(const Arguments& arguments) {
+MinimiseOptions options_for(const FitArguments& arguments) {
   MinimiseOptions options;
   options.solver = arguments.solver;
   options.threads = arguments.threads;
@@ -151,7 +151,7 @@ void write_problem(const ReferenceProblem& source, const Problem& problem, const
   std::ofstream(folder + "/problem.json") << json.dump(1) << '\n';
 }
 
-Json run(const Arguments& arguments) {
+Json run_fit(const FitArguments& arguments) {
   const ReferenceProblem source = reference_problem(arguments.grid);
   std::vector<double> setup_s, fit_s, converged_s;
   for (int i = 1; i < arguments.repeats; ++i)
@@ -195,6 +195,6 @@ Json run(const Arguments& arguments) {
 
 int main(int count, char** values) {
   return volcal::bench::run_program("fit_bench", [&] {
-    std::cout << volcal::bench::run(volcal::bench::parse(count, values)).dump(1) << '\n';
+    std::cout << volcal::bench::run_fit(volcal::bench::parse_fit(count, values)).dump(1) << '\n';
   });
 }

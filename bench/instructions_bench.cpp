@@ -104,7 +104,7 @@ void count_projection() {
   run_counted([&] { projector.project(columns); });
 }
 
-void run(int count, char** values) {
+void run_instructions(int count, char** values) {
   const std::map<std::string, void (*)()> workloads = {{"fit", count_fit},
                                                        {"draws", count_draws},
                                                        {"grid", count_grid},
@@ -121,5 +121,6 @@ void run(int count, char** values) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  return volcal::bench::run_program("instructions_bench", [&] { volcal::bench::run(count, values); });
+  return volcal::bench::run_program("instructions_bench",
+                                    [&] { volcal::bench::run_instructions(count, values); });
 }

@@ -117,7 +117,7 @@ class Bench {
   Eigen::MatrixXd left_, right_;
 };
 
-void run(int count, char** values) {
+void run_montecarlo(int count, char** values) {
   int threads = 0, rounds = 5;
   read_options(count, values, 1, {{"--threads", into(threads)}, {"--rounds", into(rounds)}});
   Bench bench(threads);
@@ -130,5 +130,6 @@ void run(int count, char** values) {
 }  // namespace volcal::bench
 
 int main(int count, char** values) {
-  return volcal::bench::run_program("montecarlo_bench", [&] { volcal::bench::run(count, values); });
+  return volcal::bench::run_program("montecarlo_bench",
+                                    [&] { volcal::bench::run_montecarlo(count, values); });
 }

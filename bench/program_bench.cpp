@@ -20,13 +20,13 @@
 namespace volcal::bench {
 namespace {
 
-struct Arguments {
+struct ProgramArguments {
   int lines = 1000000;
   double step = 0.3;  // mm
 };
 
-Arguments parse_arguments(int count, char** values) {
-  Arguments arguments;
+ProgramArguments parse_arguments(int count, char** values) {
+  ProgramArguments arguments;
   read_options(count, values, 1, {{"--lines", into(arguments.lines)}, {"--step", into(arguments.step)}});
   return arguments;
 }
@@ -76,7 +76,7 @@ struct Timing {
 
 /// Time of `work` on every line, without that of making the lines.
 template <class Work>
-Timing timed(const Arguments& arguments, Work work) {
+Timing timed(const ProgramArguments& arguments, Work work) {
   constexpr int kBatch = 10000;
   Timing timing;
   FinishingPass pass(arguments.step);
@@ -92,7 +92,7 @@ Timing timed(const Arguments& arguments, Work work) {
   return timing;
 }
 
-nlohmann::ordered_json run_program_bench(const Arguments& arguments) {
+nlohmann::ordered_json run_program_bench(const ProgramArguments& arguments) {
   sim::RandomTruthOptions options;
   options.reversal_max = 4e-6;
   const sim::TruthMachine truth = sim::random_truth(sim::reference_machines()[1], 1, options);

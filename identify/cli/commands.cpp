@@ -22,12 +22,12 @@ namespace volcal::cli {
   COMMAND(compensate_command)    \
   COMMAND(study_command)
 
-#define VOLCAL_DECLARE(name) const Command& name();
-#define VOLCAL_ADDRESS(name) &(name)(),
-VOLCAL_COMMANDS(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_COMMAND(name) const Command& name();
+#define VOLCAL_ADDRESS_OF_COMMAND(name) &(name)(),
+VOLCAL_COMMANDS(VOLCAL_DECLARE_COMMAND)
 
 std::span<const Command* const> commands() {
-  static const auto kCommands = std::to_array<const Command*>({VOLCAL_COMMANDS(VOLCAL_ADDRESS)});
+  static const auto kCommands = std::to_array<const Command*>({VOLCAL_COMMANDS(VOLCAL_ADDRESS_OF_COMMAND)});
   return kCommands;
 }
 

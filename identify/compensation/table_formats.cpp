@@ -23,15 +23,15 @@ namespace volcal {
   FORMAT(heidenhain_format)          \
   FORMAT(fanuc_format)
 
-#define VOLCAL_DECLARE(name) const TableFormat& name();
-#define VOLCAL_ADDRESS(name) &(name)(),
-VOLCAL_TABLE_FORMATS(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_FORMAT(name) const TableFormat& name();
+#define VOLCAL_ADDRESS_OF_FORMAT(name) &(name)(),
+VOLCAL_TABLE_FORMATS(VOLCAL_DECLARE_FORMAT)
 
 namespace {
 
 Registration<TableFormat>& registered_table_formats() {
   static Registration<TableFormat> formats(
-      {VOLCAL_TABLE_FORMATS(VOLCAL_ADDRESS)},
+      {VOLCAL_TABLE_FORMATS(VOLCAL_ADDRESS_OF_FORMAT)},
       [](const TableFormat& format) -> std::string_view { return format.name; });
   return formats;
 }

@@ -39,15 +39,15 @@ namespace volcal {
   EFFECT(custom_effect)               \
   EFFECT(empirical_effect)
 
-#define VOLCAL_DECLARE(name) const EffectKind& name();
-#define VOLCAL_ADDRESS(name) &(name)(),
-VOLCAL_EFFECTS(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_EFFECT(name) const EffectKind& name();
+#define VOLCAL_ADDRESS_OF_EFFECT(name) &(name)(),
+VOLCAL_EFFECTS(VOLCAL_DECLARE_EFFECT)
 
 namespace {
 
 Registration<EffectKind>& registered_effects() {
   static Registration<EffectKind> effects(
-      {VOLCAL_EFFECTS(VOLCAL_ADDRESS)},
+      {VOLCAL_EFFECTS(VOLCAL_ADDRESS_OF_EFFECT)},
       [](const EffectKind& kind) -> std::string_view { return kind.schema().kind; });
   return effects;
 }

@@ -13,12 +13,12 @@ namespace volcal {
   BASIS(kFourierBasis)      \
   BASIS(kZeroBasis)
 
-#define VOLCAL_DECLARE(name) extern const BasisKind name;
-#define VOLCAL_ADDRESS(name) &(name),
-VOLCAL_BASES(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_BASIS(name) extern const BasisKind name;
+#define VOLCAL_ADDRESS_OF_BASIS(name) &(name),
+VOLCAL_BASES(VOLCAL_DECLARE_BASIS)
 
 std::span<const BasisKind* const> basis_kinds() {
-  static const auto kinds = std::to_array<const BasisKind*>({VOLCAL_BASES(VOLCAL_ADDRESS)});
+  static const auto kinds = std::to_array<const BasisKind*>({VOLCAL_BASES(VOLCAL_ADDRESS_OF_BASIS)});
   return kinds;
 }
 

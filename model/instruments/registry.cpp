@@ -18,15 +18,15 @@ namespace volcal {
   INSTRUMENT(angle)                    \
   INSTRUMENT(volumetric_points)
 
-#define VOLCAL_DECLARE(name) const Instrument& name();
-#define VOLCAL_ADDRESS(name) &(name)(),
-VOLCAL_INSTRUMENTS(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_INSTRUMENT(name) const Instrument& name();
+#define VOLCAL_ADDRESS_OF_INSTRUMENT(name) &(name)(),
+VOLCAL_INSTRUMENTS(VOLCAL_DECLARE_INSTRUMENT)
 
 namespace {
 
 Registration<Instrument>& registered_instruments() {
   static Registration<Instrument> all(
-      {VOLCAL_INSTRUMENTS(VOLCAL_ADDRESS)},
+      {VOLCAL_INSTRUMENTS(VOLCAL_ADDRESS_OF_INSTRUMENT)},
       [](const Instrument& instrument) -> std::string_view { return instrument.schema().name; });
   return all;
 }

@@ -22,6 +22,7 @@ const ParameterBlock* ParameterLayout::find_block(const std::string& name) const
 std::optional<int> ParameterLayout::find_parameter(const std::string& name) const {
   for (const ParameterBlock& block : blocks) {
     if (!name.starts_with(block.name)) continue;
+    if (name == block.name && block.size() == 1) return block.offset;
     const std::string label = name.size() > block.name.size() ? name.substr(block.name.size() + 1) : "";
     if (!label.empty() && name[block.name.size()] != ' ') continue;
     const auto found = std::ranges::find(block.labels, label);

@@ -111,6 +111,13 @@ inline std::string sample_csv(const std::vector<ColumnSchema>& columns) {
   return text;
 }
 
+/// "[1.0, 1.0, 1.0]"
+inline std::string ones(std::size_t count) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < count; ++i) text += i > 0 ? ", 1.0" : "1.0";
+  return text + "]";
+}
+
 /// An effect with every key that applies to it.
 inline std::string sample_effect(const EffectKind& kind, const EffectSpec& spec) {
   const std::unique_ptr<Effect> effect = kind.make(spec, "model.toml");
@@ -121,7 +128,14 @@ inline std::string sample_effect(const EffectKind& kind, const EffectSpec& spec)
     if (key.type == KeyType::Text && words) text += key.key + " = \"" + *words + "\"\n";
     if (key.type == KeyType::Number && key.required)
       text += key.key + " = " + sample_value(key, false) + "\n";
-    if (std::ranges::any_of(effect->amplitudes(), is_key) || std::ranges::any_of(effect->shapes(), is_key)) {
+    if (const auto numbers = spec.options.numbers(key.key)) {
+      std::string list;
+      for (const double number : *numbers) list += (list.empty() ? "" : ", ") + std::to_string(number);
+      text += key.key + " = [" + list + "]\n";
+    } else if (key.type == KeyType::Numbers && std::ranges::any_of(effect->amplitudes(), is_key)) {
+      text += key.key + " = " + ones(effect->amplitudes().size()) + "\n";
+    } else if (std::ranges::any_of(effect->amplitudes(), is_key) ||
+               std::ranges::any_of(effect->shapes(), is_key)) {
       text += key.key + " = " + sample_value(key, false) + "\n";
     }
   }

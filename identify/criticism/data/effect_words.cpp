@@ -75,6 +75,8 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"squareness", "an angle between two axes", kLeftOut},
     {"finer", "an error function that needs more knots", kResolution},
     {"EXPRESSION", "the expression", "custom"},
+    {"curve", "a smooth function of one variable that the readings alone decide", "empirical"},
+    {"surface", "a smooth function of two or three variables that the readings alone decide", "empirical"},
 });
 
 /// "laser-tracer|laser-tracker|..."

@@ -70,6 +70,7 @@ void Search::run() {
   while (static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces && draw_surface()) explain();
   replace_surfaces();
   if (!options_.climb) keep_one_step();
+  recall_rejected();
   if (something_exceeds()) return;
   report("what noise may hold", 0.92);
   state_ = state_->with_tests(JointNoiseTest(*state_).scans());
@@ -101,9 +102,7 @@ bool Search::draw_surface() {
   const std::vector<FamilyTest> kept = added_tests(state_->added());
   base_ = base_->with_surface(*surface, state_->added());
   restart_with(kept);
-  rejected_.clear();
-  dropped_.clear();
-  tried_together_.clear();
+  begin_anew();
   return true;
 }
 
@@ -134,9 +133,22 @@ void Search::rebuild(const std::vector<SurfaceTest>& surfaces, const std::vector
   base_ = given_;
   for (const SurfaceTest& surface : surfaces) base_ = base_->with_surface(surface, beside);
   restart_with(effects);
+  begin_anew();
+}
+
+/// What was no name beside another model may be one now.
+void Search::begin_anew() {
+  rejected_before_.merge(rejected_);
   rejected_.clear();
   dropped_.clear();
   tried_together_.clear();
+}
+
+/// What was rejected on the way and did not return.
+void Search::recall_rejected() {
+  for (const auto& [family, reason] : rejected_before_) {
+    if (!state_->has(family)) rejected_.try_emplace(family, reason);
+  }
 }
 
 void Search::restart_with(const std::vector<FamilyTest>& effects) {
@@ -360,6 +372,7 @@ void Search::keep(const std::vector<FamilyTest>& effects) {
 /// The first effect, and the changes of the model before it; or the first surface where no effect came
 /// before.
 void Search::keep_one_step() {
+  if (base_->surfaces().size() == 1 && state_->added().empty()) return;
   if (!base_->surfaces().empty()) {
     const AddedSurface first = base_->surfaces().front();
     more_is_known_ = state_->added().size() > names_before_surfaces_;

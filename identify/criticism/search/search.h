@@ -62,6 +62,8 @@ class Search {
   void explain();
   bool draw_surface();
   void replace_surfaces();
+  void begin_anew();
+  void recall_rejected();
   void rebuild(const std::vector<SurfaceTest>& surfaces, const std::vector<FamilyTest>& effects);
   void add(const FamilyTest& effect) { state_ = state_->with(effect); }
   void test() { state_ = state_->tested(); }
@@ -90,6 +92,7 @@ class Search {
   std::optional<ModelState> base_;  ///< the given model with the surfaces that were drawn
   std::optional<ModelState> state_;
   Reasons rejected_;
+  Reasons rejected_before_;                         ///< before the last surface was drawn
   std::set<std::size_t> dropped_;                   ///< not significant beside the others
   std::set<std::set<std::size_t>> tried_together_;  ///< added when several more were tried in vain
   std::size_t names_before_surfaces_ = 0;

@@ -22,7 +22,7 @@ struct SmoothingTerm {
   std::shared_ptr<const PriorShape> prior = {};
   std::shared_ptr<const SurfacePriors> surface = {};  ///< of a surface, else null
 
-  bool is_function() const { return family != nullptr; }
+  bool is_function() const { return surface == nullptr; }
   const std::vector<std::shared_ptr<const PriorShape>>& shapes() const {
     return is_function() ? family->shapes() : surface->shapes();
   }

@@ -16,7 +16,7 @@ constexpr double kNuggetOfCoefficients =
     1e-3;                            // of a coefficient's variance, so that the product can be inverted
 constexpr double kHeldWeight = 1e6;  // of what is imitated, in units of the prior
 constexpr double kImitatedShare = 0.99;
-constexpr double kSeen = 1e-3;  // of the largest eigenvalue
+constexpr double kSeen = 0.01;  // of the prior's information: less, and the readings say nothing
 
 double matern52(double distance, double length) {
   const double s = std::sqrt(5.0) * distance / length;
@@ -141,8 +141,7 @@ Eigen::MatrixXd imitated_coefficients(const Eigen::MatrixXd& own, const Eigen::M
     throw std::runtime_error("imitated_coefficients: a precision is not positive definite");
   const Eigen::MatrixXd root = prior_factor->triangularView<Eigen::Lower>();
   const SymmetricEigen seen = eigen_decomposition(root.transpose() * own * root);
-  const double least = kSeen * seen.values[seen.values.size() - 1];
-  const Eigen::Index count = (seen.values.array() > least).count();
+  const Eigen::Index count = (seen.values.array() > kSeen).count();
   if (count == 0) return Eigen::MatrixXd(own.rows(), 0);
   const Eigen::MatrixXd unit =
       root * seen.vectors.rightCols(count) * seen.values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();

@@ -98,16 +98,18 @@ TEST(SurfaceFindings, AFitWithItExplainsTheReadings) {
   ASSERT_EQ(kept.size(), linear.size());
   const Eigen::Map<const Eigen::VectorXd> a(kept.data(), static_cast<Eigen::Index>(kept.size())),
       b(linear.data(), static_cast<Eigen::Index>(linear.size()));
-  EXPECT_GT(a.dot(b) / (a.norm() * b.norm()), 0.9);
+  EXPECT_GT(a.dot(b) / (a.norm() * b.norm()), 0.8);  // what is free is not quite the same
 }
 
 TEST(SurfaceFindings, ALawIsFoundInWordsThatCanBeRead) {
-  const FittedStudy study(hiding({backlash_that_grows_with_temperature()}, {5, 4, 4}));
+  sim::Study hidden = hiding({backlash_that_grows_with_temperature()}, {5, 4, 4});
+  hidden.environment.channels[0].amplitude = 1.0;  // so that time is no temperature
+  const FittedStudy study(hidden);
   const Diagnosis diagnosis = diagnosed(study);
   ASSERT_EQ(diagnosis.surfaces.size(), 1u);
   const SurfaceFinding& surface = diagnosis.surfaces.front();
   EXPECT_THAT(surface.label, ::testing::HasSubstr("dir_x"));
-  ASSERT_FALSE(surface.formulas.empty());
+  ASSERT_FALSE(surface.formulas.empty()) << surface.label;
   std::vector<std::string> labels;
   for (const FormulaFinding& formula : surface.formulas) labels.push_back(formula.label);
   EXPECT_THAT(labels, ::testing::Contains(::testing::HasSubstr("dir_x * (T_column - 20)")));

@@ -42,14 +42,14 @@ std::size_t observations_of(const MeasurementModel& model) {
 }
 
 /// J^T Sigma^-1 (f - y), and |J|^T Sigma^-1 |f - y|, by which it rounds.
-struct Sums {
+struct RowSums {
   Eigen::VectorXd gradient;
   Eigen::VectorXd sizes;
 };
 
-Sums sums_of_rows(const MeasurementModel& model, const std::vector<double>& sigma,
-                  const Eigen::VectorXd& parameters, const Eigen::VectorXd& readings) {
-  Sums sums{Eigen::VectorXd::Zero(model.layout().size), Eigen::VectorXd::Zero(model.layout().size)};
+RowSums sums_of_rows(const MeasurementModel& model, const std::vector<double>& sigma,
+                     const Eigen::VectorXd& parameters, const Eigen::VectorXd& readings) {
+  RowSums sums{Eigen::VectorXd::Zero(model.layout().size), Eigen::VectorXd::Zero(model.layout().size)};
   RowJacobian row;
   std::size_t observation = 0;
   for (std::size_t setup = 0; setup < model.campaign().setups.size(); ++setup) {
@@ -110,7 +110,7 @@ void expect_sums_of_rows(const MeasurementModel& model, std::mt19937_64& random,
   const Eigen::MatrixXd found = gradients.at(draws.parameters, draws.readings);
   ASSERT_EQ(found.cols(), count);
   for (int k = 0; k < count; ++k) {
-    const Sums expected =
+    const RowSums expected =
         sums_of_rows(model, gradients.sigma, draws.parameters.col(k), draws.readings.col(k));
     EXPECT_GT(expected.gradient.norm(), 0.0);
     for (Eigen::Index i = 0; i < found.rows(); ++i)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/effect_campaign.h"
+#include "tests/support/schema_samples.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/model/description/errors.h"
@@ -62,6 +63,7 @@ struct Sample {
   const EffectKind* kind;
   std::string text;
   std::string amplitude;  ///< key of the first one
+  std::string one;        ///< value of that key at which every amplitude is 1
 };
 
 std::vector<Sample> samples() {
@@ -69,14 +71,16 @@ std::vector<Sample> samples() {
   for (const EffectKind* kind : effect_kinds()) {
     const EffectSpec spec = kind->examples(testing_support::effect_campaign()).front();
     const std::unique_ptr<Effect> effect = kind->make(spec, {});
-    all.push_back({kind, effect_toml(spec), effect->amplitudes().front().key});
+    const bool list = effect->amplitudes().front().element >= 0;
+    all.push_back({kind, effect_toml(spec), effect->amplitudes().front().key,
+                   list ? testing::ones(effect->amplitudes().size()) : "1"});
   }
   return all;
 }
 
 TEST(EffectBadInput, TheSamplesThemselvesAreAccepted) {
   for (const Sample& sample : samples()) {
-    const auto error = refusal_of_effect(with_value(sample.text, sample.amplitude, "1"));
+    const auto error = refusal_of_effect(with_value(sample.text, sample.amplitude, sample.one));
     EXPECT_FALSE(error.has_value()) << error->what();
   }
 }

@@ -13,12 +13,12 @@ namespace volcal::cli {
   STUDY(effect_tables_command)      \
   STUDY(planning_study_command)
 
-#define VOLCAL_DECLARE(name) const Command& name();
-#define VOLCAL_ADDRESS(name) &(name)(),
-VOLCAL_STUDIES(VOLCAL_DECLARE)
+#define VOLCAL_DECLARE_STUDY(name) const Command& name();
+#define VOLCAL_ADDRESS_OF_STUDY(name) &(name)(),
+VOLCAL_STUDIES(VOLCAL_DECLARE_STUDY)
 
 std::span<const Command* const> studies() {
-  static const auto kStudies = std::to_array<const Command*>({VOLCAL_STUDIES(VOLCAL_ADDRESS)});
+  static const auto kStudies = std::to_array<const Command*>({VOLCAL_STUDIES(VOLCAL_ADDRESS_OF_STUDY)});
   return kStudies;
 }
 

@@ -44,8 +44,7 @@ Remarks remarks(const Search& search) {
   Remarks remarks{.more_is_known = search.more_is_known(),
                   .rejected = {},
                   .removed_by_fit = search.given().model().removed().size()};
-  for (const auto& [family, reason] : search.rejected())
-    remarks.rejected.emplace_back(search.given().setting().families[family].label(), reason);
+  for (const auto& each : search.rejected()) remarks.rejected.push_back(each.second);
   return remarks;
 }
 

@@ -97,10 +97,10 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads)
 }
 
 void judge(const Screening& screening, FitResult& result) {
-  if (!screening.contradicts) return;
+  const std::optional<Finding> contradicted = finding_of(screening);
+  if (!contradicted) return;
   if (result.status == FitStatus::Ok) result.status = FitStatus::LackOfFit;
-  result.messages.push_back(screening_sentence(screening) +
-                            "; `volcal diagnose` tells which effect the model lacks");
+  result.findings.push_back(*contradicted);
 }
 
 }  // namespace volcal

@@ -14,7 +14,7 @@ namespace volcal {
 /// the outlier test flags are left out. The same for any number of threads.
 Screening screen(const Campaign& campaign, const FitResult& result, int threads);
 
-/// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a message says so.
+/// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a finding says so.
 void judge(const Screening& screening, FitResult& result);
 
 }  // namespace volcal

@@ -1,65 +1,84 @@
 #include "volcal/identify/criticism/verdict.h"
 
-#include <fmt/format.h>
+#include <string>
 
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
-constexpr std::size_t kMostAmplitudesInWords = 3;
-constexpr const char* kNotReducedWords =
-    "More remains: readings that were held out are still off by more than noise, hardly less than before. "
-    "The effect may be another one that acts in the same places.";
-constexpr const char* kKnownMore =
-    "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb with "
-    "--auto.";
-
-std::string names(const std::vector<EffectFinding>& findings) {
-  std::string text;
-  for (const EffectFinding& each : findings) text += (text.empty() ? "" : "; ") + each.label;
-  return text;
+std::vector<std::string> labels(const std::vector<EffectFinding>& effects) {
+  std::vector<std::string> all;
+  for (const EffectFinding& each : effects) all.push_back(each.label);
+  return all;
 }
 
-std::string sentence(const EffectFinding& effect) {
-  std::string text = effect.label + " (" + effect.name.kind + ")";
-  if (effect.amplitudes.size() > kMostAmplitudesInWords) return text;
+Finding named(const EffectFinding& effect) {
+  std::vector<std::string> names;
+  std::vector<FindingNumber> values, expanded;
   for (const AmplitudeFigure& amplitude : effect.amplitudes) {
-    text +=
-        fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitude.label, amplitude.value / amplitude.si_per_unit,
-                    kCoverageFactor * amplitude.u / amplitude.si_per_unit, amplitude.unit);
+    names.push_back(amplitude.label);
+    values.push_back({amplitude.value, amplitude.unit, amplitude.si_per_unit});
+    expanded.push_back({kCoverageFactor * amplitude.u, amplitude.unit, amplitude.si_per_unit});
   }
-  return text + (effect.shape_text.empty() ? "" : ", " + effect.shape_text);
+  Finding finding{FindingCode::DiagnosisNamed,
+                  {{"effect", effect.label},
+                   {"kind", effect.name.kind},
+                   {"target", effect.name.target},
+                   {"driver", effect.name.driver},
+                   {"shape", effect.shape_text}}};
+  if (names.empty()) return finding;
+  finding.data["amplitudes"] = names;
+  finding.data["values"] = values;
+  finding.data["U"] = expanded;
+  return finding;
 }
 
-std::string sentence(const UnknownFinding& unknown) {
-  const std::string variables =
-      unknown.variables.empty() ? "nothing recorded that was tried" : unknown.dependence();
-  return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings", variables,
-                     unknown.action(), unknown.rms * kPerMicro);
+Finding unnamed(FindingCode code, const UnknownFinding& unknown) {
+  Finding finding{code,
+                  {{"direction", unknown.direction}, {"rms", FindingNumber{unknown.rms, "um", kMicro}}}};
+  if (!unknown.variables.empty()) finding.data["depends_on"] = unknown.variables;
+  if (!unknown.with_one_of.empty()) finding.data["and_one_of"] = unknown.with_one_of;
+  if (!unknown.rotation.empty()) finding.data["rotation"] = unknown.rotation;
+  if (unknown.period > 0.0) finding.data["period"] = FindingNumber{unknown.period, "mm", kMetrePerMillimetre};
+  return finding;
 }
 
-/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310, z = -120. It cannot say ..."
-std::string sentence(const SurfaceFinding& surface) {
-  std::string place;
-  for (std::size_t i = 0; i < surface.at.size(); ++i)
-    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", surface.drivers[i], surface.at[i]);
-  std::string text = fmt::format(
-      "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it "
-      "and the error falls.",
-      surface.label, surface.largest / surface.si_per_unit,
-      kCoverageFactor * surface.largest_u / surface.si_per_unit, surface.unit, place);
-  for (const FormulaFinding& formula : surface.formulas) {
-    text += fmt::format(" {} {}{}, {:.3g} +- {:.2g} {}.",
-                        &formula == &surface.formulas.front() ? "A law that explains as much:" : "Or:",
-                        formula.label, formula.shape_text.empty() ? "" : " with " + formula.shape_text,
-                        formula.amplitude / formula.si_per_unit,
-                        kCoverageFactor * formula.u / formula.si_per_unit, formula.unit);
+Finding alternatives(FindingCode code, const std::vector<EffectFinding>& set) {
+  return {code, {{"effects", labels(set)}}};
+}
+
+void add_laws(const std::vector<FormulaFinding>& formulas, Finding& finding) {
+  std::vector<std::string> laws, shapes;
+  std::vector<FindingNumber> amplitudes, expanded;
+  for (const FormulaFinding& formula : formulas) {
+    laws.push_back(formula.label);
+    shapes.push_back(formula.shape_text);
+    amplitudes.push_back({formula.amplitude, formula.unit, formula.si_per_unit});
+    expanded.push_back({kCoverageFactor * formula.u, formula.unit, formula.si_per_unit});
   }
-  for (const std::string& free : surface.free) text += " These readings leave open " + free + ".";
-  return text;
+  finding.data["laws"] = laws;
+  finding.data["law_shapes"] = shapes;
+  finding.data["law_amplitudes"] = amplitudes;
+  finding.data["law_U"] = expanded;
+}
+
+Finding drawn(const SurfaceFinding& surface) {
+  const auto value = [&surface](double si) { return FindingNumber{si, surface.unit, surface.si_per_unit}; };
+  Finding finding{FindingCode::DiagnosisDrawn,
+                  {{"effect", surface.label},
+                   {"largest", value(surface.largest)},
+                   {"U", value(kCoverageFactor * surface.largest_u)},
+                   {"drivers", surface.drivers},
+                   {"at", std::vector<FindingNumber>(surface.at.size())}}};
+  auto& at = std::get<std::vector<FindingNumber>>(finding.data["at"]);
+  for (std::size_t i = 0; i < at.size(); ++i) at[i].si = surface.at[i];
+  if (!surface.free.empty()) finding.data["left_open"] = surface.free;
+  if (!surface.formulas.empty()) add_laws(surface.formulas, finding);
+  return finding;
 }
 
 void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
@@ -67,62 +86,53 @@ void conclude_named(const Remarks& remarks, Diagnosis& diagnosis) {
   const bool more = !diagnosis.unknown.empty();
   const bool not_reduced = heldout_error_not_reduced(diagnosis.ladder);
   const bool open = more || !sets.empty() || remarks.more_is_known || not_reduced;
-  auto& words = diagnosis.words;
+  auto& findings = diagnosis.findings;
   diagnosis.verdict = open ? Verdict::NamedMoreRemains : Verdict::Named;
-  for (const EffectFinding& effect : diagnosis.effects)
-    words.push_back("The missing effect is: " + sentence(effect));
-  for (const auto* set : sets) words.push_back("More remains, one of: " + names(*set));
-  if (remarks.more_is_known) words.emplace_back(kKnownMore);
-  if (more) words.push_back("More remains: " + sentence(diagnosis.unknown.front()));
-  if (not_reduced) words.emplace_back(kNotReducedWords);
+  for (const EffectFinding& effect : diagnosis.effects) findings.push_back(named(effect));
+  for (const auto* set : sets) findings.push_back(alternatives(FindingCode::DiagnosisMoreOneOf, *set));
+  if (remarks.more_is_known) findings.push_back({FindingCode::DiagnosisMoreInCatalogue});
+  if (more) findings.push_back(unnamed(FindingCode::DiagnosisMoreUnknown, diagnosis.unknown.front()));
+  if (not_reduced) findings.push_back({FindingCode::DiagnosisHeldoutNotReduced});
 }
 
 void conclude_unknown(Diagnosis& diagnosis) {
-  auto& words = diagnosis.words;
   diagnosis.verdict = Verdict::Unknown;
-  words.push_back("An effect that is in no catalogue: " + sentence(diagnosis.unknown.front()));
-  for (const auto* set : sets_of_alternatives(diagnosis)) {
-    words.push_back("Nearest in the catalogue, but not all of it: " + names(*set));
-  }
+  diagnosis.findings.push_back(unnamed(FindingCode::DiagnosisUnknown, diagnosis.unknown.front()));
+  for (const auto* set : sets_of_alternatives(diagnosis))
+    diagnosis.findings.push_back(alternatives(FindingCode::DiagnosisNearest, *set));
 }
 
 void conclude_one_of(const Remarks& remarks, Diagnosis& diagnosis) {
-  auto& words = diagnosis.words;
   diagnosis.verdict = Verdict::OneOf;
-  for (const auto* set : sets_of_alternatives(diagnosis)) {
-    words.push_back("One of these is missing, and these readings do not tell them apart: " + names(*set));
-  }
-  if (remarks.more_is_known) words.emplace_back(kKnownMore);
+  for (const auto* set : sets_of_alternatives(diagnosis))
+    diagnosis.findings.push_back(alternatives(FindingCode::DiagnosisOneOf, *set));
+  if (remarks.more_is_known) diagnosis.findings.push_back({FindingCode::DiagnosisMoreInCatalogue});
 }
+
+std::int64_t count(std::size_t number) { return static_cast<std::int64_t>(number); }
 
 void conclude_nothing(Diagnosis& diagnosis) {
   if (2 * diagnosis.not_visible.size() > diagnosis.detectable.size()) {
     diagnosis.verdict = Verdict::NotVisible;
-    diagnosis.words.push_back(fmt::format(
-        "Nothing is above the noise, but {} of {} effects would not be visible with this measurement.",
-        diagnosis.not_visible.size(), diagnosis.families));
+    diagnosis.findings.push_back(
+        {FindingCode::DiagnosisNotVisible,
+         {{"not_visible", count(diagnosis.not_visible.size())}, {"families", count(diagnosis.families)}}});
   } else {
     diagnosis.verdict = Verdict::NothingAbove;
-    diagnosis.words.emplace_back(
-        "Nothing is above the noise; what would have been found is in the table of smallest detectable "
-        "amplitudes.");
+    diagnosis.findings.push_back({FindingCode::DiagnosisNothingAbove});
   }
 }
 
 void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
-  auto& words = diagnosis.words;
-  for (const auto& [label, reason] : remarks.rejected)
-    words.push_back("Not named " + label + ": " + reason + ".");
-  for (const SurfaceFinding& surface : diagnosis.surfaces) words.push_back(sentence(surface));
+  auto& findings = diagnosis.findings;
+  findings.insert(findings.end(), remarks.rejected.begin(), remarks.rejected.end());
+  for (const SurfaceFinding& surface : diagnosis.surfaces) findings.push_back(drawn(surface));
   if (const std::size_t back = remarks.removed_by_fit - diagnosis.removed_readings.size(); back > 0) {
-    words.push_back(
-        fmt::format("{} of {} readings that the outlier test had removed agree with the model "
-                    "reached and are used again.",
-                    back, remarks.removed_by_fit));
+    findings.push_back({FindingCode::DiagnosisReadingsReinstated,
+                        {{"readings", count(back)}, {"of", count(remarks.removed_by_fit)}}});
   }
-  for (const EffectFinding& change : diagnosis.model_changes) {
-    words.push_back("The error function " + change.name.target + " needs more knots.");
-  }
+  for (const EffectFinding& change : diagnosis.model_changes)
+    findings.push_back({FindingCode::DiagnosisResolution, {{"function", change.name.target}}});
 }
 
 }  // namespace

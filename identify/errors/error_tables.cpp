@@ -8,13 +8,15 @@
 #include "volcal/identify/errors/correction_positions.h"
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kRounding = 1e-12;  // m or rad, of a value that the datum makes zero
+constexpr double kRounding = 1e-12;         // m or rad, of a value that the datum makes zero
+constexpr double kUnmeasuredTravel = 1e-6;  // m or rad, that is noticed
 
 /// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be
 /// shorter.
@@ -333,6 +335,45 @@ std::vector<VolumetricError> volumetric_grid(const FitResult& result, int per_ax
     grid.insert(grid.end(), nodes.begin(), nodes.end());
   });
   return grid;
+}
+
+std::vector<Finding> unmeasured_travel(const FitResult& result) {
+  const MeasuredTravel measured(result);
+  std::vector<Finding> findings;
+  for (const Axis& axis : result.machine.axes) {
+    const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
+    const bool whole =
+        !(first > axis.travel_min + kUnmeasuredTravel) && !(last < axis.travel_max - kUnmeasuredTravel);
+    if (whole) continue;
+    const Unit unit = position_unit(axis.name);
+    const auto at = [&unit](double position) {
+      return FindingNumber{position, std::string(unit.suffix), unit.si_per_unit};
+    };
+    findings.push_back({FindingCode::ErrorsHeldBeyondReadings,
+                        {{"axis", std::string{letter_of(axis.name)}},
+                         {"measured_from", at(first)},
+                         {"measured_to", at(last)},
+                         {"travel_from", at(axis.travel_min)},
+                         {"travel_to", at(axis.travel_max)}}});
+  }
+  return findings;
+}
+
+std::vector<Finding> errors_in_no_table(const FitResult& result) {
+  std::vector<Finding> findings;
+  for (const std::string& label : effects_on_no_pose(result))
+    findings.push_back({FindingCode::EffectInNoTable, {{"effect", label}}});
+  std::string axes;
+  const auto add = [&axes](AxisName axis) {
+    if (is_rotary(axis) && axes.find(letter_of(axis)) == std::string::npos) axes += letter_of(axis);
+  };
+  for (const FunctionGroup& group : result.layout.groups) add(group.axis);
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location) add(block.location->axis);
+  }
+  for (const char axis : axes)
+    findings.push_back({FindingCode::RotaryErrorsInNoTable, {{"axis", std::string{axis}}}});
+  return findings;
 }
 
 }  // namespace volcal

@@ -34,6 +34,11 @@ struct ErrorTableOptions {
   std::string tool = {};  ///< for which effects that couple axes are shared out; the first when empty
 };
 
+/// "errors.held-beyond-readings" of every axis that was measured over a part of its travel.
+std::vector<Finding> unmeasured_travel(const FitResult& result);
+/// What was identified and is in no table of linear axes: effects that act on no pose, errors of rotary axes.
+std::vector<Finding> errors_in_no_table(const FitResult& result);
+
 std::vector<ErrorTableRow> error_table(const FitResult& result, const ErrorTableOptions& options = {});
 /// Derivatives of the same rows to the parameters: rows x layout.size.
 Eigen::MatrixXd error_table_derivatives(const FitResult& result, const ErrorTableOptions& options = {});

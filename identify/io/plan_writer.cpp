@@ -13,6 +13,8 @@
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
 
@@ -103,8 +105,9 @@ PlanJson errors_json(const ExpectedCampaign& campaign) {
       json["u"] = error.visible ? in_unit(error.u_rms, kMicro) : PlanJson(nullptr);
     }
     if (!error.visible) {
-      json["reason"] = error.reason;
-      json["remedy"] = error.remedy;
+      const Explanation words = explanation(error.cause);
+      json["reason"] = words.reason;
+      json["remedy"] = words.remedy;
     }
     errors.push_back(std::move(json));
   }
@@ -237,7 +240,8 @@ std::string plan_json(const CampaignPlan& plan) {
   if (plan.given) json["campaigns"].push_back(campaign_json(*plan.given));
   json["options"] = PlanJson::array();
   for (const PlanOption& option : plan.options) {
-    json["options"].push_back({{"words", option.words},
+    json["options"].push_back({{"words", sentence(option.what)},
+                               {"finding", finding_json(option.what)},
                                {"new_station", option.new_station},
                                {"new_tool", option.new_tool},
                                {"readings", option.readings},
@@ -245,7 +249,7 @@ std::string plan_json(const CampaignPlan& plan) {
                                {"makes_visible", option.made_visible},
                                {"still_not_visible", option.still_invisible}});
   }
-  if (!plan.notes.empty()) json["notes"] = plan.notes;
+  add_notes(plan.notes, json);
   return json_text(json, 2) + "\n";
 }
 

@@ -10,6 +10,7 @@
 #include "volcal/identify/montecarlo/counter_random.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
 
@@ -75,7 +76,8 @@ RepeatedCampaign::RepeatedCampaign(const Campaign& campaign, const FitResult& re
 
 void RepeatedCampaign::require_determined() const {
   if (result_.status != FitStatus::RankDeficient) return;
-  const std::string which = result_.rank.invisible.empty() ? "" : ": " + result_.rank.invisible.front();
+  const std::string which =
+      result_.rank.invisible.empty() ? "" : ": " + sentence(result_.rank.invisible.front());
   throw InputError({linear_.campaign().file, 0}, "the readings do not determine every error" + which,
                    "measure what volcal fit names, or switch the error off in the model "
                    "(EAX = { basis = \"zero\" }), and draw again");

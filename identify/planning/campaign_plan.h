@@ -36,7 +36,7 @@ struct ExpectedCampaign {
 
 /// One setup more.
 struct PlanOption {
-  std::string words;  ///< "tool side_x at P1", "a station at [...] mm with tool short"
+  Finding what;  ///< "plan.setup-more"
   bool new_station = false;
   bool new_tool = false;  ///< that the machine file does not have
   std::size_t readings = 0;
@@ -52,7 +52,7 @@ struct CampaignPlan {
   ExpectedCampaign textbook;              ///< without existing readings; of no use when the plan extends some
   std::optional<ExpectedCampaign> given;  ///< the user's plan, or what there is before it is extended
   std::vector<PlanOption> options;        ///< best first; when an error is not visible, or when extending
-  std::vector<std::string> notes;         ///< on the files of the given campaign (Campaign::notes)
+  std::vector<Finding> notes;             ///< on the files of the given campaign (Campaign::notes)
 };
 
 /// `given`: a campaign to compare with, or null. Throws InputError.

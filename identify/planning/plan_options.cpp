@@ -1,7 +1,5 @@
 #include "volcal/identify/planning/plan_options.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +11,7 @@
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -28,9 +27,10 @@ constexpr double kFinerPool = 6.0;
 constexpr int kOptionSites = 5;
 constexpr std::size_t kMostOptions = 12;
 
-std::string in_mm(const Eigen::Vector3d& place) {
-  return fmt::format("[{:.0f}, {:.0f}, {:.0f}] mm", place.x() / kMetrePerMillimetre,
-                     place.y() / kMetrePerMillimetre, place.z() / kMetrePerMillimetre);
+FindingValue in_mm(const Eigen::Vector3d& place) {
+  std::vector<FindingNumber> numbers;
+  for (const double each : place) numbers.push_back({each, "mm", kMetrePerMillimetre});
+  return numbers;
 }
 
 /// As long as the longest, and to the side of the spindle.
@@ -216,12 +216,12 @@ class OptionSearch {
     const std::vector<NamedPlace> known = known_places();
     option.new_station =
         std::ranges::find(known, layout.station_names.front(), &NamedPlace::name) == known.end();
-    const std::string tool_words =
-        option.new_tool ? "a tool of offset " + in_mm(tool.offset) : "tool " + tool.name;
-    option.words = option.new_station ? fmt::format("a further {} at {} with {}",
-                                                    plan_instrument_of(settings_).words().place,
-                                                    in_mm(layout.stations_w.front()), tool_words)
-                                      : fmt::format("{} at {}", tool_words, layout.station_names.front());
+    option.what = {FindingCode::PlanSetupMore,
+                   {{"tool", tool.name},
+                    {"place", layout.station_names.front()},
+                    {"kind_of_place", plan_instrument_of(settings_).words().place}}};
+    if (option.new_tool) option.what.data["offset_of_new_tool"] = in_mm(tool.offset);
+    if (option.new_station) option.what.data["new_place"] = in_mm(layout.stations_w.front());
     option.readings = layout.readings();
     option.volumetric_rms = with.volumetric.rms;
     option.still_invisible = with.invisible();

@@ -1,6 +1,6 @@
 #include "volcal/identify/report/noise_rows.h"
 
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
 
 namespace volcal::report {
 

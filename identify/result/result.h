@@ -12,6 +12,7 @@
 
 #include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/identify/statistics/normal.h"
+#include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/description/units.h"
@@ -81,17 +82,15 @@ struct Observability {
   double visible_fraction = 0.0;  ///< share of the error's signal that no other parameter can imitate, 0..1
   double u_rms = 0.0;             ///< root mean square standard uncertainty over the measured travel, SI
   double effective_parameters = 0.0;
-  std::string reason;  ///< when not visible: why, in the user's words
-  std::string remedy;  ///< when not visible: what to measure
+  std::optional<Finding> cause = {};  ///< when not visible: why, and what to measure ("rank.not-visible...")
 };
 
 /// What the data cannot determine.
 struct RankReport {
   int parameters = 0;  ///< after the datum
   int rank = 0;
-  std::vector<std::string> invisible;  ///< one sentence per invisible combination of errors
-  std::vector<std::string>
-      held_by_prior;  ///< nuisance parameters held at their guess by a weak default prior
+  std::vector<Finding> invisible;      ///< one per error that is not visible: "rank.not-visible..."
+  std::vector<Finding> held_by_prior;  ///< nuisance parameters held at their guess by a weak default prior
   std::vector<Observability> errors;
 };
 
@@ -139,7 +138,7 @@ struct Provenance {
 
 struct FitResult {
   FitStatus status = FitStatus::Ok;
-  std::vector<std::string> messages;  ///< warnings and explanations for the user, one per line
+  std::vector<Finding> findings;  ///< warnings and explanations for the user; in words: identify/words
   Provenance provenance;
 
   Machine machine;

@@ -20,6 +20,7 @@
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/identify/solve/verdict.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/driver_check.h"
 #include "volcal/model/observation/channels.h"
 
@@ -379,9 +380,7 @@ class Identification {
     summarise_temperature(campaign_, result_);
     result_.conditions = recorded_conditions(campaign_);
     if (options_.noise == NoisePolicy::Automatic && options_.loss != RobustLoss::None) {
-      result_.messages.emplace_back(
-          "robust loss: readings are taken as independent; correlated drift and offsets of lines were not "
-          "looked for");
+      result_.findings.push_back({FindingCode::NoiseTakenAsIndependent});
     }
     judge(campaign_, model_.binding(), {converged_, rank_.deficient}, result_);
   }

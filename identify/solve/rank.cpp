@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/priors/resolution.h"
-#include "volcal/identify/solve/rank_words.h"
+#include "volcal/identify/solve/rank_causes.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -139,13 +139,9 @@ class RankAnalyser {
       if (stretch.function != nullptr) analysis_.invisible_functions.push_back(stretch.function->symbol);
       const bool unseen_alone = variance_alone * kGainOfVisible >= prior_variance;
       if (unseen_alone) figure.visible_fraction = 0.0;
-      const Explanation words =
-          explain_standing(model_.campaign(), stretch.name)
-              .value_or(unseen_alone ? explain_alone(stretch) : explain_mixture(stretch));
-      figure.reason = words.reason;
-      figure.remedy = words.remedy;
-      analysis_.report.invisible.push_back(figure.symbol + ": not visible, " + figure.reason + "; " +
-                                           figure.remedy);
+      figure.cause = cause_of_standing(model_.campaign(), stretch.name)
+                         .value_or(unseen_alone ? cause_alone(stretch) : cause_in_mixture(stretch));
+      analysis_.report.invisible.push_back(*figure.cause);
     }
     analysis_.report.errors.push_back(std::move(figure));
   }
@@ -160,10 +156,10 @@ class RankAnalyser {
     return matrix.block(stretch.offset, stretch.offset, stretch.size, stretch.size);
   }
 
-  Explanation explain_alone(const ErrorStretch& stretch) const {
+  Finding cause_alone(const ErrorStretch& stretch) const {
     if (stretch.function == nullptr || !part_is_seen(stretch))
-      return explain_unseen(model_.campaign(), stretch.name);
-    return explain_few_positions(stretch.function->symbol.axis);
+      return cause_of_unseen(model_.campaign(), stretch.name);
+    return cause_few_positions(stretch.name, stretch.function->symbol.axis);
   }
 
   /// Does a reading change with some combination of the error's coefficients?
@@ -203,21 +199,13 @@ class RankAnalyser {
     return covariance(0, 0) * kGainOfVisible >= prior_covariance_(open[0], open[0]);
   }
 
-  Explanation explain_mixture(const ErrorStretch& stretch) const {
-    if (const ErrorStretch* straightness = hiding_straightness(stretch)) {
-      const std::string axis(1, letter_of(straightness->function->symbol.axis));
-      return {"the readings stand at too few positions of axis " + axis +
-                  ", or on too little of its travel, to tell it from " + straightness->name,
-              "add positions along the whole travel of axis " + axis};
-    }
-    const std::vector<std::string> partners = partners_of(stretch);
-    if (partners.empty()) {
-      if (stretch.function != nullptr) return explain_few_positions(stretch.function->symbol.axis);
-      return {"the readings that depend on it are too few or too noisy", "add readings far from its pivot"};
-    }
-    return {
-        "a change of it can be exchanged with " + list_in_words(partners) + " without changing any reading",
-        remedy_for_mixture(model_, stretch.name, partners)};
+  Finding cause_in_mixture(const ErrorStretch& stretch) const {
+    if (const ErrorStretch* straightness = hiding_straightness(stretch))
+      return cause_like_straightness(stretch.name, straightness->function->symbol);
+    std::vector<std::string> partners = partners_of(stretch);
+    if (!partners.empty()) return cause_exchangeable(model_, stretch.name, std::move(partners));
+    if (stretch.function != nullptr) return cause_few_positions(stretch.name, stretch.function->symbol.axis);
+    return {FindingCode::NotVisibleReadingsTooFew, {{"error", stretch.name}}};
   }
 
   /// Names of what changes along with an error in the directions that hide, strongest first.
@@ -256,11 +244,12 @@ class RankAnalyser {
     for (int k = 0; k < block.size; ++k) {
       const double prior_variance = std::pow(source.prior_sigma[k], 2);
       if (posterior_(block.offset + k, block.offset + k) < 0.25 * prior_variance) continue;
-      std::ostringstream text;
-      text << source.name << " " << source.labels[static_cast<std::size_t>(k)] << ": held at its guess +- "
-           << source.prior_sigma[k] / source.si_per_unit[static_cast<std::size_t>(k)] << " "
-           << source.units[static_cast<std::size_t>(k)];
-      analysis_.report.held_by_prior.push_back(text.str());
+      const auto at = static_cast<std::size_t>(k);
+      analysis_.report.held_by_prior.push_back(
+          {FindingCode::RankHeldByPrior,
+           {{"block", source.name},
+            {"parameter", source.labels[at]},
+            {"sigma", FindingNumber{source.prior_sigma[k], source.units[at], source.si_per_unit[at]}}}});
     }
   }
 

@@ -59,12 +59,10 @@ std::optional<AxisName> turned_axis(const std::string& name) {
   return location->axis;
 }
 
-std::string third_tool(const Campaign& campaign, const std::string& error,
-                       const std::vector<std::string>& partners) {
-  const auto across = across_tool_line(campaign);
-  if (!across || !turns_about_tools(error, partners)) return "";
-  return std::string("repeat with a third tool, its tip 100 mm or more to the side in ") + *across +
-         " (those of the tools in use lie on one line)";
+std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,
+                                      const std::vector<std::string>& partners) {
+  if (!turns_about_tools(error, partners)) return std::nullopt;
+  return across_tool_line(campaign);
 }
 
 }  // namespace volcal

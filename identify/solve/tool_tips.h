@@ -12,10 +12,10 @@ namespace volcal {
 /// The linear axis whose direction a squareness turns; nothing for other names.
 std::optional<AxisName> turned_axis(const std::string& name);
 
-/// The remedy "repeat with a third tool ..." where the tips of all tools in use lie on one line, and an error
-/// and what it can be exchanged with are rotations of one axis and what goes with them: nothing moves the
-/// tips when the axis turns about that line. Empty otherwise.
-std::string third_tool(const Campaign& campaign, const std::string& error,
-                       const std::vector<std::string>& partners);
+/// To which side a third tool helps, 'X', 'Y' or 'Z': where the tips of all tools in use lie on one line, and
+/// an error and what it can be exchanged with are rotations of one axis and what goes with them. Nothing
+/// moves the tips when the axis turns about that line. Nothing otherwise.
+std::optional<char> third_tool_across(const Campaign& campaign, const std::string& error,
+                                      const std::vector<std::string>& partners);
 
 }  // namespace volcal

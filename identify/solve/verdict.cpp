@@ -1,17 +1,17 @@
 #include "volcal/identify/solve/verdict.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "volcal/identify/solve/adjustment.h"
-#include "volcal/identify/solve/noise_words.h"
 #include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -24,27 +24,16 @@ constexpr double kFarGuess = 0.1;           // m, of a station: cm accuracy is e
 constexpr double kSmallestLackOfFit = 1.1;  // sigma0 below this is not worth a warning
 constexpr double kSeveralTimes = 3.0;       // the stated sigma: hardly the instrument's noise
 
-constexpr const char* kHardlyNoise =
-    "; that is hardly the instrument: an effect that the model lacks looks like noise, or the noise table is "
-    "wrong";
-
 void report_stated_sigma(FitResult& result) {
   for (const VarianceComponent& component : result.variance_components) {
     if (std::abs(component.scale - 1.0) < std::max(0.1, 3.0 * component.scale_u)) continue;
-    std::ostringstream text;
-    text.precision(3);
-    text << component.instrument << ": "
-         << (result.noise.more_than_white ? "the independent part of its residuals scatters "
-                                          : "its residuals scatter ")
-         << component.scale << " times as much as its stated sigma; "
-         << "weights and uncertainties use the estimated value";
-    if (component.scale > kUnitSlip) {
-      text
-          << "; is its noise stated in a unit 1000 times too small (nm for um)? check the noise table of its "
-             "setups and the unit of the readings";
-    }
-    if (component.scale > kSeveralTimes && component.scale <= kUnitSlip) text << kHardlyNoise;
-    result.messages.push_back(text.str());
+    const bool unit_slip = component.scale > kUnitSlip;
+    result.findings.push_back({FindingCode::NoiseSigmaContradicted,
+                               {{"instrument", component.instrument},
+                                {"times", FindingNumber{component.scale}},
+                                {"independent_part", result.noise.more_than_white},
+                                {"unit_slip", unit_slip},
+                                {"hardly_noise", component.scale > kSeveralTimes && !unit_slip}}});
   }
 }
 
@@ -64,40 +53,38 @@ std::map<std::string, double> noise_over_stated(const Campaign& campaign, const 
   return estimated;
 }
 
-/// "correlated drift of 0.41 um over 580 s", empty for what stands in no sentence of its own.
-std::string noise_phrase(const NoiseSummary& noise, const NoiseRow& row) {
-  const EdgeNoise edge = edge_noise(row, noise.groups[row.instrument]);
-  if (row.term == "line") return fmt::format("offsets of lines of {:.2g} {}", edge.value, edge.unit);
-  if (row.term == "per_metre") return fmt::format("{:.2g} {} in proportion to length", edge.value, edge.unit);
-  if (row.term != "wander") return {};
-  const auto tau = std::ranges::find_if(noise.rows, [&](const NoiseRow& other) {
-    return other.term == "tau" && other.instrument == row.instrument;
-  });
-  return fmt::format("correlated drift of {:.2g} {}", edge.value, edge.unit) +
-         (tau == noise.rows.end() ? "" : fmt::format(" over {:.0f} s", tau->value));
+/// What the noise of a group is beside independent readings, by term.
+std::map<std::string, FindingValue> correlated_terms(const NoiseSummary& noise, std::size_t group) {
+  const std::string unit = noise_group_unit(noise.groups[group]);
+  std::map<std::string, FindingValue> terms;
+  for (const NoiseRow& row : noise.rows) {
+    if (row.instrument != group || row.value == 0.0) continue;
+    if (row.term == "wander") terms["drift"] = FindingNumber{row.value, unit, kMicro};
+    if (row.term == "tau") terms["drift_time"] = FindingNumber{row.value, "s"};
+    if (row.term == "line") terms["line_offsets"] = FindingNumber{row.value, unit, kMicro};
+    if (row.term == "per_metre") terms["per_metre"] = FindingNumber{row.value, "um/m", kMicro};
+  }
+  if (!terms.contains("drift")) terms.erase("drift_time");
+  return terms;
 }
 
 void report_noise(const Campaign& campaign, FitResult& result) {
   if (!result.noise.more_than_white) return;
   const std::map<std::string, double> over_stated = noise_over_stated(campaign, result);
   for (std::size_t g = 0; g < result.noise.groups.size(); ++g) {
-    std::string phrases;
-    for (const NoiseRow& row : result.noise.rows) {
-      if (row.instrument != g || row.value == 0.0) continue;
-      const std::string phrase = noise_phrase(result.noise, row);
-      if (!phrase.empty()) phrases += (phrases.empty() ? "" : ", ") + phrase;
-    }
-    if (phrases.empty()) continue;
-    result.messages.push_back(result.noise.groups[g] + ": its noise is not independent (" + phrases +
-                              "); weights and uncertainties allow for it");
-    const auto times = over_stated.find(result.noise.groups[g]);
+    const std::string& group = result.noise.groups[g];
+    std::map<std::string, FindingValue> terms = correlated_terms(result.noise, g);
+    if (terms.empty()) continue;
+    terms["instrument"] = group;
+    result.findings.push_back({FindingCode::NoiseMoreThanWhite, std::move(terms)});
+    const auto times = over_stated.find(group);
     if (times == over_stated.end() || times->second < kSeveralTimes) continue;
-    result.messages.push_back(fmt::format("{}: all its noise together is {:.3g} times what is stated{}",
-                                          times->first, times->second, kHardlyNoise));
+    result.findings.push_back({FindingCode::NoiseSeveralTimesStated,
+                               {{"instrument", group}, {"times", FindingNumber{times->second}}}});
   }
 }
 
-/// One message per setup and reason: rows as lines of the file.
+/// One per setup and reason: rows as lines of the file.
 void report_left_out(const Campaign& campaign, FitResult& result) {
   for (const Setup& setup : campaign.setups) {
     std::map<std::string, std::set<std::int64_t>> rows_of_reason;
@@ -105,32 +92,24 @@ void report_left_out(const Campaign& campaign, FitResult& result) {
       rows_of_reason[reading.reason].insert(setup.readings.source_line[reading.row]);
     }
     for (const auto& [reason, rows] : rows_of_reason) {
-      std::string list;
-      for (const std::int64_t row : rows) list += (list.empty() ? "" : ", ") + std::to_string(row);
-      result.messages.push_back("setup \"" + setup.name + "\" leaves out " +
-                                (rows.size() == 1 ? "row " : "rows ") + list + ": " + reason);
+      result.findings.push_back({FindingCode::ReadingsLeftOut,
+                                 {{"setup", setup.name},
+                                  {"rows", std::vector<std::int64_t>(rows.begin(), rows.end())},
+                                  {"reason", reason}}});
     }
   }
 }
 
 void report_outliers(FitResult& result) {
-  const auto flagged = std::ranges::count_if(result.residuals,
-                                             [](const ResidualRecord& r) { return r.flagged && !r.removed; });
-  const auto removed = std::ranges::count_if(
+  const std::int64_t flagged = std::ranges::count_if(
+      result.residuals, [](const ResidualRecord& r) { return r.flagged && !r.removed; });
+  const std::int64_t removed = std::ranges::count_if(
       result.residuals, [](const ResidualRecord& r) { return r.removed && !r.left_out; });
   if (flagged > 0) {
-    result.messages.push_back(std::to_string(flagged) +
-                              " readings are flagged by the w-test and still in the adjustment; they are "
-                              "listed in residuals.csv (" +
-                              (removed == 0 ? "--outliers remove takes them out"
-                                            : "so many were removed before that the model or the stated "
-                                              "noise must be in doubt: run `volcal compare`") +
-                              ")");
+    result.findings.push_back(
+        {FindingCode::ReadingsFlagged, {{"readings", flagged}, {"some_removed", removed > 0}}});
   }
-  if (removed > 0) {
-    result.messages.push_back(std::to_string(removed) +
-                              " readings were removed by the w-test; they are listed in residuals.csv");
-  }
+  if (removed > 0) result.findings.push_back({FindingCode::ReadingsRemoved, {{"readings", removed}}});
 }
 
 /// A stated guess that the readings contradict is a mistake in a file, or a model that lacks something.
@@ -138,24 +117,23 @@ void report_contradicted_priors(FitResult& result) {
   for (const ParameterBlock& block : result.layout.blocks) {
     for (int k = 0; k < block.size(); ++k) {
       if (block.prior_sigma[k] == 0.0) continue;
-      const double miss = result.parameters[block.offset + k] - block.prior_mean[k];
-      if (std::abs(miss) < kContradicted * block.prior_sigma[k]) continue;
+      const double miss = std::abs(result.parameters[block.offset + k] - block.prior_mean[k]);
+      if (miss < kContradicted * block.prior_sigma[k]) continue;
       const auto at = static_cast<std::size_t>(k);
-      std::ostringstream text;
-      text.precision(3);
-      text << block.name << (block.labels[at].empty() ? "" : " " + block.labels[at]) << ": estimated "
-           << std::abs(miss) / block.si_per_unit[at] << ' ' << block.units[at]
-           << " away from what the files say, " << std::abs(miss) / block.prior_sigma[k] << " times its "
-           << (block.weak_default_prior ? "default" : "stated") << " standard deviation of "
-           << block.prior_sigma[k] / block.si_per_unit[at] << ' ' << block.units[at]
-           << "; correct the value, or state a larger one";
-      result.messages.push_back(text.str());
+      result.findings.push_back(
+          {FindingCode::PriorContradicted,
+           {{"block", block.name},
+            {"parameter", block.labels[at]},
+            {"miss", FindingNumber{miss, block.units[at], block.si_per_unit[at]}},
+            {"sigma", FindingNumber{block.prior_sigma[k], block.units[at], block.si_per_unit[at]}},
+            {"default", block.weak_default_prior}}});
     }
   }
 }
 
 /// A guess of metres is worth a correction though no prior holds it: a fit may start too far off.
 void report_far_guesses(FitResult& result) {
+  const auto millimetres = [](double metres) { return FindingNumber{metres, "mm", kMetrePerMillimetre}; };
   for (const ParameterBlock& block : result.layout.blocks) {
     const bool point = block.kind == ParameterKind::Nuisance && block.units[0] == "mm" &&
                        block.labels == std::vector<std::string>{"x", "y", "z"};
@@ -164,10 +142,13 @@ void report_far_guesses(FitResult& result) {
     const Eigen::Vector3d found = result.parameters.segment<3>(block.offset);
     if ((found - guess).norm() < kFarGuess) continue;
     const double ratio = guess.norm() > 0.0 ? found.norm() / guess.norm() : 0.0;
-    result.messages.push_back(fmt::format(
-        "{}: found {:.0f} mm from its guess; write [{:.0f}, {:.0f}, {:.0f}] mm in the campaign file{}",
-        block.name, (found - guess).norm() * 1e3, found.x() * 1e3, found.y() * 1e3, found.z() * 1e3,
-        std::abs(std::log(ratio / 1e3)) < std::log(2.0) ? " (is the guess in m?)" : ""));
+    result.findings.push_back({FindingCode::StationFarFromGuess,
+                               {{"block", block.name},
+                                {"distance", millimetres((found - guess).norm())},
+                                {"x", millimetres(found.x())},
+                                {"y", millimetres(found.y())},
+                                {"z", millimetres(found.z())},
+                                {"guess_in_metres", std::abs(std::log(ratio / 1e3)) < std::log(2.0)}}});
   }
 }
 
@@ -177,21 +158,17 @@ void report_unrecorded_drivers(const Campaign& campaign, const CampaignBinding& 
     for (const Setup& setup : campaign.setups)
       unrecorded += effect.effect->unrecorded({campaign, setup, {}, {}});
     if (unrecorded == 0) continue;
-    result.messages.push_back(effect_label(*effect.effect) + ": " + std::to_string(unrecorded) +
-                              " readings do not record " + effect.effect->name().driver +
-                              " and carry nothing of the effect");
+    result.findings.push_back({FindingCode::EffectDriverUnrecorded,
+                               {{"effect", effect_label(*effect.effect)},
+                                {"readings", static_cast<std::int64_t>(unrecorded)},
+                                {"driver", effect.effect->name().driver}}});
   }
 }
 
 void report_lack_of_fit(FitResult& result) {
-  std::ostringstream text;
-  text.precision(3);
-  text << "lack of fit: residuals are " << result.sigma0 << " times the stated noise; ";
-  if (result.noise.more_than_white)
-    text << "an effect that the model lacks can look like the noise found here, which `volcal diagnose` "
-            "tells; ";
-  text << "run `volcal compare` to see where the model fails";
-  result.messages.push_back(text.str());
+  result.findings.push_back(
+      {FindingCode::FitLackOfFit,
+       {{"times", FindingNumber{result.sigma0}}, {"more_than_white", result.noise.more_than_white}}});
 }
 
 }  // namespace
@@ -212,20 +189,19 @@ std::string_view to_string(FitStatus status) {
 
 void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
            FitResult& result) {
-  result.messages.insert(result.messages.end(), campaign.notes.begin(), campaign.notes.end());
+  result.findings.insert(result.findings.end(), campaign.notes.begin(), campaign.notes.end());
   report_stated_sigma(result);
   report_noise(campaign, result);
   const double exceedance = result.dof > 0.0 ? chi_squared_exceedance(result.chi2, result.dof) : 1.0;
   const bool lack = exceedance < kSignificanceOfLackOfFit && result.sigma0 > kSmallestLackOfFit;
-  for (const std::string& sentence : result.rank.invisible) result.messages.push_back(sentence);
+  result.findings.insert(result.findings.end(), result.rank.invisible.begin(), result.rank.invisible.end());
   report_left_out(campaign, result);
   report_outliers(result);
   report_contradicted_priors(result);
   report_far_guesses(result);
   report_unrecorded_drivers(campaign, binding, result);
   if (lack) report_lack_of_fit(result);
-  if (!end.converged)
-    result.messages.emplace_back("not converged: the cost still fell after the last iteration");
+  if (!end.converged) result.findings.push_back({FindingCode::FitNotConverged});
   result.status = !end.converged       ? FitStatus::NotConverged
                   : end.rank_deficient ? FitStatus::RankDeficient
                   : lack               ? FitStatus::LackOfFit

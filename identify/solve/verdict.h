@@ -11,7 +11,7 @@ struct AdjustmentEnd {
   bool rank_deficient = false;  ///< an error that the model has is not visible
 };
 
-/// Sets status and appends messages: stated sigma that is wrong, noise that is more than white, what is not
+/// Sets status and appends findings: stated sigma that is wrong, noise that is more than white, what is not
 /// visible, outliers, stated guesses that are contradicted, drivers that were not recorded, lack of fit.
 void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
            FitResult& result);

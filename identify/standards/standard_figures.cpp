@@ -11,6 +11,7 @@
 #include "volcal/identify/standards/approach.h"
 #include "volcal/identify/standards/target_positions.h"
 #include "volcal/identify/standards/test_paths.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/instruments/registry.h"
@@ -53,9 +54,9 @@ std::vector<SetupValues> values_by_setup(const Campaign& campaign, std::span<con
   return values;
 }
 
-std::vector<std::string> common_notes(const SetupValues& values) {
+std::vector<Finding> common_notes(const SetupValues& values) {
   if (values.removed == 0) return {};
-  return {fmt::format("{} readings that the adjustment left out are in these figures", values.removed)};
+  return {{FindingCode::StandardsRemovedReadingsUsed, {{"readings", std::int64_t{values.removed}}}}};
 }
 
 std::string place_of(const Campaign& campaign, const Setup& setup, const StraightPath& path) {
@@ -155,32 +156,32 @@ class LineEvaluation {
   bool own_zero_ = false;
 };
 
-std::vector<std::string> line_notes(const LineEvaluation& evaluation, const PositioningFigures& figures,
-                                    const SetupValues& values) {
-  std::vector<std::string> notes = common_notes(values);
+std::vector<Finding> line_notes(const LineEvaluation& evaluation, const PositioningFigures& figures,
+                                const SetupValues& values) {
+  std::vector<Finding> notes = common_notes(values);
   if (evaluation.every_line_has_its_own_zero()) {
     const bool shared = figures.positive.systematic || figures.negative.systematic;
-    notes.emplace_back(shared
-                           ? "every line has its own zero: reversal and bidirectional figures are not seen"
-                           : "every line has its own zero and targets of its own: no figure compares them");
+    notes.push_back({FindingCode::StandardsLinesOwnZero, {{"targets_of_own", !shared}}});
   }
   if (figures.target_spread > kSamePosition) {
-    notes.push_back(fmt::format("recorded positions within {:.1f} um were taken as one target",
-                                figures.target_spread / kMetrePerMicrometre));
+    notes.push_back({FindingCode::StandardsTargetsSpread,
+                     {{"spread", FindingNumber{figures.target_spread, "um", kMetrePerMicrometre}}}});
   }
   if (figures.unknown_direction > 0) {
-    notes.push_back(fmt::format("{} readings of unknown approach are left out", figures.unknown_direction));
+    notes.push_back({FindingCode::StandardsApproachUnknown,
+                     {{"readings", static_cast<std::int64_t>(figures.unknown_direction)}}});
   }
   const auto one_sided =
       std::count_if(figures.targets.begin(), figures.targets.end(),
                     [](const PositioningTarget& target) { return !target.bidirectional(); });
   if (one_sided > 0 && figures.reversal) {
-    notes.push_back(
-        fmt::format("{} of {} targets were met from one direction only", one_sided, figures.targets.size()));
+    notes.push_back({FindingCode::StandardsTargetsOneSided,
+                     {{"targets", static_cast<std::int64_t>(one_sided)},
+                      {"of", static_cast<std::int64_t>(figures.targets.size())}}});
   }
   const bool repeated = figures.positive.repeatability || figures.negative.repeatability;
   if (!repeated && !figures.targets.empty()) {
-    notes.emplace_back("R and A are undefined: they need two approaches of every target from a direction");
+    notes.push_back({FindingCode::StandardsRepeatabilityUndefined});
   }
   return notes;
 }
@@ -188,19 +189,18 @@ std::vector<std::string> line_notes(const LineEvaluation& evaluation, const Posi
 void evaluate_displacement(const Campaign& campaign, const Setup& setup, const SetupValues& values,
                            StandardFigures& result) {
   const FoundPaths<StraightPath> found = straight_paths(campaign, setup);
-  for (const std::string& reason : found.not_recognised) {
-    result.not_recognised.push_back(setup.name + ": " + reason);
-  }
+  result.not_recognised.insert(result.not_recognised.end(), found.not_recognised.begin(),
+                               found.not_recognised.end());
   for (const StraightPath& path : found.paths) {
     const LineEvaluation evaluation(campaign, setup, path);
     if (!evaluation.beam_along_motion()) {
-      result.not_recognised.push_back(setup.name + ": the beam does not lie along the motion of " +
-                                      path.name);
+      result.not_recognised.push_back(
+          {FindingCode::NoTestBeamAcross, {{"setup", setup.name}, {"path", path.name}}});
       continue;
     }
     PositioningFigures readings = evaluation.figures(values, values.reading[0]);
     PositioningFigures model = evaluation.figures(values, values.predicted[0]);
-    std::vector<std::string> notes = line_notes(evaluation, readings, values);
+    std::vector<Finding> notes = line_notes(evaluation, readings, values);
     if (path.moving.size() == 1) {
       result.lines.push_back({setup.name,
                               path.moving.front(),
@@ -247,9 +247,8 @@ CircularFigures circle_figures(const CirclePath& path, const Vector3d& instrumen
 void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const SetupValues& values,
                        StandardFigures& result) {
   const FoundPaths<CirclePath> found = circle_paths(campaign, setup);
-  for (const std::string& reason : found.not_recognised) {
-    result.not_recognised.push_back(setup.name + ": " + reason);
-  }
+  result.not_recognised.insert(result.not_recognised.end(), found.not_recognised.begin(),
+                               found.not_recognised.end());
   for (const CirclePath& path : found.paths) {
     const Vector3d instrument_w = setup.options.vector("centre").value_or(path.centre_w);
     CircleTest test{setup.name,    path.first, path.second,         path.radius,
@@ -257,7 +256,7 @@ void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const Setup
     test.figures.readings = circle_figures(path, instrument_w, values, values.reading[0]);
     test.figures.model = circle_figures(path, instrument_w, values, values.predicted[0]);
     if (setup.options.number("length_sigma").value_or(1.0) != 0.0) {
-      test.notes.emplace_back("the bar is not calibrated: F and D contain its length error");
+      test.notes.push_back({FindingCode::StandardsBarUncalibrated});
     }
     result.circles.push_back(std::move(test));
   }
@@ -266,9 +265,9 @@ void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const Setup
 void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupValues& values,
                      StandardFigures& result) {
   if (setup.readings.channels() < 3) {
-    result.not_recognised.push_back(setup.name + (setup.readings.channels() == 1
-                                                      ? ": one component of the error vectors only"
-                                                      : ": two components of the error vectors only"));
+    result.not_recognised.push_back(
+        {FindingCode::NoTestComponentsMissing,
+         {{"setup", setup.name}, {"components", static_cast<std::int64_t>(setup.readings.channels())}}});
     return;
   }
   const std::vector<Vector3d> point_w = nominal_points_w(campaign, setup);
@@ -287,7 +286,7 @@ void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupVa
   if (setup.options.text("alignment").value_or("rigid") == "rigid") {
     readings = without_rigid_motion(points, readings);
     model = without_rigid_motion(points, model);
-    test.notes.emplace_back("readings and model each without their best rigid motion");
+    test.notes.push_back({FindingCode::StandardsRigidMotionRemoved});
   }
   test.figures = {volumetric_figures(readings), volumetric_figures(model)};
   result.points.push_back(std::move(test));

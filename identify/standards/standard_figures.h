@@ -14,6 +14,7 @@
 #include "volcal/identify/standards/iso230_4.h"
 #include "volcal/identify/standards/iso230_6.h"
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/finding.h"
 
 namespace volcal {
 
@@ -29,14 +30,14 @@ struct AxisLineTest {
   AxisName axis = AxisName::X;
   std::string place;  ///< positions of the other linear axes: "Y 100, Z -135 mm"
   SideBySide<PositioningFigures> figures;
-  std::vector<std::string> notes;
+  std::vector<Finding> notes;
 };
 
 struct DiagonalTest {
   std::string setup;
   std::vector<AxisName> axes;  ///< two: face, three: body diagonal
   SideBySide<DiagonalFigures> figures;
-  std::vector<std::string> notes;
+  std::vector<Finding> notes;
 };
 
 /// Body diagonals, or face diagonals of one plane, of the whole campaign.
@@ -52,14 +53,14 @@ struct CircleTest {
   double radius = 0.0;
   Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
   SideBySide<CircularFigures> figures;
-  std::vector<std::string> notes;
+  std::vector<Finding> notes;
 };
 
 struct PointsTest {
   std::string setup;
   SideBySide<VolumetricFigures> figures;
   VolumetricFigures difference;  ///< readings minus model
-  std::vector<std::string> notes;
+  std::vector<Finding> notes;
 };
 
 struct StandardFigures {
@@ -68,7 +69,7 @@ struct StandardFigures {
   std::vector<DiagonalGroup> diagonal_groups;
   std::vector<CircleTest> circles;
   std::vector<PointsTest> points;
-  std::vector<std::string> not_recognised;  ///< setups of these instruments that are no such test, and why
+  std::vector<Finding> not_recognised;  ///< setups of these instruments that are no such test, and why
 };
 
 /// `records`: one per observation, any order. Readings without a record are left out of both sides.

@@ -6,10 +6,12 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <variant>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/standards/approach.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
@@ -21,7 +23,7 @@ using Eigen::Vector3d;
 constexpr double kLargestCircle = 10.0;
 using Rows = std::vector<std::size_t>;
 template <class Path>
-using PathOrReason = std::variant<Path, std::string>;
+using PathOrReason = std::variant<Path, FindingCode>;
 
 AxisPosition axis_position(const Readings& readings, std::size_t row) {
   AxisPosition position{};
@@ -112,19 +114,19 @@ struct Line {
 };
 
 PathOrReason<Line> recognise_line(const CommandedPoints& commanded, const Rows& rows) {
-  if (commanded.turns(rows)) return "a rotary axis moves";
+  if (commanded.turns(rows)) return FindingCode::NoTestRotaryAxisMoves;
   Line line;
   for (const AxisName axis : kLinearAxes) {
     if (commanded.moves(rows, axis, kPathTolerance)) line.path.moving.push_back(axis);
   }
-  if (line.path.moving.empty()) return "no axis moves";
+  if (line.path.moving.empty()) return FindingCode::NoTestNoAxisMoves;
   const Vector3d& first = commanded.linear[rows.front()];
   const std::size_t far = farthest_from_first(rows, commanded.linear);
   line.geometry = {first, (commanded.linear[far] - first).normalized()};
   line.path.direction_w = (commanded.point_w[far] - commanded.point_w[rows.front()]).normalized();
   const bool on_line = std::all_of(
       rows.begin(), rows.end(), [&](std::size_t row) { return line.geometry.holds(commanded.linear[row]); });
-  if (!on_line) return "the commanded points do not lie on a straight line";
+  if (!on_line) return FindingCode::NoTestNoStraightLine;
   if (line.path.moving.size() == 1 && line.geometry.direction.sum() < 0.0) {
     line.geometry.direction *= -1.0;
     line.path.direction_w *= -1.0;
@@ -213,24 +215,24 @@ std::optional<Vector3d> centre_and_radius(const std::vector<Vector2d>& points) {
 }
 
 PathOrReason<PlannedCircle> recognise_circle(const CommandedPoints& commanded, const Rows& rows) {
-  if (commanded.turns(rows)) return "a rotary axis moves";
+  if (commanded.turns(rows)) return FindingCode::NoTestRotaryAxisMoves;
   std::vector<AxisName> moving, still;
   for (const AxisName axis : kLinearAxes) {
     (commanded.moves(rows, axis, kPathTolerance) ? moving : still).push_back(axis);
   }
-  if (moving.size() != 2) return "not two axes move";
+  if (moving.size() != 2) return FindingCode::NoTestNotTwoAxesMove;
   PlannedCircle circle;
   circle.path.first = kLinearAxes[(index_of(still.front()) + 1) % 3];
   circle.path.second = kLinearAxes[(index_of(still.front()) + 2) % 3];
   std::vector<Vector2d> points;
   for (const std::size_t row : rows) points.push_back(circle.in_plane(commanded.linear[row]));
   const auto fitted = centre_and_radius(points);
-  if (!fitted || !(fitted->z() < kLargestCircle)) return "the commanded points do not lie on a circle";
+  if (!fitted || !(fitted->z() < kLargestCircle)) return FindingCode::NoTestNoCircle;
   circle.centre = fitted->head<2>();
   circle.path.radius = fitted->z();
   for (const auto& point : points) {
     if (std::abs((point - circle.centre).norm() - fitted->z()) > kPathTolerance) {
-      return "the commanded points do not lie on a circle";
+      return FindingCode::NoTestNoCircle;
     }
   }
   const std::size_t row = rows.front();
@@ -283,12 +285,12 @@ template <class Found, class Path, class Recognise>
 FoundPaths<Path> find_paths(const Campaign& campaign, const Setup& setup, Recognise recognise) {
   FoundPaths<Path> result;
   if (setup.readings.size() == 0) {
-    result.not_recognised = {"there are no readings"};
+    result.not_recognised = {{FindingCode::NoTestWithoutReadings, {{"setup", setup.name}}}};
     return result;
   }
   const CommandedPoints commanded(campaign, setup);
   std::vector<Found> found;
-  std::map<std::string, std::vector<std::int32_t>> failures;
+  std::map<FindingCode, std::vector<std::int32_t>> failures;
   PathOrReason<Found> whole = recognise(commanded, all_rows(setup));
   if (auto* path = std::get_if<Found>(&whole)) {
     found.push_back(std::move(*path));
@@ -297,7 +299,7 @@ FoundPaths<Path> find_paths(const Campaign& campaign, const Setup& setup, Recogn
       PathOrReason<Found> part = recognise(commanded, pass.rows);
       auto* one = std::get_if<Found>(&part);
       if (!one) {
-        failures[std::get<std::string>(part)].push_back(pass.line);
+        failures[std::get<FindingCode>(part)].push_back(pass.line);
         continue;
       }
       const auto same = std::find_if(found.begin(), found.end(),
@@ -314,10 +316,12 @@ FoundPaths<Path> find_paths(const Campaign& campaign, const Setup& setup, Recogn
     result.paths.push_back(std::move(one.path));
   }
   for (const auto& [reason, lines] : failures) {
-    const bool all = found.empty() && failures.size() == 1;
-    std::string sentence = all ? reason : "line " + std::to_string(lines.front());
-    if (!all && lines.size() > 1) sentence += " and " + std::to_string(lines.size() - 1) + " more";
-    result.not_recognised.push_back(all ? sentence : sentence + ": " + reason);
+    Finding finding{reason, {{"setup", setup.name}}};
+    if (!found.empty() || failures.size() > 1) {
+      finding.data["line"] = std::int64_t{lines.front()};
+      finding.data["more_lines"] = static_cast<std::int64_t>(lines.size()) - 1;
+    }
+    result.not_recognised.push_back(std::move(finding));
   }
   return result;
 }

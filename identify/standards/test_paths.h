@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/finding.h"
 
 namespace volcal {
 
@@ -40,7 +41,7 @@ struct CirclePath {
 template <class Path>
 struct FoundPaths {
   std::vector<Path> paths;
-  std::vector<std::string> not_recognised;  ///< why passes are left out, one sentence each reason
+  std::vector<Finding> not_recognised;  ///< why passes are left out, "standards.no-test...": one each reason
 };
 
 /// The whole setup is one path when its points fit one; otherwise each `line` is looked at by itself, and

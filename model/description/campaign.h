@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/model/description/finding.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/schema.h"
 
@@ -62,7 +63,7 @@ struct Campaign {
   std::string active_compensations =
       {};  ///< of the control while it was measured, in words; empty = not stated
 
-  std::vector<std::string> notes = {};  ///< what was noticed while it was read, a sentence each
+  std::vector<Finding> notes = {};  ///< what was noticed while it was read
 
   std::size_t reading_count() const;  ///< observations: rows times channels, over all setups
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal::testing {
 
@@ -26,7 +27,9 @@ inline EffectFinding found_effect(const std::string& kind, const std::string& sy
 inline Diagnosis hand_made_diagnosis() {
   Diagnosis diagnosis;
   diagnosis.verdict = Verdict::NamedMoreRemains;
-  diagnosis.words = {"The missing effect is: reversal EXX"};
+  diagnosis.findings = {
+      verbatim("The missing effect is: reversal EXX"),
+      {FindingCode::DiagnosisMoreOneOf, {{"effects", std::vector<std::string>{"reversal EYY"}}}}};
   EffectFinding reversal = found_effect("reversal", "EXX", 4e-6);
   reversal.name = {"reversal", "EXX", "dir_x", "step"};
   EffectFinding other = found_effect("reversal", "EYY", 1e-6);
@@ -61,9 +64,14 @@ inline Diagnosis hand_made_diagnosis() {
   visit.plain_gain = 1.25;
   visit.reached = 7.5;
   visit.plain = 3.125;
-  visit.words = "visit station P1 again after two hours";
+  visit.finding = {FindingCode::MeasurementSeparates,
+                   {{"action", "revisit"},
+                    {"measurement", "visit station P1 again after two hours"},
+                    {"readings", std::int64_t{48}},
+                    {"effects", std::vector<std::string>{"reversal EXX", "reversal EYY"}},
+                    {"gain", FindingNumber{3.0}},
+                    {"plain_gain", FindingNumber{1.25}}}};
   diagnosis.proposals = {visit};
-  diagnosis.next_measurement = {visit.words};
   diagnosis.confounding.names = {reversal.name, other.name, third.name};
   diagnosis.confounding.labels = {reversal.label, other.label, third.label};
   diagnosis.confounding.cosine.setIdentity(3, 3);

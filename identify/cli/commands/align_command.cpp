@@ -12,10 +12,12 @@
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -103,17 +105,17 @@ int run_align(const AlignArguments& arguments) {
     files["report.html"] = report_html(aligned.result, campaign, report_options());
   write_result_folder(aligned.result, campaign, arguments.output, files);
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"folder", arguments.output},
-                                         {"alignment", aligned.result.alignment},
-                                         {"frame_rotation", angles_json(frame_of(aligned))},
-                                         {"squareness_before", angles_json(squareness_of(before))},
-                                         {"squareness", angles_json(squareness_of(aligned.result))},
-                                         {"invisible", before.rank.invisible}};
+    nlohmann::ordered_json json = {{"folder", arguments.output},
+                                   {"alignment", aligned.result.alignment},
+                                   {"frame_rotation", angles_json(frame_of(aligned))},
+                                   {"squareness_before", angles_json(squareness_of(before))},
+                                   {"squareness", angles_json(squareness_of(aligned.result))}};
+    add_findings("invisible", before.rank.invisible, json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);
-    for (const std::string& invisible : before.rank.invisible) fmt::print("! {}\n", invisible);
+    fmt::print("{}", findings_text(before.rank.invisible));
   }
   return before.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

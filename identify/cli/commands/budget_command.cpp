@@ -10,11 +10,14 @@
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/design_stage.h"
 #include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/error_budget_text.h"
 #include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 
 namespace volcal::cli {
 namespace {
@@ -64,13 +67,13 @@ int run_budget(const BudgetArguments& arguments) {
     nlohmann::ordered_json json = error_budget_json(budget);
     json["tool"] = tool.name;
     json["conditions"] = conditions_json(result, conditions);
-    json["invisible"] = result.rank.invisible;
+    add_findings("invisible", result.rank.invisible, json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}{}", conditions_text(result, conditions),
                error_budget_text(budget, tool.name, result.coverage_factor, arguments.verbose));
-    for (const std::string& sentence : unmeasured_travel(result)) fmt::print("! {}\n", sentence);
-    for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+    fmt::print("{}", findings_text(unmeasured_travel(result)));
+    fmt::print("{}", findings_text(result.rank.invisible));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -10,12 +10,15 @@
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/program_setup.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/program/nc_check.h"
 #include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -105,8 +108,8 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   fmt::print("{}", program_summary_text(done.summary));
   if (done.check) fmt::print("{}", program_check_text(*done.check));
   fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
-  for (const std::string& sentence : errors_in_no_table(result)) fmt::print("! {}\n", sentence);
-  for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+  fmt::print("{}", findings_text(errors_in_no_table(result)));
+  fmt::print("{}", findings_text(result.rank.invisible));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -116,9 +119,9 @@ int run_compensate(const CompensateArguments& arguments) {
   const RewrittenProgram done = rewrite(result, arguments);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
-    json["effects_not_compensated"] = errors_in_no_table(result);
+    add_findings("effects_not_compensated", errors_in_no_table(result), json);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
-    json["invisible"] = result.rank.invisible;
+    add_findings("invisible", result.rank.invisible, json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {

@@ -16,8 +16,8 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -45,14 +45,15 @@ ModelSpec given_model(const DiagnoseArguments& arguments, const Campaign& campai
 
 /// Of a campaign also by name.
 int print_list(const DiagnoseArguments& arguments) {
-  std::vector<std::string> testable, notes;
+  std::vector<std::string> testable;
+  std::vector<Finding> notes;
   if (!arguments.campaign.empty()) {
     const Campaign campaign = read_campaign(arguments.campaign);
     testable = testable_effects(campaign, given_model(arguments, campaign));
     notes = campaign.notes;
   }
   fmt::print("{}", arguments.json ? effect_list_json(testable, notes)
-                                  : effect_list_text(testable) + campaign_notes_text(notes));
+                                  : effect_list_text(testable) + findings_text(notes));
   return kDone;
 }
 

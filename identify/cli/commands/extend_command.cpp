@@ -18,10 +18,11 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
 
 namespace volcal::cli {
 namespace {
@@ -153,18 +154,18 @@ void require_no_input(const std::string& output, const std::vector<std::string>&
 }
 
 void report(const Changes& changes, const std::string& output, std::size_t effects,
-            const std::vector<std::string>& notes, bool as_json) {
+            const std::vector<Finding>& notes, bool as_json) {
   if (as_json) {
     nlohmann::ordered_json json = {
         {"file", output}, {"effects", effects}, {"added", changes.added}, {"given_back", changes.given_back}};
-    if (!notes.empty()) json["notes"] = notes;
+    add_notes(notes, json);
     fmt::print("{}\n", json_text(json, 2));
     return;
   }
   for (const std::string& label : changes.given_back) fmt::print("given back: {}\n", label);
   for (const std::string& label : changes.added) fmt::print("added: {}\n", label);
   fmt::print("written: {} ({} effect{})\n", output, effects, effects == 1 ? "" : "s");
-  fmt::print("{}", campaign_notes_text(notes));
+  fmt::print("{}", findings_text(notes));
 }
 
 int run_extend(const ExtendArguments& arguments) {

@@ -23,7 +23,7 @@
 #include "volcal/identify/io/results/montecarlo_writer.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/montecarlo_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
@@ -252,10 +252,10 @@ int tell_interrupted(const MonteCarloArguments& arguments, const MonteCarloResul
 
 /// Ends as fit does, and writes nothing.
 int tell_undetermined(const MonteCarloArguments& arguments, const FitResult& fit_result,
-                      const std::vector<std::string>& notes) {
+                      const std::vector<Finding>& notes) {
   if (is_first(arguments))
     fmt::print("{}", arguments.json ? undetermined_json(fit_result, notes)
-                                    : undetermined_text(fit_result) + campaign_notes_text(notes));
+                                    : undetermined_text(fit_result) + findings_text(notes));
   return kIncomplete;
 }
 

@@ -12,13 +12,16 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/compensation_text.h"
 #include "volcal/identify/report/text/correction_text.h"
 #include "volcal/identify/report/text/field_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/volumetric_text.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/studies/files/control_tables.h"
@@ -61,7 +64,7 @@ struct MadeTables {
   std::vector<TableFile> files;
   CompensationTables read_back;
   VolumeCheck check;
-  std::vector<std::string> effects_left_out;
+  std::vector<Finding> effects_left_out;
 };
 
 std::string format_help() {
@@ -219,8 +222,8 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   if (!arguments.superimpose.empty())
     fmt::print("They replace {} and correct what it corrected too; before = with it.\n",
                arguments.superimpose);
-  for (const std::string& effect : made.effects_left_out) fmt::print("! {}\n", effect);
-  for (const std::string& sentence : unmeasured_travel(result)) fmt::print("! {}\n", sentence);
+  fmt::print("{}", findings_text(made.effects_left_out));
+  fmt::print("{}", findings_text(unmeasured_travel(result)));
   fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
              fmt::join(file_names(made), ", "));
 }
@@ -233,8 +236,8 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"tool", tool_of(machine, made.options).name},
                                  {"step_mm", made.options.step / kMetrePerMillimetre},
                                  {"error_left", volume_check_json(made.check)},
-                                 {"verified", made.format->verified},
-                                 {"effects_in_no_table", made.effects_left_out}};
+                                 {"verified", made.format->verified}};
+  add_findings("effects_in_no_table", made.effects_left_out, json);
   if (!arguments.dry_run) json["folder"] = arguments.output;
   if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;
   if (made.tolerance > 0.0) {
@@ -275,9 +278,9 @@ int run_tables(const TablesArguments& arguments) {
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
-    json["invisible"] = result.rank.invisible;
+    add_findings("invisible", result.rank.invisible, json);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
-    json["beyond_readings"] = unmeasured_travel(result);
+    add_findings("beyond_readings", unmeasured_travel(result), json);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
     if (made && !errors.empty())
       json["corrections"] = corrections_json(result.machine, made->read_back, points_of(result, arguments));
@@ -289,7 +292,7 @@ int run_tables(const TablesArguments& arguments) {
       fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
       print_tables(*made, arguments, result);
     }
-    for (const std::string& invisible : result.rank.invisible) fmt::print("! {}\n", invisible);
+    fmt::print("{}", findings_text(result.rank.invisible));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -16,10 +16,12 @@
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/standards/comparison.h"
+#include "volcal/identify/words/finding_json.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::cli {
@@ -92,9 +94,9 @@ std::vector<TriedValue> tried_values(const FitResult& result, const WrittenEffec
 /// Why the readings say nothing of the effect; empty when they do.
 std::string why_not_visible(const FitResult& result, const std::string& label) {
   for (const Observability& error : result.rank.errors) {
-    if (error.symbol == label && !error.visible) return error.reason;
+    if (error.symbol == label && !error.visible) return explanation(error.cause).reason;
   }
-  for (const std::string& sentence : result.rank.invisible) {
+  for (const std::string& sentence : sentences(result.rank.invisible)) {
     if (sentence.find(label) != std::string::npos) return sentence;
   }
   return "";
@@ -197,7 +199,8 @@ std::string remains_line(const Diagnosis& diagnosis) {
   if (found.empty()) {
     return diagnosis.verdict == Verdict::NothingAbove
                ? "nothing above the noise"
-               : (diagnosis.words.empty() ? to_string(diagnosis.verdict) : diagnosis.words.front());
+               : (diagnosis.findings.empty() ? to_string(diagnosis.verdict)
+                                             : sentence(diagnosis.findings.front()));
   }
   std::string text = "still above the noise: ";
   for (std::size_t i = 0; i < found.size() && i < 4; ++i) text += (i > 0 ? "; " : "") + found[i];
@@ -211,7 +214,7 @@ std::string tried_text(const TryArguments& arguments, const Tried& tried) {
   if (!tried.not_visible.empty()) values = "NOT VISIBLE: " + tried.not_visible;
   if (tried.status == FitStatus::NotConverged) values += " (the fit has not converged)";
   return fmt::format("{}: {}\nheld out: {}\nremains: {}\n{}", arguments.effect, values, heldout_line(tried),
-                     remains_line(tried.remains), campaign_notes_text(tried.remains.notes));
+                     remains_line(tried.remains), findings_text(tried.remains.notes));
 }
 
 nlohmann::ordered_json judged_json(const Comparison& comparison) {
@@ -237,7 +240,7 @@ std::string tried_json(const TryArguments& arguments, const Tried& tried) {
     json["held_out"] = {{"without", judged_json(tried.without)}, {"with", judged_json(tried.with)}};
   json["verdict_of_what_remains"] = to_string(tried.remains.verdict);
   json["remains"] = above_the_noise(tried.remains);
-  if (!tried.remains.notes.empty()) json["notes"] = tried.remains.notes;
+  add_notes(tried.remains.notes, json);
   return json.dump(2) + "\n";
 }
 

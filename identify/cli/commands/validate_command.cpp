@@ -12,10 +12,12 @@
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -131,11 +133,11 @@ int run_validate(const ValidateArguments& arguments) {
   const Validation validation = validate(campaign, result, arguments.threads);
   if (arguments.json) {
     auto json = figures_json(validation.figures, fitted);
-    if (!campaign.notes.empty()) json["notes"] = campaign.notes;
+    add_notes(campaign.notes, json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}", validation_text(validation, fitted));
-    for (const std::string& note : campaign.notes) fmt::print("! {}\n", note);
+    fmt::print("{}", findings_text(campaign.notes));
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * kPerMicro > arguments.max_rms_um;

@@ -11,6 +11,7 @@
 #include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -97,8 +98,7 @@ std::string effect_list_text(const std::vector<std::string>& testable) {
   return text;
 }
 
-std::string effect_list_json(const std::vector<std::string>& testable,
-                             const std::vector<std::string>& notes) {
+std::string effect_list_json(const std::vector<std::string>& testable, const std::vector<Finding>& notes) {
   Json json = {{"format", "volcal-effects-1"}, {"kinds", Json::array()}};
   for (const EffectKind* kind : effect_kinds()) {
     const EffectSchema& schema = kind->schema();
@@ -114,7 +114,7 @@ std::string effect_list_json(const std::vector<std::string>& testable,
   for (const WordList& list : word_lists()) json[list.key] = words_json(list.words);
   json["directions"] = kScanDirections;
   if (!testable.empty()) json["testable"] = testable;
-  if (!notes.empty()) json["notes"] = notes;
+  add_notes(notes, json);
   return json_text(json, 2) + "\n";
 }
 

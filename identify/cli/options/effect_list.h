@@ -17,6 +17,6 @@ std::vector<std::string> testable_effects(const Campaign& campaign, const ModelS
 /// `testable`: of a campaign; empty when none is given.
 std::string effect_list_text(const std::vector<std::string>& testable);
 /// `notes`: on the campaign's files.
-std::string effect_list_json(const std::vector<std::string>& testable, const std::vector<std::string>& notes);
+std::string effect_list_json(const std::vector<std::string>& testable, const std::vector<Finding>& notes);
 
 }  // namespace volcal::cli

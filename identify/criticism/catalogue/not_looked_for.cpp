@@ -1,12 +1,12 @@
 #include "volcal/identify/criticism/catalogue/not_looked_for.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <string>
 
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -67,23 +67,24 @@ std::set<std::string> kinds_in_time(const Campaign& campaign) {
   return more;
 }
 
+std::vector<std::string> list(const std::set<std::string>& names) { return {names.begin(), names.end()}; }
+
 }  // namespace
 
-std::vector<std::string> not_looked_for(const Campaign& campaign, const std::vector<Family>& families) {
-  std::vector<std::string> sentences;
+std::vector<Finding> not_looked_for(const Campaign& campaign, const std::vector<Family>& families) {
+  std::vector<Finding> findings;
   const std::set<std::string> directions = unknown_directions(campaign);
   if (const auto kinds = kinds_driven_by(families, directions); !kinds.empty()) {
-    sentences.push_back(fmt::format("Not looked for, as no reading records {}: {}.",
-                                    fmt::join(directions, ", "), fmt::join(kinds, ", ")));
+    findings.push_back(
+        {FindingCode::DirectionsUnrecorded, {{"columns", list(directions)}, {"kinds", list(kinds)}}});
   }
   const bool any_time =
       std::ranges::any_of(campaign.setups, [](const Setup& setup) { return !setup.readings.time.empty(); });
-  if (any_time) return sentences;
+  if (any_time) return findings;
   if (const auto kinds = kinds_in_time(campaign); !kinds.empty()) {
-    sentences.push_back(
-        fmt::format("Not looked for, as no reading records its time (time_s): {}.", fmt::join(kinds, ", ")));
+    findings.push_back({FindingCode::TimesUnrecorded, {{"kinds", list(kinds)}}});
   }
-  return sentences;
+  return findings;
 }
 
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -59,13 +60,19 @@ std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagno
   return sets;
 }
 
-std::string screening_sentence(const Screening& screening) {
-  if (!screening.contradicts) return {};
-  return fmt::format(
-      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
-      "tests "
-      "counted)",
-      screening.leading, screening.rms * kPerMicro, screening.log10_p, screening.tests);
+std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals) {
+  std::vector<Finding> findings;
+  for (const MeasurementProposal& each : proposals) findings.push_back(each.finding);
+  return findings;
+}
+
+std::optional<Finding> finding_of(const Screening& screening) {
+  if (!screening.contradicts) return std::nullopt;
+  return Finding{FindingCode::ModelContradicted,
+                 {{"leading", screening.leading},
+                  {"rms", FindingNumber{screening.rms, "um", kMicro}},
+                  {"log10_p", FindingNumber{screening.log10_p}},
+                  {"tests", static_cast<std::int64_t>(screening.tests)}}};
 }
 
 }  // namespace volcal

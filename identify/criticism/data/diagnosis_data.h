@@ -5,12 +5,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/data/figure_data.h"
 #include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/model/description/finding.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
@@ -158,7 +160,7 @@ struct MeasurementProposal {
   double plain_gain = 0.0;  ///< with as many plain readings
   double reached = 0.0;     ///< s^2 with the measurement; 0 when it makes effects visible
   double plain = 0.0;       ///< s^2 with as many plain readings
-  std::string words;
+  Finding finding = {};     ///< "measurement..."
 };
 
 /// What is asked about the next measurement.
@@ -176,7 +178,7 @@ struct RemovedReading {
 
 struct Diagnosis {
   Verdict verdict = Verdict::NothingAbove;
-  std::vector<std::string> words;                          ///< the verdict in plain sentences
+  std::vector<Finding> findings;                           ///< what the verdict says, "diagnosis..."
   std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
@@ -190,10 +192,9 @@ struct Diagnosis {
   std::vector<NoiseRow> noise;
   std::vector<std::string> noise_instruments;
   Confounding confounding;
-  std::vector<std::string> next_measurement;  ///< in words
   std::vector<MeasurementProposal> proposals;
-  std::vector<std::string> not_looked_for;       ///< sentences: what no file records, and which kinds need it
-  std::vector<std::string> notes;                ///< of the campaign
+  std::vector<Finding> not_looked_for;           ///< what no file records, and which kinds need it
+  std::vector<Finding> notes;                    ///< of the campaign
   std::vector<RemovedReading> removed_readings;  ///< outliers of the model reached, by setup and line
   std::size_t families = 0;
   std::size_t generic_tests = 0;
@@ -206,6 +207,9 @@ std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
 
+/// What the proposals say.
+std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals);
+
 /// Whether a diagnosis pays (screening.h).
 struct Screening {
   std::size_t tests = 0;
@@ -215,7 +219,7 @@ struct Screening {
   double rms = 0.0;          ///< SI: root mean square over the readings of what it would explain
 };
 
-/// The sentence for it; empty where nothing contradicts.
-std::string screening_sentence(const Screening& screening);
+/// "model.contradicted"; nothing where nothing contradicts.
+std::optional<Finding> finding_of(const Screening& screening);
 
 }  // namespace volcal

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/proposals/measurement_planner.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
@@ -23,7 +23,6 @@ constexpr std::size_t kMostAlternatives = 6;
 constexpr std::size_t kMostProposals = 6;
 constexpr std::size_t kMostActions = 3;     // that make effects visible
 constexpr Eigen::Index kMostColumns = 400;  // of effects that are not visible
-constexpr std::size_t kNamed = 4;           // of them, in a sentence
 
 struct Pair {
   std::size_t first;
@@ -247,38 +246,28 @@ class Proposer {
     out.plain = something(apart(planner.plain(measurement)));
     out.gain = ratio(out.reached, out.separation);
     out.plain_gain = ratio(out.plain, out.separation);
-    const std::string both = described(first) + " from " + described(second);
+    const std::vector<std::string> both = {described(first), described(second)};
     if (out.gain < kThresholds.helpful_gain || out.reached < kThresholds.separated) {
       out.gain = out.plain_gain = 1.0;
       out.reached = out.plain = out.separation;
-      out.words = "Nothing on the menu tells " + both + ": they predict nearly the same readings.";
+      out.finding = {FindingCode::MeasurementNoneSeparates, {{"effects", both}}};
     } else {
-      set_measurement(hypothetical.measurements()[measurement], out);
-      out.words += std::isinf(out.gain)
-                       ? fmt::format("tells {}, which the present readings cannot at all", both)
-                       : fmt::format("tells {} {} times better", both, factor(out.gain));
-      out.words += fmt::format("; as many further plain readings: {}.",
-                               std::isinf(out.plain_gain) ? "some" : factor(out.plain_gain) + " times");
+      set_measurement(FindingCode::MeasurementSeparates, hypothetical.measurements()[measurement], out);
+      out.finding.data["effects"] = both;
+      out.finding.data["gain"] = FindingNumber{out.gain};
+      out.finding.data["plain_gain"] = FindingNumber{out.plain_gain};
     }
-    add(std::move(out));
+    diagnosis_.proposals.push_back(std::move(out));
   }
 
-  /// Two decimals where they matter: "1.04", "5.3", "150".
-  static std::string factor(double gain) {
-    return fmt::format("{:.{}f}", gain, gain < 2.0 ? 2 : gain < 20.0 ? 1 : 0);
-  }
-
-  static void set_measurement(const ExtraMeasurement& extra, MeasurementProposal& out) {
+  static void set_measurement(FindingCode code, const ExtraMeasurement& extra, MeasurementProposal& out) {
     out.action = extra.action;
     out.setup = extra.setup;
     out.readings = extra.readings();
-    out.words = extra.words + fmt::format(" ({} readings): ", out.readings);
-    out.words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out.words[0])));
-  }
-
-  void add(MeasurementProposal proposal) {
-    diagnosis_.next_measurement.push_back(proposal.words);
-    diagnosis_.proposals.push_back(std::move(proposal));
+    out.finding = {code,
+                   {{"action", extra.action},
+                    {"measurement", extra.words},
+                    {"readings", static_cast<std::int64_t>(out.readings)}}};
   }
 
   std::string described(const PlannedHypothesis& each) const {
@@ -337,29 +326,26 @@ class Proposer {
                        const std::vector<PlannedHypothesis>& hypotheses,
                        const std::vector<std::size_t>& shown, std::size_t hidden, std::size_t measurement) {
     MeasurementProposal out;
-    set_measurement(hypothetical.measurements()[measurement], out);
+    set_measurement(FindingCode::MeasurementShows, hypothetical.measurements()[measurement], out);
     const std::size_t first = shown.front();
     const bool seen = planner.visible_fraction(planner.now(), first) > kThresholds.invisible_share;
     const double before = seen ? planner.information(planner.now(), first) : 0.0;
     out.gain = ratio(planner.information(planner.with(measurement), first), before);
     out.plain_gain = seen ? ratio(planner.information(planner.plain(measurement), first), before) : 1.0;
-    std::string names;
-    for (std::size_t k = 0; k < shown.size(); ++k) {
-      out.makes_visible.push_back(family(hypotheses[shown[k]]).name());
-      if (k < kNamed) names += (k > 0 ? ", " : "") + described(hypotheses[shown[k]]);
+    std::vector<std::string> effects;
+    for (const std::size_t k : shown) {
+      out.makes_visible.push_back(family(hypotheses[k]).name());
+      effects.push_back(described(hypotheses[k]));
     }
-    if (shown.size() > kNamed) names += ", ...";
+    out.finding.data["effects"] = std::move(effects);
+    out.finding.data["of"] = static_cast<std::int64_t>(hidden);
     if (hidden == 1) {
       const auto& amplitude = family(hypotheses[shown.front()]).effect->amplitudes().front();
-      out.words +=
-          fmt::format("makes visible {}, from {:.2g} {} on.", names,
-                      planner.detectable(planner.with(measurement), shown.front()) / amplitude.si_per_unit(),
-                      amplitude.unit());
-    } else {
-      out.words +=
-          fmt::format("makes visible {} of {} effects that are not: {}.", shown.size(), hidden, names);
+      out.finding.data["detectable"] =
+          FindingNumber{planner.detectable(planner.with(measurement), shown.front()),
+                        std::string(amplitude.unit()), amplitude.si_per_unit()};
     }
-    add(std::move(out));
+    diagnosis_.proposals.push_back(std::move(out));
   }
 
   const CriticismState& state_;

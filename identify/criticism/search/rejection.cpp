@@ -1,14 +1,13 @@
 #include "volcal/identify/criticism/search/rejection.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
 #include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -18,6 +17,8 @@ std::string shape_word(const EffectShape& shape) {
   const std::size_t colon = shape.label.rfind(": ");
   return colon == std::string::npos ? shape.label : shape.label.substr(colon + 2);
 }
+
+Finding rejected(FindingCode code, const Family& family) { return {code, {{"effect", family.label()}}}; }
 
 /// `first`: of its columns among the projector's parameters.
 ConstancyTest constancy_of(const ModelState& state, const Family& family, const Eigen::MatrixXd& columns,
@@ -47,12 +48,12 @@ Reasons Rejection::rejection_reasons() const {
     const std::size_t family = state_.added()[i].test.family;
     const EffectName name = state_.setting().families[family].name();
     by_driver[{name.kind, name.target, name.driver}].push_back(family);
-    const std::string own = rejection_reason(i);
-    if (!own.empty()) reasons[family] = own;
+    if (std::optional<Finding> own = rejection_reason(i)) reasons[family] = *std::move(own);
   }
   for (const auto& [key, members] : by_driver) {
     if (members.size() < 2) continue;
-    for (const std::size_t family : members) reasons[family] = "several powers of its driver are needed";
+    for (const std::size_t family : members)
+      reasons[family] = rejected(FindingCode::RejectedSeveralPowers, state_.setting().families[family]);
   }
   return reasons;
 }
@@ -64,19 +65,28 @@ bool Rejection::leaves_more(const AddedEffect& effect) const {
   });
 }
 
-std::string Rejection::rejection_reason(std::size_t added) const {
+std::optional<Finding> Rejection::rejection_reason(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
   const Family& family = state_.family_of(effect);
-  if (leaves_more(effect)) return "what it leaves exceeds the noise more than it does";
+  if (leaves_more(effect)) return rejected(FindingCode::RejectedLeavesMore, family);
   const auto drivers = scan_variables_of(family.name());
-  if (still_moves(drivers))
-    return fmt::format("{} still moves what it leaves", fmt::join(names_of(drivers), " or "));
-  if (!family.effect) return {};
+  if (still_moves(drivers)) {
+    Finding moved = rejected(FindingCode::RejectedDriverStillMoves, family);
+    moved.data["drivers"] = names_of(drivers);
+    return moved;
+  }
+  if (!family.effect) return std::nullopt;
   const ConstancyTest varies = constancy(added);
-  if (varies.log10_p <= std::log10(kThresholds.constancy_risk))
-    return fmt::format("its amplitude varies with {} (log10 p {:.1f})", varies.variable, varies.log10_p);
-  if (!lies_beyond_its_scan(added)) return {};
-  return "its " + shape_word(family.effect->shapes().front()) + " lies beyond what was looked for";
+  if (varies.log10_p <= std::log10(kThresholds.constancy_risk)) {
+    Finding varying = rejected(FindingCode::RejectedAmplitudeVaries, family);
+    varying.data["variable"] = varies.variable;
+    varying.data["log10_p"] = FindingNumber{varies.log10_p};
+    return varying;
+  }
+  if (!lies_beyond_its_scan(added)) return std::nullopt;
+  Finding beyond = rejected(FindingCode::RejectedShapeBeyondScan, family);
+  beyond.data["shape"] = shape_word(family.effect->shapes().front());
+  return beyond;
 }
 
 /// The best shape stands at an end of the scan, and the readings ask for one beyond.

@@ -1,32 +1,33 @@
 #pragma once
 /// Why an effect that was added to a model is no name for what the readings show.
 ///
-/// In: a tested model state. Out: reasons in words, and what may stand in the place of a rejected effect. An
-/// effect is rejected when what it leaves exceeds the noise more than it did, its own driver still moves what
-/// it leaves, several powers of its driver are needed together, its amplitude varies (amplitude_constancy.h:
-/// Nyblom 1989, JASA 84, 223), or its shape lies beyond the end of its scan. Risks and margins: thresholds.h;
-/// probabilities in log10. Valid where all that the readings need is in the model or among its scans.
+/// In: a tested model state. Out: findings "diagnosis.rejected...", and what may stand in the place of a
+/// rejected effect. An effect is rejected when what it leaves exceeds the noise more than it did, its own
+/// driver still moves what it leaves, several powers of its driver are needed together, its amplitude varies
+/// (amplitude_constancy.h: Nyblom 1989, JASA 84, 223), or its shape lies beyond the end of its scan. Risks
+/// and margins: thresholds.h; probabilities in log10. Valid where all that the readings need is in the model
+/// or among its scans.
 
 #include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/scans/amplitude_constancy.h"
 #include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/model/description/finding.h"
 
 namespace volcal {
 
 /// Reason by family.
-using Reasons = std::map<std::size_t, std::string>;
+using Reasons = std::map<std::size_t, Finding>;
 
 class Rejection {
  public:
   /// `state` is tested, and outlives the object.
   explicit Rejection(const ModelState& state) : state_(state) {}
 
-  /// Of an added effect, by its place; empty: the name stands.
-  std::string rejection_reason(std::size_t added) const;
+  /// Of an added effect, by its place; nothing: the name stands.
+  std::optional<Finding> rejection_reason(std::size_t added) const;
   /// Of all added effects that are no names; powers of one driver on one target that are needed together
   /// stand for a function that the catalogue does not hold.
   Reasons rejection_reasons() const;

@@ -12,6 +12,7 @@
 #include "volcal/identify/criticism/search/joint_noise.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -350,14 +351,14 @@ void Search::recheck(const std::set<std::size_t>& stood) {
   std::vector<FamilyTest> kept;
   for (std::size_t i = 0; i < state_->added().size(); ++i) {
     const AddedEffect& effect = state_->added()[i];
-    std::string reason;
+    std::optional<Finding> reason;
     if (!stood.contains(effect.test.family)) {
       reason = rejection.rejection_reason(i);
     } else if (rejection.leaves_more(effect)) {
-      reason = "what has no name exceeds the noise more than it does";
+      reason = Finding{FindingCode::RejectedUnnamedExceeds, {{"effect", state_->family_of(effect).label()}}};
     }
-    if (!reason.empty()) rejected_[effect.test.family] = reason;
-    if (reason.empty()) kept.push_back(effect.test);
+    if (reason) rejected_[effect.test.family] = *reason;
+    if (!reason) kept.push_back(effect.test);
   }
   if (kept.size() < state_->added().size()) keep(kept);
 }

@@ -1,32 +1,21 @@
 #include "volcal/identify/io/campaign/campaign_notes.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "volcal/identify/io/campaign/doubtful_readings.h"
 #include "volcal/identify/io/campaign/reading_columns.h"
 #include "volcal/identify/standards/approach.h"
-#include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
 
 std::string file_of(const Setup& setup) {
   return printable(std::filesystem::path(setup.data).filename().string());
-}
-
-/// "direction_x" as it stands in a TOML text.
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
-  for (const char c : printable(name)) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text + '"';
 }
 
 bool in_milliseconds(const std::string& name) {
@@ -63,34 +52,39 @@ std::vector<std::vector<std::int8_t>> directions_from_order(const Campaign& camp
 
 void note_unused_columns(const std::vector<UnusedColumn>& unused, const Setup& setup, Campaign& campaign) {
   if (unused.empty()) return;
-  std::vector<std::string> names;
-  std::set<std::string> meant;
-  std::string keys, scale;
+  std::vector<std::string> names, keys, sources;
+  bool milliseconds = false;
   for (const UnusedColumn& column : unused) {
     names.push_back(printable(column.name));
-    if (column.meant.empty() || !meant.insert(column.meant).second) continue;
-    keys += (keys.empty() ? "" : ", ") + column.meant + " = " + quoted(column.name);
-    if (column.meant == "time_s" && in_milliseconds(column.name)) scale = " and scale = { time_s = 0.001 }";
+    if (column.meant.empty() || std::ranges::find(keys, column.meant) != keys.end()) continue;
+    keys.push_back(column.meant);
+    sources.push_back(names.back());
+    milliseconds = milliseconds || (column.meant == "time_s" && in_milliseconds(column.name));
   }
-  std::string note = fmt::format("setup \"{}\": {} of {} {} not read", printable(setup.name),
-                                 join_names(names), file_of(setup), names.size() == 1 ? "is" : "are");
-  if (!keys.empty()) note += fmt::format("; to read what is meant, add columns = {{ {} }}{}", keys, scale);
+  Finding note{FindingCode::ReadingsColumnsUnused,
+               {{"setup", printable(setup.name)}, {"file", file_of(setup)}, {"columns", names}}};
+  if (!keys.empty()) {
+    note.data["meant"] = keys;
+    note.data["meant_columns"] = sources;
+    note.data["milliseconds"] = milliseconds;
+  }
   campaign.notes.push_back(note);
 }
 
 void note_doubtful_readings(Campaign& campaign) {
   for (const Setup& setup : campaign.setups) {
-    const std::string where = "setup \"" + printable(setup.name) + "\" (" + file_of(setup) + "): ";
-    for (const std::string& doubt : doubts_of(setup, campaign.machine))
-      campaign.notes.push_back(where + doubt);
+    for (Finding& doubt : doubts_of(setup, campaign.machine)) {
+      doubt.data["setup"] = printable(setup.name);
+      doubt.data["file"] = file_of(setup);
+      campaign.notes.push_back(std::move(doubt));
+    }
   }
   for (auto one = campaign.setups.begin(); one != campaign.setups.end(); ++one) {
     const auto twin = std::find_if(campaign.setups.begin(), one,
                                    [&](const Setup& other) { return same_readings(other, *one); });
     if (twin == one) continue;
-    campaign.notes.push_back(
-        fmt::format("setups \"{}\" and \"{}\" hold the same readings: they count twice; remove one of them",
-                    printable(twin->name), printable(one->name)));
+    campaign.notes.push_back({FindingCode::ReadingsDuplicated,
+                              {{"setup", printable(one->name)}, {"first_setup", printable(twin->name)}}});
   }
 }
 
@@ -112,12 +106,8 @@ void derive_directions(const std::vector<bool>& derive, Campaign& campaign) {
   if (columns.empty()) return;
   std::vector<std::string> names;
   for (const std::size_t i : setups) names.push_back(printable(campaign.setups[i].name));
-  campaign.notes.push_back(fmt::format(
-      "directions of approach that the files do not record ({} in {}) follow from the order of the readings "
-      "along "
-      "each line; if they do not stand in the order in which they were measured, set directions = "
-      "\"as-recorded\"",
-      join_names(columns), join_names(names)));
+  campaign.notes.push_back(
+      {FindingCode::ReadingsDirectionsDerived, {{"columns", columns}, {"setups", names}}});
 }
 
 }  // namespace volcal

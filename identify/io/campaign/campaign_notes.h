@@ -1,6 +1,6 @@
 #pragma once
 /// What is noticed while a campaign is read and is no error: columns that nobody reads, readings that look
-/// like a slip, directions of approach that no file records. Each adds sentences to `Campaign::notes`.
+/// like a slip, directions of approach that no file records. Each adds findings to `Campaign::notes`.
 
 #include <vector>
 

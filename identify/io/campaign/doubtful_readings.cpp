@@ -1,14 +1,15 @@
 #include "volcal/identify/io/campaign/doubtful_readings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "volcal/identify/io/campaign/reading_columns.h"
 #include "volcal/identify/standards/approach.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -20,6 +21,8 @@ constexpr double kShareAgainstOrder = 0.8;
 constexpr double kSlowestStep_s = 1000.0;  // median between readings, over more than a day
 constexpr double kDay_s = 86400.0;
 constexpr double kFastest = 5.0;  // m/s between readings
+
+std::int64_t count(std::size_t number) { return static_cast<std::int64_t>(number); }
 
 /// Everything that was read of a row.
 std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
@@ -38,7 +41,7 @@ std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
 }
 
 /// A time is read once: a row that repeats it is a copy. Without times equal readings may be chance.
-std::optional<std::string> repeated_rows(const Readings& readings) {
+std::optional<Finding> repeated_rows(const Readings& readings) {
   std::map<std::vector<double>, std::size_t> first;
   std::size_t repeats = 0;
   std::pair<std::size_t, std::size_t> example;
@@ -50,14 +53,15 @@ std::optional<std::string> repeated_rows(const Readings& readings) {
   const bool many = repeats >= kFewestRepeats &&
                     static_cast<double>(repeats) >= kShareOfRepeats * static_cast<double>(readings.size());
   if (!many && (repeats == 0 || readings.time.empty())) return std::nullopt;
-  return fmt::format(
-      "{} of {} rows repeat an earlier row in every column, line {} that of line {}: each counts as a "
-      "measurement of its own; remove the copies",
-      repeats, readings.size(), readings.source_line[example.second], readings.source_line[example.first]);
+  return Finding{FindingCode::ReadingsRowsRepeated,
+                 {{"repeats", count(repeats)},
+                  {"rows", count(readings.size())},
+                  {"line", readings.source_line[example.second]},
+                  {"first_line", readings.source_line[example.first]}}};
 }
 
 /// Stated directions against the moves between neighbouring readings of a pass.
-std::optional<std::string> against_order(const Readings& readings, AxisName axis) {
+std::optional<Finding> against_order(const Readings& readings, AxisName axis) {
   const auto& stated = readings.direction[index_of(axis)];
   const auto& position = readings.position[index_of(axis)];
   if (stated.empty() || position.empty()) return std::nullopt;
@@ -73,9 +77,11 @@ std::optional<std::string> against_order(const Readings& readings, AxisName axis
   }
   const bool most = static_cast<double>(against) >= kShareAgainstOrder * static_cast<double>(moves);
   if (moves < kFewestMoves || !most) return std::nullopt;
-  const std::string column = direction_column(axis);
-  return fmt::format("{} of {} moves of {} go against {}: if its sign is reversed add scale = {{ {} = -1 }}",
-                     against, moves, letter_of(axis), column, column);
+  return Finding{FindingCode::ReadingsAgainstDirection,
+                 {{"against", count(against)},
+                  {"moves", count(moves)},
+                  {"axis", std::string(1, letter_of(axis))},
+                  {"column", direction_column(axis)}}};
 }
 
 double median(std::vector<double> values) {
@@ -95,7 +101,7 @@ double travelled(const Readings& readings, std::size_t from, std::size_t to) {
   return std::sqrt(squares);
 }
 
-std::optional<std::string> doubtful_time(const Readings& readings) {
+std::optional<Finding> doubtful_time(const Readings& readings) {
   const auto& time = readings.time;
   if (time.size() < 3) return std::nullopt;
   std::vector<double> steps, speeds;
@@ -110,24 +116,18 @@ std::optional<std::string> doubtful_time(const Readings& readings) {
   const auto [first, last] = std::ranges::minmax(time);
   const double step = median(steps);
   if (step >= kSlowestStep_s && last - first > kDay_s) {
-    return fmt::format(
-        "its readings are {:.0f} s apart and span {:.1f} days: if the times are in milliseconds add scale = "
-        "{{ time_s = 0.001 }}",
-        step, (last - first) / kDay_s);
+    return Finding{FindingCode::ReadingsTimesFarApart,
+                   {{"step", FindingNumber{step, "s"}}, {"span", FindingNumber{last - first, "s"}}}};
   }
   if (speeds.empty() || median(speeds) <= kFastest) return std::nullopt;
-  return fmt::format(
-      "by its times the machine moved at {:.0f} m/s between readings: are they in minutes, hours or days? "
-      "add "
-      "scale = {{ time_s = 60.0 }}, 3600.0 or 86400.0",
-      median(speeds));
+  return Finding{FindingCode::ReadingsMovesTooFast, {{"speed", FindingNumber{median(speeds), "m/s"}}}};
 }
 
 }  // namespace
 
-std::vector<std::string> doubts_of(const Setup& setup, const Machine& machine) {
-  std::vector<std::string> doubts;
-  const auto add = [&](std::optional<std::string> doubt) {
+std::vector<Finding> doubts_of(const Setup& setup, const Machine& machine) {
+  std::vector<Finding> doubts;
+  const auto add = [&](std::optional<Finding> doubt) {
     if (doubt) doubts.push_back(*std::move(doubt));
   };
   add(repeated_rows(setup.readings));

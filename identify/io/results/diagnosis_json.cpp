@@ -8,6 +8,8 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/results/result_json_parts.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -158,7 +160,8 @@ Json proposal_json(const MeasurementProposal& proposal) {
           {"separation_plain", finite_or_null(proposal.plain)},
           {"gain", finite_or_null(proposal.gain)},
           {"plain_gain", finite_or_null(proposal.plain_gain)},
-          {"words", proposal.words}};
+          {"words", sentence(proposal.finding)},
+          {"finding", finding_json(proposal.finding)}};
 }
 
 Json confounding_json(const Confounding& confounding) {
@@ -205,7 +208,8 @@ Json noise_rows_json(const Diagnosis& diagnosis) {
 std::string diagnosis_json(const Diagnosis& diagnosis) {
   Json json = {{"format", kDiagnosisFormat},
                {"verdict", to_string(diagnosis.verdict)},
-               {"words", diagnosis.words},
+               {"words", sentences(diagnosis.findings)},
+               {"findings", findings_json(diagnosis.findings)},
                {"effects", list_json(diagnosis.effects)},
                {"one_of", list_json(diagnosis.one_of)},
                {"further_one_of", Json::array()}};
@@ -229,8 +233,11 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
     json["removed_readings"].push_back(
         {{"setup", removed.setup}, {"line", removed.line}, {"reading", removed.reading}});
   }
-  if (!diagnosis.not_looked_for.empty()) json["not_looked_for"] = diagnosis.not_looked_for;
-  if (!diagnosis.notes.empty()) json["notes"] = diagnosis.notes;
+  if (!diagnosis.not_looked_for.empty()) {
+    json["not_looked_for"] = sentences(diagnosis.not_looked_for);
+    json["not_looked_for_findings"] = findings_json(diagnosis.not_looked_for);
+  }
+  add_notes(diagnosis.notes, json);
   json["ranking"] = list_json(diagnosis.ranking);
   json["families"] = diagnosis.families;
   json["generic_tests"] = diagnosis.generic_tests;

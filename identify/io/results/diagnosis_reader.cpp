@@ -9,6 +9,7 @@
 #include "volcal/identify/io/results/result_json_parts.h"
 #include "volcal/identify/text/json_input.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -159,7 +160,8 @@ MeasurementProposal proposal_from(const Json& json) {
   proposal.plain = number_or_nan(json, "separation_plain");
   proposal.gain = gain_from(json, "gain");
   proposal.plain_gain = gain_from(json, "plain_gain");
-  proposal.words = text(json, "words");
+  const Finding in_words = verbatim(text(json, "words"));
+  proposal.finding = json.contains("finding") ? finding_from(json.at("finding"), in_words) : in_words;
   return proposal;
 }
 
@@ -219,7 +221,8 @@ Diagnosis diagnosis_from(const Json& json) {
   }
   Diagnosis diagnosis;
   diagnosis.verdict = verdict_from(text(json, "verdict"));
-  diagnosis.words = json.at("words").get<std::vector<std::string>>();
+  diagnosis.findings =
+      findings_from(value_or_null(json, "findings"), json.at("words").get<std::vector<std::string>>());
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
@@ -235,14 +238,15 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {
     diagnosis.proposals.push_back(proposal_from(each));
-    diagnosis.next_measurement.push_back(diagnosis.proposals.back().words);
   }
   diagnosis.confounding = confounding_from(json.at("confounding"));
   for (const Json& each : json.at("ladder")) diagnosis.ladder.push_back(step_from(each));
   diagnosis.model_changes = list_from(json.at("model_changes"));
   read_noise(json.at("noise"), diagnosis);
-  diagnosis.not_looked_for = json.value("not_looked_for", std::vector<std::string>{});
-  diagnosis.notes = json.value("notes", std::vector<std::string>{});
+  diagnosis.not_looked_for = findings_from(value_or_null(json, "not_looked_for_findings"),
+                                           json.value("not_looked_for", std::vector<std::string>{}));
+  diagnosis.notes =
+      findings_from(value_or_null(json, "notes_findings"), json.value("notes", std::vector<std::string>{}));
   for (const Json& each : json.at("removed_readings")) {
     diagnosis.removed_readings.push_back({each.at("setup").get<std::string>(),
                                           each.at("line").get<std::int64_t>(),

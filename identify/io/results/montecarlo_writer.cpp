@@ -8,6 +8,8 @@
 
 #include "volcal/identify/text/csv_cell.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -90,18 +92,19 @@ std::string montecarlo_json(const MonteCarloResult& result) {
     for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
       of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
   }
-  if (!result.notes.empty()) json["notes"] = result.notes;
+  add_notes(result.notes, json);
   return json_text(json, 1) + "\n";
 }
 
-std::string undetermined_json(const FitResult& fit, const std::vector<std::string>& notes) {
-  MonteCarloJson json = {
-      {"format", kMonteCarloFormat},
-      {"status", std::string(to_string(fit.status))},
-      {"draws", 0},
-      {"rank",
-       {{"parameters", fit.rank.parameters}, {"rank", fit.rank.rank}, {"invisible", fit.rank.invisible}}}};
-  if (!notes.empty()) json["notes"] = notes;
+std::string undetermined_json(const FitResult& fit, const std::vector<Finding>& notes) {
+  MonteCarloJson json = {{"format", kMonteCarloFormat},
+                         {"status", std::string(to_string(fit.status))},
+                         {"draws", 0},
+                         {"rank",
+                          {{"parameters", fit.rank.parameters},
+                           {"rank", fit.rank.rank},
+                           {"invisible", sentences(fit.rank.invisible)}}}};
+  add_notes(notes, json);
   return json_text(json, 1) + "\n";
 }
 

@@ -15,7 +15,7 @@ inline constexpr const char* kMonteCarloFormat = "volcal-montecarlo-1";
 std::string montecarlo_json(const MonteCarloResult& result);
 
 /// Of a fit that does not determine every error: status, no draws, and what is not visible, in words.
-std::string undetermined_json(const FitResult& fit, const std::vector<std::string>& notes = {});
+std::string undetermined_json(const FitResult& fit, const std::vector<Finding>& notes = {});
 
 /// kind,name,axis,position,position_unit,direction,tool,x_mm,y_mm,z_mm,unit,estimate,u_linear,u,ratio,bias,
 /// bias_error,symmetric_low,symmetric_high,shortest_low,shortest_high,linear_low,linear_high,tolerance,

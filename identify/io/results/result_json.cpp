@@ -10,6 +10,9 @@
 #include "volcal/identify/text/json_input.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/identify/words/finding_json.h"
+#include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -88,18 +91,22 @@ Json functions_json(const FitResult& result) {
 Json rank_json(const RankReport& rank) {
   Json errors = Json::array();
   for (const Observability& error : rank.errors) {
+    const Explanation words = explanation(error.cause);
     errors.push_back({{"symbol", error.symbol},
                       {"visible", error.visible},
                       {"visible_fraction", number(error.visible_fraction)},
                       {"u_rms", number(error.u_rms)},
                       {"effective_parameters", number(error.effective_parameters)},
-                      {"reason", error.reason},
-                      {"remedy", error.remedy}});
+                      {"reason", words.reason},
+                      {"remedy", words.remedy}});
+    if (error.cause) errors.back()["finding"] = finding_json(*error.cause);
   }
   return {{"parameters", rank.parameters},
           {"rank", rank.rank},
-          {"invisible", rank.invisible},
-          {"held_by_prior", rank.held_by_prior},
+          {"invisible", sentences(rank.invisible)},
+          {"invisible_findings", findings_json(rank.invisible)},
+          {"held_by_prior", sentences(rank.held_by_prior)},
+          {"held_by_prior_findings", findings_json(rank.held_by_prior)},
           {"errors", errors}};
 }
 
@@ -151,7 +158,8 @@ Json head_json(const FitResult& result) {
   return {{"format", kResultFormat},
           {"units", "m, rad, s, K; an error is actual minus nominal, tool relative to workpiece"},
           {"status", std::string(to_string(result.status))},
-          {"messages", result.messages},
+          {"messages", sentences(result.findings)},
+          {"findings", findings_json(result.findings)},
           {"provenance", provenance_json(result.provenance)},
           {"sigma0", number(result.sigma0)},
           {"chi2", number(result.chi2)},
@@ -221,9 +229,14 @@ Provenance provenance_from(const Json& json) {
           .command = json.at("command").get<std::string>()};
 }
 
+/// The sentences of json[key] with their codes, where the file has them.
+std::vector<Finding> findings_beside(const Json& json, const std::string& key, const std::string& codes) {
+  return findings_from(value_or_null(json, codes), json.at(key).get<std::vector<std::string>>());
+}
+
 void read_head(const Json& json, FitResult& result) {
   result.status = status_from(json.at("status").get<std::string>());
-  result.messages = json.at("messages").get<std::vector<std::string>>();
+  result.findings = findings_beside(json, "messages", "findings");
   if (json.contains("provenance")) result.provenance = provenance_from(json.at("provenance"));
   result.sigma0 = number(json.at("sigma0"));
   result.chi2 = number(json.at("chi2"));
@@ -273,20 +286,33 @@ void read_head(const Json& json, FitResult& result) {
   }
 }
 
+/// Files without codes tell why in words.
+std::optional<Finding> cause_from(const Json& error) {
+  const auto symbol = error.at("symbol").get<std::string>();
+  const auto reason = error.at("reason").get<std::string>();
+  const auto remedy = error.at("remedy").get<std::string>();
+  if (error.at("visible").get<bool>()) return std::nullopt;
+  const Finding in_words{FindingCode::NotVisibleVerbatim,
+                         {{"error", symbol}, {"reason", reason}, {"remedy", remedy}}};
+  if (!error.contains("finding")) return in_words;
+  const Finding cause = finding_from(error.at("finding"), in_words);
+  static_cast<void>(explanation(cause));
+  return cause;
+}
+
 RankReport rank_from(const Json& json) {
   RankReport rank;
   rank.parameters = json.at("parameters").get<int>();
   rank.rank = json.at("rank").get<int>();
-  rank.invisible = json.at("invisible").get<std::vector<std::string>>();
-  rank.held_by_prior = json.at("held_by_prior").get<std::vector<std::string>>();
+  rank.invisible = findings_beside(json, "invisible", "invisible_findings");
+  rank.held_by_prior = findings_beside(json, "held_by_prior", "held_by_prior_findings");
   for (const Json& error : json.at("errors")) {
     rank.errors.push_back({.symbol = error.at("symbol").get<std::string>(),
                            .visible = error.at("visible").get<bool>(),
                            .visible_fraction = number(error.at("visible_fraction")),
                            .u_rms = number(error.at("u_rms")),
                            .effective_parameters = number(error.at("effective_parameters")),
-                           .reason = error.at("reason").get<std::string>(),
-                           .remedy = error.at("remedy").get<std::string>()});
+                           .cause = cause_from(error)});
   }
   return rank;
 }

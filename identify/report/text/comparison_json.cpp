@@ -2,6 +2,7 @@
 
 #include "volcal/identify/report/text/comparison_report.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
@@ -99,15 +100,15 @@ Json figures_json(const StandardFigures& figures) {
                                 {"axis", std::string{letter_of(test.axis)}},
                                 {"place", test.place},
                                 {"readings", positioning_json(test.figures.readings)},
-                                {"model", positioning_json(test.figures.model)},
-                                {"notes", test.notes}});
+                                {"model", positioning_json(test.figures.model)}});
+    add_findings("notes", test.notes, json["iso230_2"].back());
   }
   for (const DiagonalTest& test : figures.diagonals) {
     json["iso230_6"].push_back({{"setup", test.setup},
                                 {"diagonal", test.figures.readings.name},
                                 {"readings", positioning_json(test.figures.readings.positioning)},
-                                {"model", positioning_json(test.figures.model.positioning)},
-                                {"notes", test.notes}});
+                                {"model", positioning_json(test.figures.model.positioning)}});
+    add_findings("notes", test.notes, json["iso230_6"].back());
   }
   for (const DiagonalGroup& group : figures.diagonal_groups) {
     json["iso230_6_diagonals"].push_back({{"axes", letters_of(group.axes)},
@@ -119,17 +120,17 @@ Json figures_json(const StandardFigures& figures) {
                                 {"plane", std::string{letter_of(test.first), letter_of(test.second)}},
                                 {"radius_mm", test.radius * kPerMilli},
                                 {"readings", circular_json(test, test.figures.readings)},
-                                {"model", circular_json(test, test.figures.model)},
-                                {"notes", test.notes}});
+                                {"model", circular_json(test, test.figures.model)}});
+    add_findings("notes", test.notes, json["iso230_4"].back());
   }
   for (const PointsTest& test : figures.points) {
     json["volumetric"].push_back({{"setup", test.setup},
                                   {"readings", volumetric_json(test.figures.readings)},
                                   {"model", volumetric_json(test.figures.model)},
-                                  {"difference", volumetric_json(test.difference)},
-                                  {"notes", test.notes}});
+                                  {"difference", volumetric_json(test.difference)}});
+    add_findings("notes", test.notes, json["volumetric"].back());
   }
-  json["not_recognised"] = figures.not_recognised;
+  add_findings("not_recognised", figures.not_recognised, json);
   return json;
 }
 
@@ -189,7 +190,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
   Json list = Json::array();
   for (const ComparedModel& model : models) list.push_back(model_json(campaign, model));
   Json json = {{"format", "volcal-comparison-1"}, {"campaign", campaign.file}, {"models", list}};
-  if (!campaign.notes.empty()) json["notes"] = campaign.notes;
+  add_notes(campaign.notes, json);
   if (!heldout.empty()) json["held_out"] = Json::array();
   for (const HeldOutModel& model : heldout) {
     json["held_out"].push_back({{"name", model.name},

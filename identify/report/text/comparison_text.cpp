@@ -4,9 +4,11 @@
 #include <utility>
 
 #include "volcal/identify/report/text/comparison_report.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/signed_means_text.h"
 #include "volcal/identify/report/text/standard_figures_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"
 
@@ -332,8 +334,8 @@ std::string where_it_fails(const ComparedModel& model) {
 }  // namespace
 
 std::string failure_sentence(const ComparedModel& model) {
-  const std::string scanned = model.screening ? screening_sentence(*model.screening) : "";
-  return where_it_fails(model) + (scanned.empty() ? "" : " But " + scanned + ".");
+  const std::optional<Finding> scanned = model.screening ? finding_of(*model.screening) : std::nullopt;
+  return where_it_fails(model) + (scanned ? " But " + contradiction(*scanned) + "." : "");
 }
 
 bool fails(const ComparedModel& model) {
@@ -354,7 +356,7 @@ std::string comparison_text(const Campaign& campaign, std::span<const ComparedMo
   }
   const Comparisons comparisons = comparisons_of(models);
   if (two) text += against_sentence(*comparisons[0], *comparisons[1], "all readings");
-  for (const std::string& note : campaign.notes) text += "! " + note + '\n';
+  text += findings_text(campaign.notes);
   text += '\n' + setups_text(campaign, comparisons, options.all_cells, "Residuals by setup");
   const std::string places = places_text(comparisons, options);
   if (!places.empty()) text += '\n' + places;

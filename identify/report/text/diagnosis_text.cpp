@@ -7,10 +7,12 @@
 #include <map>
 #include <utility>
 
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -209,13 +211,13 @@ std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
 
 std::string diagnosis_summary_text(const Diagnosis& diagnosis) {
   std::string text = to_string(diagnosis.verdict) + "\n";
-  for (const std::string& words : diagnosis.words) text += words + "\n";
+  for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
   if (diagnosis.ladder.size() > 1) text += ladder_table(diagnosis);
   for (const EffectFinding& effect : diagnosis.effects) text += effect_line(effect);
   if (!remaining_unknown(diagnosis).empty()) text += unknown_table(diagnosis, kLeadingUnknown);
-  if (!diagnosis.next_measurement.empty()) text += "next: " + diagnosis.next_measurement.front() + "\n";
+  if (!diagnosis.proposals.empty()) text += "next: " + sentence(diagnosis.proposals.front().finding) + "\n";
   const std::size_t shown = std::min(kLeadingNotes, diagnosis.notes.size());
-  for (std::size_t i = 0; i < shown; ++i) text += "! " + diagnosis.notes[i] + "\n";
+  for (std::size_t i = 0; i < shown; ++i) text += "! " + sentence(diagnosis.notes[i]) + "\n";
   const std::size_t more = diagnosis.notes.size() - shown +
                            (diagnosis.not_looked_for.empty() ? 0 : diagnosis.not_looked_for.size());
   if (more > 0) text += fmt::format("! and {} more note{} (--verbose)\n", more, more == 1 ? "" : "s");
@@ -225,7 +227,7 @@ std::string diagnosis_summary_text(const Diagnosis& diagnosis) {
 std::string diagnosis_text(const Diagnosis& diagnosis) {
   const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
   std::string text = to_string(diagnosis.verdict) + "\n";
-  for (const std::string& words : diagnosis.words) text += words + "\n";
+  for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
@@ -238,9 +240,9 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       "  MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from "
       "every other effect, the worst of which is the rival\n";
   text += confounding_table(diagnosis.confounding);
-  if (!diagnosis.next_measurement.empty()) {
+  if (!diagnosis.proposals.empty()) {
     text += "\nWhich measurement next\n";
-    for (const std::string& words : diagnosis.next_measurement) text += "  " + words + "\n";
+    for (const std::string& words : sentences(findings_of(diagnosis.proposals))) text += "  " + words + "\n";
   }
   if (!diagnosis.detectable.empty()) {
     text += "\n" + detected_effects_table(diagnosis) +
@@ -253,9 +255,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
       diagnosis.families, diagnosis.generic_tests, diagnosis.not_visible.size(),
       diagnosis.removed_readings.size());
   text += removed_text(diagnosis);
-  for (const std::string& words : diagnosis.not_looked_for) text += words + "\n";
-  for (const std::string& note : diagnosis.notes) text += "! " + note + "\n";
-  return text;
+  for (const std::string& words : sentences(diagnosis.not_looked_for)) text += words + "\n";
+  return text + findings_text(diagnosis.notes);
 }
 
 }  // namespace volcal

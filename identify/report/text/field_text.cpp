@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
@@ -57,46 +58,11 @@ nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions
   return json;
 }
 
-std::vector<std::string> unmeasured_travel(const FitResult& result) {
-  constexpr double kNoticed = 1e-6;  // m or rad
-  const MeasuredTravel measured(result);
-  std::vector<std::string> sentences;
-  for (const Axis& axis : result.machine.axes) {
-    const double first = measured.min[index_of(axis.name)], last = measured.max[index_of(axis.name)];
-    if (!(first > axis.travel_min + kNoticed) && !(last < axis.travel_max - kNoticed)) continue;
-    const auto [suffix, unit] = position_unit(axis.name);
-    sentences.push_back(fmt::format(
-        "{} was measured from {:g} to {:g} of {:g} to {:g} {}: beyond it the last measured error is held",
-        letter_of(axis.name), first / unit, last / unit, axis.travel_min / unit, axis.travel_max / unit,
-        suffix));
-  }
-  return sentences;
-}
-
 void require_measured_travel(const FitResult& result) {
-  const std::vector<std::string> sentences = unmeasured_travel(result);
-  if (sentences.empty()) return;
-  throw InputError({}, "--no-extrapolation: " + sentences.front(),
+  const std::vector<Finding> unmeasured = unmeasured_travel(result);
+  if (unmeasured.empty()) return;
+  throw InputError({}, "--no-extrapolation: " + sentence(unmeasured.front()),
                    "measure the whole travel, set travel_mm to what was measured, or leave the option out");
-}
-
-std::vector<std::string> errors_in_no_table(const FitResult& result) {
-  std::vector<std::string> sentences;
-  for (const std::string& label : effects_on_no_pose(result))
-    sentences.push_back(label + " was identified and is in no table: it acts along a path or in one setup");
-  std::string axes;
-  const auto add = [&axes](AxisName axis) {
-    if (is_rotary(axis) && axes.find(letter_of(axis)) == std::string::npos) axes += letter_of(axis);
-  };
-  for (const FunctionGroup& group : result.layout.groups) add(group.axis);
-  for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.location) add(block.location->axis);
-  }
-  for (const char axis : axes)
-    sentences.push_back(fmt::format(
-        "errors of axis {} were identified and are in no table: tables are for linear axes with {} at 0",
-        axis, axis));
-  return sentences;
 }
 
 }  // namespace volcal

@@ -1,9 +1,8 @@
 #pragma once
-/// Where and for what the error of a result is stated: conditions, measured positions, what no output holds.
+/// Where and for what the error of a result is stated: conditions, measured positions.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
 #include "volcal/identify/errors/error_field.h"
 
@@ -14,13 +13,7 @@ namespace volcal {
 std::string conditions_text(const FitResult& result, const Conditions& conditions);
 nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions& conditions);
 
-/// One sentence for every axis that was measured over a part of its travel.
-std::vector<std::string> unmeasured_travel(const FitResult& result);
 /// Throws InputError where an axis was measured over a part of its travel.
 void require_measured_travel(const FitResult& result);
-
-/// What was identified and is in no table of linear axes, in words: effects that act on no pose, errors of
-/// rotary axes.
-std::vector<std::string> errors_in_no_table(const FitResult& result);
 
 }  // namespace volcal

@@ -8,10 +8,12 @@
 #include <map>
 
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/report/values/surface_values.h"
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/observation/channels.h"
@@ -310,11 +312,11 @@ std::string outliers_line(const FitResult& result) {
 
 /// The first messages, and how many more there are.
 std::string leading_messages(const FitResult& result) {
-  const std::size_t shown = std::min(kLeadingMessages, result.messages.size());
+  const std::size_t shown = std::min(kLeadingMessages, result.findings.size());
   std::string text;
-  for (std::size_t i = 0; i < shown; ++i) text += "! " + result.messages[i] + "\n";
-  if (shown < result.messages.size()) {
-    const std::size_t more = result.messages.size() - shown;
+  for (std::size_t i = 0; i < shown; ++i) text += "! " + sentence(result.findings[i]) + "\n";
+  if (shown < result.findings.size()) {
+    const std::size_t more = result.findings.size() - shown;
     text += fmt::format("! and {} more message{} (--verbose)\n", more, more == 1 ? "" : "s");
   }
   return text;
@@ -322,8 +324,8 @@ std::string leading_messages(const FitResult& result) {
 
 std::string notes(const FitResult& result) {
   std::string text = rank_text(result) + "\n";
-  for (const std::string& message : result.messages) text += "! " + message + "\n";
-  for (const std::string& held : result.rank.held_by_prior) text += "  " + held + "\n";
+  text += findings_text(result.findings);
+  for (const std::string& held : sentences(result.rank.held_by_prior)) text += "  " + held + "\n";
   return text;
 }
 

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include "volcal/identify/report/text/budget_text.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/quantity_groups.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
@@ -161,14 +162,13 @@ std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = study_head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
   return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
-         campaign_notes_text(result.notes);
+         findings_text(result.notes);
 }
 
 std::string undetermined_text(const FitResult& fit) {
-  std::string text =
+  const std::string text =
       "Monte Carlo: nothing is drawn, the readings do not determine every error.\n" + rank_text(fit) + "\n";
-  for (const std::string& invisible : fit.rank.invisible) text += "! " + invisible + "\n";
-  return text +
+  return text + findings_text(fit.rank.invisible) +
          "Do what is named here, or switch these errors off in the model (EAX = { basis = \"zero\" }, "
          "EC0Y = \"zero\"), and draw again.\n";
 }

@@ -7,10 +7,11 @@
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/planning/registry.h"
-#include "volcal/identify/report/text/campaign_notes_text.h"
+#include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 
@@ -207,7 +208,8 @@ std::string planned_effects_table(const CampaignPlan& plan) {
 
 std::string invisible_text(const CampaignPlan& plan) {
   std::string text;
-  for (const std::string& sentence : plan.plan.result.rank.invisible) text += "  " + sentence + "\n";
+  for (const std::string& sentence : sentences(plan.plan.result.rank.invisible))
+    text += "  " + sentence + "\n";
   return text.empty() ? "" : "\nWhat this budget cannot determine\n" + text;
 }
 
@@ -219,7 +221,7 @@ std::string options_table(const CampaignPlan& plan) {
                    {"still not visible", Align::Left}},
                   "What one setup more would bring, best first");
   for (const PlanOption& option : plan.options) {
-    table.add_row({option.words, count_number(static_cast<long long>(option.readings)),
+    table.add_row({sentence(option.what), count_number(static_cast<long long>(option.readings)),
                    fixed_number(option.volumetric_rms * kPerMicro, 3),
                    option.made_visible.empty() ? "-" : joined_words(option.made_visible),
                    option.still_invisible.empty() ? "-" : joined_words(option.still_invisible)});
@@ -268,7 +270,7 @@ double target_ratio(const CampaignPlan& plan) {
 std::string plan_text(const CampaignPlan& plan) {
   return plan_head(plan) + "\n" + layout_table(plan) + "\n" + figures_table(plan) + "\n" + verdict(plan) +
          "\n" + planned_errors_table(plan) + "\n" + planned_effects_table(plan) + invisible_text(plan) +
-         options_table(plan) + campaign_notes_text(plan.notes);
+         options_table(plan) + findings_text(plan.notes);
 }
 
 }  // namespace volcal

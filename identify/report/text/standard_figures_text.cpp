@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -201,7 +202,7 @@ template <class Test>
 std::string notes_text(const std::vector<Test>& tests) {
   std::vector<std::pair<std::string, std::string>> notes;
   for (const Test& test : tests) {
-    for (const std::string& note : test.notes) {
+    for (const std::string& note : sentences(test.notes)) {
       const auto same =
           std::find_if(notes.begin(), notes.end(), [&](const auto& known) { return known.first == note; });
       if (same == notes.end()) {
@@ -230,7 +231,8 @@ std::string standard_figures_text(std::span<const NamedFigures> models) {
         circles + circle_key + notes_text(first.circles), points_text(models) + notes_text(first.points)}) {
     if (!part.empty()) text += (text.empty() ? "" : "\n") + part;
   }
-  for (const std::string& reason : first.not_recognised) text += "  no standard test: " + reason + '\n';
+  for (const std::string& reason : sentences(first.not_recognised))
+    text += "  no standard test: " + reason + '\n';
   return text;
 }
 

@@ -153,7 +153,7 @@ TEST(Diagnosis, NamesNothingOfAnAxisThatStandsStill) {
     const Campaign campaign = circle_in(plane);
     const FitResult result = fit(campaign, ModelSpec{});
     const Diagnosis diagnosis = diagnose(campaign, result, DiagnoseOptions{});
-    EXPECT_FALSE(diagnosis.words.empty()) << plane;
+    EXPECT_FALSE(diagnosis.findings.empty()) << plane;
     const std::vector<std::string>& variables = diagnosis.figures.generic.variables;
     EXPECT_EQ(std::ranges::find(variables, still), variables.end()) << plane;
     EXPECT_GE(variables.size(), 2U) << plane;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/hidden_studies.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -25,7 +26,7 @@ TEST(Screening, IsSilentWhereNothingIsMissing) {
   const Screening screening = screen(study.simulated.campaign, study.result, 1);
   EXPECT_FALSE(screening.contradicts) << screening.leading << " " << screening.log10_p;
   EXPECT_GT(screening.tests, 500U);
-  EXPECT_EQ(screening_sentence(screening), "");
+  EXPECT_FALSE(finding_of(screening));
   judge(screening, study.result);
   EXPECT_EQ(study.result.status, FitStatus::Ok);
 }
@@ -36,12 +37,13 @@ TEST(Screening, ContradictsAFitThatLacksAnEffect) {
     const Screening screening = screen(study.simulated.campaign, study.result, 1);
     EXPECT_TRUE(screening.contradicts) << effect.kind << " " << screening.log10_p;
     EXPECT_GT(screening.rms, 0.3e-6) << effect.kind;
-    const std::size_t before = study.result.messages.size();
+    const std::size_t before = study.result.findings.size();
     study.result.status = FitStatus::Ok;
     judge(screening, study.result);
     EXPECT_EQ(study.result.status, FitStatus::LackOfFit);
-    ASSERT_EQ(study.result.messages.size(), before + 1);
-    EXPECT_THAT(study.result.messages.back(), ::testing::HasSubstr("volcal diagnose"));
+    ASSERT_EQ(study.result.findings.size(), before + 1);
+    EXPECT_EQ(study.result.findings.back().code, FindingCode::ModelContradicted);
+    EXPECT_EQ(study.result.findings.back().text("leading"), screening.leading);
   }
 }
 

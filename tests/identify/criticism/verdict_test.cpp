@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "volcal/identify/criticism/search/unknown_findings.h"
+#include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -51,7 +53,7 @@ TEST(Verdict, NamedWithAmplitudeAndU) {
   Diagnosis diagnosis = named();
   conclude({}, diagnosis);
   EXPECT_EQ(to_string(diagnosis.verdict), "NAMED");
-  EXPECT_THAT(diagnosis.words,
+  EXPECT_THAT(sentences(diagnosis.findings),
               ElementsAre("The missing effect is: EYY reversal (reversal), EYY reversal = 1.5 +- 0.2 um"));
 }
 
@@ -61,7 +63,7 @@ TEST(Verdict, NamesKeepAReserveWhileSomethingIsOpen) {
   not_reduced.ladder = ladder(1e-6, 0.81e-6, 0.5e-6);
   conclude({}, not_reduced);
   EXPECT_EQ(to_string(not_reduced.verdict), "NAMED_MORE_REMAINS");
-  EXPECT_THAT(not_reduced.words.back(), HasSubstr("held out are still off"));
+  EXPECT_EQ(not_reduced.findings.back().code, FindingCode::DiagnosisHeldoutNotReduced);
   Diagnosis reduced = named();
   reduced.ladder = ladder(1e-6, 0.79e-6, 0.5e-6);
   conclude({}, reduced);
@@ -73,7 +75,7 @@ TEST(Verdict, NamesKeepAReserveWhileSomethingIsOpen) {
   beside.unknown = {unknown({"z"}, -5.0)};
   conclude({}, beside);
   EXPECT_EQ(to_string(beside.verdict), "NAMED_MORE_REMAINS");
-  EXPECT_EQ(beside.words.back(),
+  EXPECT_EQ(sentence(beside.findings.back()),
             "More remains: it depends on z, acts along X, and is 0.5 um RMS on the readings");
 }
 
@@ -106,12 +108,14 @@ TEST(Verdict, SaysWhatIsNoNameAndWhatIsInUseAgain) {
   Diagnosis diagnosis;
   diagnosis.removed_readings.resize(2);
   conclude({.more_is_known = false,
-            .rejected = {{"EAX by z^2", "z still moves what it leaves"}},
+            .rejected = {{FindingCode::RejectedDriverStillMoves,
+                          {{"effect", "EAX by z^2"}, {"drivers", std::vector<std::string>{"z"}}}}},
             .removed_by_fit = 5},
            diagnosis);
-  EXPECT_THAT(diagnosis.words, ElementsAre(HasSubstr("Nothing is above the noise"),
-                                           "Not named EAX by z^2: z still moves what it leaves.",
-                                           HasSubstr("3 of 5 readings")));
+  EXPECT_THAT(
+      sentences(diagnosis.findings),
+      ElementsAre(HasSubstr("Nothing is above the noise"),
+                  "Not named EAX by z^2: z still moves what it leaves.", HasSubstr("3 of 5 readings")));
 }
 
 /// 5 % of 40 decades are two; of 10 decades half a one, less than the one that is allowed anyway.

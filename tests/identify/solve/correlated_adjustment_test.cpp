@@ -13,6 +13,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/sim/machine/datum.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -327,7 +328,7 @@ TEST(FitWithCorrelatedNoise, WhiteNoiseStaysAsItIs) {
     if (found.noise.more_than_white) continue;
     EXPECT_TRUE(found.parameters == plain.parameters);
     EXPECT_TRUE(found.covariance == plain.covariance);
-    EXPECT_EQ(found.messages, plain.messages);
+    EXPECT_EQ(found.findings, plain.findings);
     ++same;
   }
   // Each of three terms that are not there is kept in some 2 % of campaigns.
@@ -351,9 +352,7 @@ TEST(FitWithCorrelatedNoise, RobustLossTakesReadingsAsIndependentAndSaysSo) {
   options.loss = RobustLoss::Huber;
   const FitResult result = fit(campaign.campaign, spline_model(3), options);
   EXPECT_FALSE(result.noise.estimated);
-  EXPECT_TRUE(std::ranges::any_of(result.messages, [](const std::string& message) {
-    return message.find("robust loss: readings are taken as independent") != std::string::npos;
-  }));
+  EXPECT_EQ(std::ranges::count(result.findings, FindingCode::NoiseTakenAsIndependent, &Finding::code), 1);
 }
 
 }  // namespace

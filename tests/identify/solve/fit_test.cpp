@@ -2,6 +2,7 @@
 
 #include "volcal/identify/solve/fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
 
@@ -176,8 +178,11 @@ TEST(Fit, EstimatesAWrongStatedSigma) {
   ASSERT_EQ(result.variance_components.size(), 1U);
   EXPECT_NEAR(result.variance_components[0].scale, 2.0, 0.15);
   EXPECT_EQ(result.status, FitStatus::LackOfFit);
-  EXPECT_NE(result.messages.front().find("laser-tracer"), std::string::npos);
-  EXPECT_EQ(result.messages.front().find("nm for um"), std::string::npos);
+  const Finding& first = result.findings.front();
+  EXPECT_EQ(first.code, FindingCode::NoiseSigmaContradicted);
+  EXPECT_EQ(first.text("instrument"), "laser-tracer");
+  EXPECT_NEAR(first.number("times").si, 2.0, 0.15);
+  EXPECT_FALSE(first.flag("unit_slip"));
 }
 
 /// A tracker whose lengths are as good as stated and whose angles are twice as bad.
@@ -205,7 +210,8 @@ TEST(Fit, SuspectsTheUnitOfANoiseAThousandTimesTooSmall) {
     for (const char* key : {"constant", "per_metre"}) setup.noise.set(key, 1e-3 * *setup.noise.number(key));
   }
   const FitResult result = fit(simulated.campaign, fitted_splines(5));
-  EXPECT_NE(result.messages.front().find("nm for um"), std::string::npos) << result.messages.front();
+  EXPECT_EQ(result.findings.front().code, FindingCode::NoiseSigmaContradicted);
+  EXPECT_TRUE(result.findings.front().flag("unit_slip"));
 }
 
 TEST(Fit, ListsAnOutlierAndRemovesItOnlyWhenAsked) {
@@ -250,9 +256,12 @@ TEST(Fit, SaysThatAGuessIsContradicted) {
   ASSERT_NE(bar, simulated.campaign.setups.end());
   const auto told = [&] {
     const FitResult result = fit(simulated.campaign, fitted_splines(4));
-    return std::ranges::count_if(result.messages, [&](const std::string& message) {
-      return message.starts_with(bar->name + ": centre x: estimated 30") &&
-             message.find("times its default standard deviation of 0.1 mm") != std::string::npos;
+    return std::ranges::count_if(result.findings, [&](const Finding& finding) {
+      return finding.code == FindingCode::PriorContradicted &&
+             finding.text("block") == bar->name + ": centre" && finding.text("parameter") == "x" &&
+             std::abs(finding.number("miss").si - 30e-3) < 0.5e-3 &&
+             finding.number("sigma").unit == "mm" &&
+             std::abs(finding.number("sigma").in_unit() - 0.1) < 1e-9 && finding.flag("default");
     });
   };
   EXPECT_EQ(told(), 0);
@@ -294,8 +303,10 @@ TEST(Fit, RollOfTheLastAxisNeedsASidewaysTool) {
   EXPECT_EQ(result.status, FitStatus::RankDeficient);
   const Observability& roll = figure_of(result, "ECZ");
   EXPECT_FALSE(roll.visible);
-  EXPECT_EQ(roll.reason, "every tool offset lies on Z");
-  EXPECT_NE(roll.remedy.find("sideways"), std::string::npos);
+  const Finding cause{FindingCode::NotVisibleToolsOnOneAxis, {{"error", "ECZ"}, {"about", "Z"}}};
+  EXPECT_EQ(roll.cause, cause);
+  EXPECT_THAT(result.rank.invisible, ::testing::Contains(cause));
+  EXPECT_THAT(result.findings, ::testing::Contains(cause));
   EXPECT_TRUE(figure_of(result, "EXX").visible);
   EXPECT_TRUE(result.covariance.allFinite());
 }
@@ -311,7 +322,8 @@ TEST(Fit, ASingleStationIsNamedAsTheReason) {
       std::ranges::count_if(result.rank.errors, [](const Observability& e) { return !e.visible; });
   EXPECT_GE(invisible, 6);
   EXPECT_TRUE(std::ranges::any_of(result.rank.errors, [](const Observability& e) {
-    return e.remedy.find("more stations") != std::string::npos;
+    return e.cause && e.cause->code == FindingCode::NotVisibleExchangeable &&
+           std::ranges::count(e.cause->texts("remedies"), "stations") == 1;
   }));
 }
 
@@ -333,9 +345,7 @@ TEST(Fit, AStationsGuessChangesNoStatus) {
   auto simulated = sim::simulate(small_study(0, small_tracking()));
   const FitResult near = fit(simulated.campaign, fitted_splines(4));
   const auto tells_guess = [](const FitResult& result) {
-    return std::ranges::any_of(result.messages, [](const std::string& message) {
-      return message.find("mm from its guess") != std::string::npos;
-    });
+    return std::ranges::count(result.findings, FindingCode::StationFarFromGuess, &Finding::code) > 0;
   };
   EXPECT_FALSE(tells_guess(near));
   for (volcal::Setup& setup : simulated.campaign.setups) {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/measurement/instruments.h"
 #include "volcal/sim/study.h"
@@ -176,9 +177,9 @@ std::string table(const FitResult& result, const std::map<std::string, Sight>& s
                                  "f.d. gain", "null share");
   for (const Observability& error : result.rank.errors) {
     const Sight& mine = sight.at(error.symbol);
-    text +=
-        fmt::format("{:6s} {:>8s} {:9.1f} {:11.4f}  {}; {}\n", error.symbol, error.visible ? "visible" : "-",
-                    mine.gain, mine.null_share, error.reason, error.remedy);
+    text += fmt::format("{:6s} {:>8s} {:9.1f} {:11.4f}  {}; {}\n", error.symbol,
+                        error.visible ? "visible" : "-", mine.gain, mine.null_share,
+                        explanation(error.cause).reason, explanation(error.cause).remedy);
   }
   return text;
 }
@@ -262,23 +263,24 @@ TEST_P(PartialCampaign, SaysWhyInWordsThatHold) {
   SCOPED_TRACE(table(result, sight));
   for (const Observability& error : result.rank.errors) {
     if (error.visible) {
-      EXPECT_EQ(error.reason + error.remedy, "") << error.symbol;
+      EXPECT_FALSE(error.cause) << error.symbol;
       continue;
     }
-    EXPECT_NE(error.remedy, "") << error.symbol;
+    const Explanation words = explanation(error.cause);
+    EXPECT_NE(words.remedy, "") << error.symbol;
     const Sight& mine = sight.at(error.symbol);
-    const bool no_lever = error.reason.find("every tool offset lies on") != std::string::npos;
+    const bool no_lever = words.reason.find("every tool offset lies on") != std::string::npos;
     EXPECT_EQ(no_lever, mine.null_share > 0.9999) << error.symbol;
     if (no_lever) {
-      EXPECT_THAT(error.remedy, HasSubstr("tool offset sideways to Z"));
+      EXPECT_THAT(words.remedy, HasSubstr("tool offset sideways to Z"));
       continue;
     }
-    EXPECT_THAT(error.reason, HasSubstr("can be exchanged with")) << error.symbol;
+    EXPECT_THAT(words.reason, HasSubstr("can be exchanged with")) << error.symbol;
     double strongest = 0.0;
     for (const auto& [other, coupling] : mine.coupling) {
       const bool named = other == "nuisance"
-                             ? names_nuisance(error.reason)
-                             : other != error.symbol && error.reason.find(other) != std::string::npos;
+                             ? names_nuisance(words.reason)
+                             : other != error.symbol && words.reason.find(other) != std::string::npos;
       if (named) strongest = std::max(strongest, coupling);
     }
     EXPECT_GT(strongest, 0.05) << error.symbol
@@ -363,10 +365,10 @@ TEST(PartialCampaign, ASquarenessAtTwoPositionsAsksForPositions) {
   const Observability at_two = squareness(2);
   EXPECT_FALSE(at_two.visible);
   EXPECT_EQ(
-      at_two.reason,
+      explanation(at_two.cause).reason,
       "the readings stand at too few positions of axis Y, or on too little of its travel, to tell it from "
       "EXY");
-  EXPECT_EQ(at_two.remedy, "add positions along the whole travel of axis Y");
+  EXPECT_EQ(explanation(at_two.cause).remedy, "add positions along the whole travel of axis Y");
   EXPECT_TRUE(squareness(5).visible);
 }
 
@@ -389,7 +391,7 @@ TEST(PartialCampaign, AStraightnessAtTwoPositionsAsksForPositions) {
   };
   const Observability at_two = straightness(2);
   EXPECT_FALSE(at_two.visible);
-  EXPECT_EQ(at_two.remedy, "add positions along axis Y");
+  EXPECT_EQ(explanation(at_two.cause).remedy, "add positions along axis Y");
   EXPECT_TRUE(straightness(5).visible);
 }
 
@@ -405,8 +407,8 @@ TEST(PartialCampaign, AnAxisThatStandsStillHidesItsErrorsAndItsSquareness) {
   for (const char* name : {"EXY", "EC0Y"}) {
     const auto error = std::ranges::find(result.rank.errors, name, &Observability::symbol);
     EXPECT_FALSE(error->visible) << name;
-    EXPECT_EQ(error->reason, "axis Y does not move in this campaign") << name;
-    EXPECT_EQ(error->remedy, "measure along axis Y") << name;
+    EXPECT_EQ(explanation(error->cause).reason, "axis Y does not move in this campaign") << name;
+    EXPECT_EQ(explanation(error->cause).remedy, "measure along axis Y") << name;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "volcal/identify/standards/test_paths.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
@@ -184,7 +185,7 @@ TEST(StandardFigures, LinesWithTheirOwnZeroHaveNoReversal) {
   const PositioningFigures& line = figures.lines[0].figures.readings;
   EXPECT_FALSE(line.reversal || line.mean_reversal || line.systematic || line.repeatability || line.accuracy);
   EXPECT_NEAR(*line.positive.systematic, 8e-6, 1e-12);
-  EXPECT_THAT(figures.lines[0].notes, ::testing::Contains(HasSubstr("own zero")));
+  EXPECT_THAT(sentences(figures.lines[0].notes), ::testing::Contains(HasSubstr("own zero")));
 }
 
 /// X falls by 0.6 and Y rises by 0.8 per metre: a face diagonal of 0.5 m, named by its first pass. Deviations
@@ -208,7 +209,7 @@ TEST(StandardFigures, TwoMovingAxesAreAFaceDiagonal) {
   ASSERT_EQ(figures.diagonal_groups.size(), 1U);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.systematic, 12e-6, 1e-12);
   EXPECT_NEAR(*figures.diagonal_groups[0].summary.readings.reversal, 2e-6, 1e-12);
-  EXPECT_THAT(figures.diagonals[0].notes, ::testing::Contains(HasSubstr("R and A are undefined")));
+  EXPECT_THAT(sentences(figures.diagonals[0].notes), ::testing::Contains(HasSubstr("R and A are undefined")));
 }
 
 /// One axis at a time: the corners of the staircase lie far off any line.
@@ -220,7 +221,7 @@ TEST(StandardFigures, SequentialStepsAreNoDiagonal) {
       standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
   EXPECT_THAT(figures.lines, IsEmpty());
   EXPECT_THAT(figures.diagonals, IsEmpty());
-  EXPECT_THAT(figures.not_recognised,
+  EXPECT_THAT(sentences(figures.not_recognised),
               ElementsAre("steps: the commanded points do not lie on a straight line"));
 }
 
@@ -234,7 +235,8 @@ TEST(StandardFigures, TargetsMetFromOneDirectionAreCounted) {
   const auto figures =
       standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
   ASSERT_EQ(figures.lines.size(), 1U);
-  EXPECT_THAT(figures.lines[0].notes, ElementsAre("1 of 3 targets were met from one direction only"));
+  EXPECT_THAT(sentences(figures.lines[0].notes),
+              ElementsAre("1 of 3 targets were met from one direction only"));
   EXPECT_EQ(figures.lines[0].figures.readings.targets[2].positive.count, 4);
 }
 
@@ -260,7 +262,7 @@ TEST(StandardFigures, BeamAcrossTheMotionIsNoPositioningTest) {
   const auto figures =
       standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
   EXPECT_THAT(figures.lines, IsEmpty());
-  EXPECT_THAT(figures.not_recognised, ElementsAre(HasSubstr("beam")));
+  EXPECT_THAT(sentences(figures.not_recognised), ElementsAre(HasSubstr("beam")));
 }
 
 /// A circle of 150 mm in ZX: counter-clockwise (seen from +Y) from +Z to +X, 10 + 4 cos 2a um, and clockwise
@@ -319,7 +321,7 @@ TEST(StandardFigures, ConicalCircleIsBroughtToItsPlane) {
   ASSERT_EQ(figures.circles.size(), 1U);
   EXPECT_NEAR(*figures.circles[0].figures.readings.bidirectional, 19e-6, 1e-11);
   EXPECT_NEAR(*figures.circles[0].figures.readings.mean_radial, 3.5e-6, 1e-11);
-  EXPECT_THAT(figures.circles[0].notes, ElementsAre(HasSubstr("not calibrated")));
+  EXPECT_THAT(sentences(figures.circles[0].notes), ElementsAre(HasSubstr("not calibrated")));
 }
 
 TEST(StandardFigures, SphericalBallBarRunIsNoCircle) {
@@ -335,7 +337,7 @@ TEST(StandardFigures, SphericalBallBarRunIsNoCircle) {
   const auto figures =
       standard_figures(campaign, records_of(campaign, [](auto, auto, double reading) { return reading; }));
   EXPECT_THAT(figures.circles, IsEmpty());
-  EXPECT_THAT(figures.not_recognised, ElementsAre("sphere: not two axes move"));
+  EXPECT_THAT(sentences(figures.not_recognised), ElementsAre("sphere: not two axes move"));
 }
 
 /// Error vectors (1, 0, 0) um more at x = 1 than at x = 0 on a unit square; aligned rigidly: -0.5, +0.5 in x.

@@ -8,6 +8,7 @@
 #include "tests/support/broken_campaigns.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
@@ -51,7 +52,8 @@ TEST_F(NotesTest, DirectionsFollowFromTheOrder) {
   const Campaign campaign = read(kLine);
   EXPECT_THAT(campaign.setups[0].readings.direction[0], ElementsAre(1, 1, 1, -1, -1));
   EXPECT_THAT(campaign.setups[0].readings.direction[1], IsEmpty()) << "Y stands still";
-  EXPECT_THAT(campaign.notes, ElementsAre(AllOf(HasSubstr("dir_x in X"), HasSubstr("\"as-recorded\""))));
+  EXPECT_THAT(sentences(campaign.notes),
+              ElementsAre(AllOf(HasSubstr("dir_x in X"), HasSubstr("\"as-recorded\""))));
 }
 
 TEST_F(NotesTest, DirectionsStayUnknownWhereAskedFor) {
@@ -75,7 +77,7 @@ TEST_F(NotesTest, ColumnsThatAreNotReadAreNamedWithTheKeyThatReadsThem) {
       "0,0,0,0,1,1,0,20,a,1\n50,0,0,50,1,1,5000,20,b,1\n";
   const Campaign campaign = read(csv);
   EXPECT_THAT(
-      campaign.notes,
+      sentences(campaign.notes),
       ElementsAre(AllOf(HasSubstr("setup \"X\": direction_x, diry, Time [ms], temp_x, Remark of line.csv are "
                                   "not read"),
                         HasSubstr("columns = { dir_x = \"direction_x\", dir_y = \"diry\", time_s = "
@@ -86,7 +88,7 @@ TEST_F(NotesTest, ColumnsThatAreNotReadAreNamedWithTheKeyThatReadsThem) {
            "columns = { dir_x = \"direction_x\", dir_y = \"diry\", time_s = \"Time [ms]\", "
            "T_x_degC = \"temp_x\" }\nscale = { time_s = 0.001 }\n");
   EXPECT_THAT(mapped.setups[0].readings.time, ElementsAre(0.0, 5.0));
-  EXPECT_THAT(mapped.notes, ElementsAre(HasSubstr("Remark of line.csv is not read")));
+  EXPECT_THAT(sentences(mapped.notes), ElementsAre(HasSubstr("Remark of line.csv is not read")));
 }
 
 TEST_F(NotesTest, ConstantsStandForWhatStoodStill) {
@@ -142,7 +144,7 @@ TEST_F(NotesTest, RowsThatRepeatAreTold) {
   EXPECT_THAT(once.notes, IsEmpty());
   const Campaign twice =
       read("x_mm,y_mm,z_mm,displacement_mm,time_s\n" + rows + rows, "directions = \"as-recorded\"\n");
-  EXPECT_THAT(twice.notes,
+  EXPECT_THAT(sentences(twice.notes),
               ElementsAre(HasSubstr("3 of 6 rows repeat an earlier row in every column, line 5 that of "
                                     "line 2")));
 }
@@ -159,8 +161,8 @@ TEST_F(NotesTest, DirectionsAgainstTheOrderAreTold) {
   std::string csv = "x_mm,y_mm,z_mm,displacement_mm,dir_x\n";
   for (int k = 0; k <= 5; ++k) csv += std::to_string(20 * k) + ",0,0," + std::to_string(20 * k) + ",-1\n";
   for (int k = 4; k >= 0; --k) csv += std::to_string(20 * k) + ",0,0," + std::to_string(20 * k) + ",1\n";
-  EXPECT_THAT(read(csv).notes, Contains(AllOf(HasSubstr("10 of 10 moves of X go against dir_x"),
-                                              HasSubstr("scale = { dir_x = -1 }"))));
+  EXPECT_THAT(sentences(read(csv).notes), Contains(AllOf(HasSubstr("10 of 10 moves of X go against dir_x"),
+                                                         HasSubstr("scale = { dir_x = -1 }"))));
   const Campaign mended = read(csv, "scale = { dir_x = -1 }\n");
   EXPECT_THAT(mended.notes, IsEmpty());
   EXPECT_EQ(mended.setups[0].readings.direction[0][3], 1);
@@ -170,8 +172,9 @@ TEST_F(NotesTest, TimesInMillisecondsAreTold) {
   std::string csv = "x_mm,y_mm,z_mm,displacement_mm,time_s\n";
   for (int k = 0; k < 30; ++k)
     csv += std::to_string(10 * k) + ",0,0," + std::to_string(10 * k) + "," + std::to_string(5000 * k) + "\n";
-  EXPECT_THAT(read(csv).notes, Contains(AllOf(HasSubstr("its readings are 5000 s apart and span 1.7 days"),
-                                              HasSubstr("scale = { time_s = 0.001 }"))));
+  EXPECT_THAT(sentences(read(csv).notes),
+              Contains(AllOf(HasSubstr("its readings are 5000 s apart and span 1.7 days"),
+                             HasSubstr("scale = { time_s = 0.001 }"))));
   EXPECT_THAT(read(csv, "scale = { time_s = 0.001 }\n").notes, IsEmpty());
 }
 
@@ -180,7 +183,7 @@ TEST_F(NotesTest, TimesInDaysAreTold) {
   for (int k = 0; k < 10; ++k)
     csv += std::to_string(10 * k) + ",0,0," + std::to_string(10 * k) + "," +
            std::to_string(45000.0 + k * 5.8e-5) + "\n";
-  EXPECT_THAT(read(csv).notes, Contains(HasSubstr("minutes, hours or days")));
+  EXPECT_THAT(sentences(read(csv).notes), Contains(HasSubstr("minutes, hours or days")));
 }
 
 TEST_F(NotesTest, SetupsWithTheSameReadingsAreTold) {
@@ -190,7 +193,7 @@ TEST_F(NotesTest, SetupsWithTheSameReadingsAreTold) {
       "directions = \"as-recorded\"\n[[setups]]\nname = \"again\"\ninstrument = \"displacement\"\ndata = "
       "\"copy.csv\"\n"
       "direction = [1, 0, 0]\nnoise = { constant_um = 1.0 }\ndirections = \"as-recorded\"\n";
-  EXPECT_THAT(read(kLine, second).notes,
+  EXPECT_THAT(sentences(read(kLine, second).notes),
               ElementsAre(HasSubstr("setups \"X\" and \"again\" hold the same readings")));
 }
 
@@ -206,7 +209,7 @@ TEST_F(NotesTest, ScatterOfAStandingAxisIsNoApproach) {
 /// A direction of an axis that the machine lacks is no slip of another one.
 TEST_F(NotesTest, NamesOfOtherAxesAreNoSlips) {
   const Campaign campaign = read("x_mm,y_mm,z_mm,displacement_mm,dir_a\n0,0,0,0,1\n50,0,0,50,1\n");
-  EXPECT_THAT(campaign.notes, ElementsAre("setup \"X\": dir_a of line.csv is not read"));
+  EXPECT_THAT(sentences(campaign.notes), ElementsAre("setup \"X\": dir_a of line.csv is not read"));
   try {
     read("Tx,y_mm,z_mm,displacement_mm,Tz\n0,0,0,0,1\n50,0,0,50,1\n", "columns = { x_mm = \"Ty\" }\n");
     FAIL() << "accepted";

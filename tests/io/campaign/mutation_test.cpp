@@ -193,7 +193,7 @@ TEST(Mutation, Result) {
   result.covariance = Eigen::MatrixXd::Constant(1, 1, 1e-12);
   result.setups.push_back(
       {.name = "S1", .instrument = "laser-tracer", .tool = "long", .reading_unit = "um", .fingerprint = {}});
-  result.messages = {"a message"};
+  result.findings = {verbatim("a message")};
   const int accepted = try_mutants(result_json(result), 3000, testing::accepts_result);
   EXPECT_GT(accepted, 30);
 }

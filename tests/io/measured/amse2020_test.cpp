@@ -14,6 +14,7 @@
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -186,7 +187,7 @@ TEST(Amse2020, FitsWithoutLackOfFitAndSeesWhatTheModelAsksFor) {
   EXPECT_EQ(result.status, FitStatus::Ok);
   EXPECT_EQ(std::ranges::count_if(result.residuals, &ResidualRecord::left_out), 3);
   EXPECT_EQ(result.setups.at(0).observations, 51U);
-  EXPECT_THAT(result.messages,
+  EXPECT_THAT(sentences(result.findings),
               Contains("setup \"lattice\" leaves out rows 8, 9, 10: the published Ez of P7 to "
                        "P9 repeats Ex of P16 to P18 digit by digit"));
   EXPECT_EQ(result.rank.rank, result.rank.parameters);

@@ -113,7 +113,7 @@ TEST(ComparisonText, HasTheFiguresOfReadingsAndModelAndDashesForUndefinedOnes) {
 
 TEST(ComparisonText, SignedMeansStandBesideTheRms) {
   Campaign campaign = campaign_of_two_setups();
-  campaign.notes = {"a note of the reader"};
+  campaign.notes = {verbatim("a note of the reader")};
   const auto model = compared_model("result", campaign, records_of(campaign, 1.0));
   const std::string text = comparison_text(campaign, std::vector<ComparedModel>{model});
   EXPECT_THAT(text, HasSubstr("Signed means of the residuals, reading minus prediction"));

@@ -165,11 +165,13 @@ TEST_F(DiagnosisReport, WhatIsToldApartAndWhatToMeasure) {
 
 TEST_F(DiagnosisReport, AProposalSaysWhatIsDoneBeforeWhatItIsGoodFor) {
   MeasurementProposal& visit = diagnosis_.proposals.front();
-  visit.words = "Measure P1 again after 3 h (48 readings): tells a from b 3 times better.";
+  visit.finding.data["measurement"] = "measure P1 again after 3 h";
   visit.separates = {{"axis-coupling", "EAY", "z", "linear"}, {"resolution", "EYX", "x", "finer"}};
   diagnosis_.confounding.names[2] = visit.separates[1];
   MeasurementProposal nothing = visit;
   nothing.action.clear();
+  nothing.finding = {FindingCode::MeasurementNoneSeparates,
+                     {{"effects", std::vector<std::string>{"a", "b"}}}};
   nothing.gain = std::numeric_limits<double>::infinity();
   diagnosis_.proposals.push_back(nothing);
   document_ = Json::parse(report_json(diagnosis_, campaign_));

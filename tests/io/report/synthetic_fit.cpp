@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/functions/registry.h"
 
@@ -115,9 +116,11 @@ void add_functions(FitResult& result) {
       result.functions.push_back(
           {symbol, kIntervals, true, "geometric", 0.15, 7.3, axis.travel_min, measured_max});
       const bool visible = symbol.name() != "ECZ";
-      result.rank.errors.push_back({symbol.name(), visible, visible ? 0.8 : 0.0, visible ? 0.3e-6 : 0.0, 7.3,
-                                    visible ? "" : "every tool offset lies on Z",
-                                    visible ? "" : "measure with a tool that has a sideways offset"});
+      std::optional<Finding> cause;
+      if (!visible)
+        cause = Finding{FindingCode::NotVisibleToolsOnOneAxis, {{"error", "ECZ"}, {"about", "Z"}}};
+      result.rank.errors.push_back(
+          {symbol.name(), visible, visible ? 0.8 : 0.0, visible ? 0.3e-6 : 0.0, 7.3, cause});
     }
     group.offset = result.layout.function_size;
     result.layout.function_size += group.size();
@@ -149,7 +152,7 @@ void add_blocks(FitResult& result) {
   for (const LocationSymbol symbol : result.machine.datum.squareness()) {
     add_block(result, ParameterKind::Location, symbol.name(), "urad", kMicro, {""},
               Eigen::VectorXd::Constant(1, 0.0));
-    result.rank.errors.push_back({symbol.name(), true, 0.95, 0.2e-6, 1.0, "", ""});
+    result.rank.errors.push_back({symbol.name(), true, 0.95, 0.2e-6, 1.0});
   }
   const std::vector<std::string> xyz = {"x", "y", "z"};
   add_block(result, ParameterKind::Nuisance, "station P1", "mm", 1e-3, xyz,
@@ -160,7 +163,7 @@ void add_blocks(FitResult& result) {
             Eigen::Vector3d(0.6, -0.4, -0.58));
   add_block(result, ParameterKind::Nuisance, "bb1: centre", "mm", 1e-3, xyz, Eigen::Vector3d(0.0, 0.0, -0.35),
             1e-4);
-  result.rank.held_by_prior = {"bb1: centre z"};
+  result.rank.held_by_prior = {verbatim("bb1: centre z")};
 }
 
 void set_parameters(FitResult& result) {
@@ -240,7 +243,7 @@ SyntheticFit synthetic_fit(int scale) {
   fit.campaign = campaign(scale);
   FitResult& result = fit.result;
   result.status = FitStatus::RankDeficient;
-  result.messages = {"T2: 3 readings lie outside the travel </script><b>"};
+  result.findings = {verbatim("T2: 3 readings lie outside the travel </script><b>")};
   result.machine = fit.campaign.machine;
   add_functions(result);
   add_blocks(result);
@@ -248,7 +251,7 @@ SyntheticFit synthetic_fit(int scale) {
   add_residuals(fit);
   result.rank.parameters = result.layout.size - 36;
   result.rank.rank = result.rank.parameters - 10;
-  result.rank.invisible = {"ECZ: not visible, every tool offset lies on Z"};
+  result.rank.invisible = {verbatim("ECZ: not visible, every tool offset lies on Z")};
   result.variance_components = {{"laser-tracer", 1.02, 0.03, 900.0, 1000},
                                 {"ball-bar", 1.31, 0.04, 320.0, 360},
                                 {"displacement", 0.97, 0.12, 38.0, 42}};

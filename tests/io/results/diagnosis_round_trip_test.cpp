@@ -10,6 +10,7 @@
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -112,6 +113,17 @@ TEST(DiagnosisJson, WhatOlderFilesLackMayBeMissing) {
   EXPECT_TRUE(again.unknown.at(0).with_one_of.empty());
   EXPECT_EQ(again.unknown.at(0).period, 0.0);
   EXPECT_EQ(again.unknown.at(0).direction, "Z");
+}
+
+/// Proposals keep their codes; of a file without them, their sentences.
+TEST(DiagnosisJson, ProposalsComeBackAsCodes) {
+  const Diagnosis diagnosis = testing::hand_made_diagnosis();
+  Json document = written();
+  EXPECT_EQ(findings_of(diagnosis_from_json(document.dump(), "diagnosis.json").proposals),
+            findings_of(diagnosis.proposals));
+  document.at("next_measurement").at(0).erase("finding");
+  const Finding old = diagnosis_from_json(document.dump(), "old.json").proposals.at(0).finding;
+  EXPECT_EQ(old, verbatim(sentence(diagnosis.proposals.at(0).finding)));
 }
 
 TEST(DiagnosisJson, UnknownEffectsComeBackInWords) {

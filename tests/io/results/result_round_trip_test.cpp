@@ -16,6 +16,8 @@
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/io/results/result_json.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/words/sentences.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -55,13 +57,55 @@ void expect_same_function(const FunctionSpec& a, const FunctionSpec& b) {
   EXPECT_EQ(a.coefficients, b.coefficients);
 }
 
+/// What a version without codes wrote.
+std::string without_codes(const FitResult& result) {
+  auto json = nlohmann::ordered_json::parse(result_json(result));
+  json.erase("findings");
+  json["rank"].erase("invisible_findings");
+  json["rank"].erase("held_by_prior_findings");
+  for (auto& error : json["rank"]["errors"]) error.erase("finding");
+  return json.dump(1);
+}
+
+TEST(ResultJson, ReadsSentencesWithoutCodesAsTheyAre) {
+  const FitResult& written = small_result();
+  ASSERT_FALSE(written.findings.empty());
+  ASSERT_FALSE(written.rank.invisible.empty());
+  const FitResult read = result_from_json(without_codes(written), "result.json");
+  for (const Finding& finding : read.findings) EXPECT_EQ(finding.code, FindingCode::Verbatim);
+  EXPECT_EQ(sentences(read.findings), sentences(written.findings));
+  EXPECT_EQ(sentences(read.rank.invisible), sentences(written.rank.invisible));
+  EXPECT_EQ(sentences(read.rank.held_by_prior), sentences(written.rank.held_by_prior));
+  ASSERT_EQ(read.rank.errors.size(), written.rank.errors.size());
+  for (std::size_t i = 0; i < read.rank.errors.size(); ++i) {
+    const Explanation now = explanation(read.rank.errors[i].cause);
+    const Explanation before = explanation(written.rank.errors[i].cause);
+    EXPECT_EQ(now.reason, before.reason);
+    EXPECT_EQ(now.remedy, before.remedy);
+  }
+  const FitResult again = result_from_json(result_json(read), "result.json");
+  EXPECT_EQ(again.findings, read.findings);
+  EXPECT_EQ(again.rank.invisible, read.rank.invisible);
+}
+
+TEST(ResultJson, RefusesFindingsThatAreNotThoseOfTheMessages) {
+  auto json = nlohmann::ordered_json::parse(result_json(small_result()));
+  json["findings"].erase(0);
+  EXPECT_THROW(result_from_json(json.dump(), "result.json"), InputError);
+}
+
 TEST(ResultJson, ReturnsEveryBit) {
   const FitResult& written = small_result();
   const FitResult read = result_from_json(result_json(written), "result.json");
   expect_same_bits(read.parameters, written.parameters);
   expect_same_bits(read.covariance, written.covariance.selfadjointView<Eigen::Lower>());
   EXPECT_EQ(read.status, written.status);
-  EXPECT_EQ(read.messages, written.messages);
+  EXPECT_EQ(read.findings, written.findings);
+  EXPECT_EQ(read.rank.invisible, written.rank.invisible);
+  EXPECT_EQ(read.rank.held_by_prior, written.rank.held_by_prior);
+  ASSERT_EQ(read.rank.errors.size(), written.rank.errors.size());
+  for (std::size_t i = 0; i < read.rank.errors.size(); ++i)
+    EXPECT_EQ(read.rank.errors[i].cause, written.rank.errors[i].cause);
   EXPECT_EQ(read.sigma0, written.sigma0);
   EXPECT_EQ(read.dof, written.dof);
   EXPECT_EQ(read.layout.size, written.layout.size);

@@ -9,6 +9,7 @@
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::report {
@@ -73,7 +74,8 @@ std::string label_of(const Diagnosis& diagnosis, const EffectName& name) {
 /// What is done, without what it is good for: "Measure P1 with tool short again after 3 h".
 std::string what_is_done(const MeasurementProposal& proposal) {
   if (proposal.action.empty()) return "Nothing on the menu";
-  return proposal.words.substr(0, proposal.words.find(fmt::format(" ({} readings)", proposal.readings)));
+  const std::string words = sentence(proposal.finding);
+  return words.substr(0, words.find(fmt::format(" ({} readings)", proposal.readings)));
 }
 
 /// Separations in standard deviations; gains are null over nothing.

@@ -8,6 +8,7 @@
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/values/detectable_groups.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -175,13 +176,13 @@ Json story_page(const DiagnosisInput& input) {
   return {{"verdict", to_string(diagnosis.verdict)},
           {"level", level(diagnosis.verdict)},
           {"headline", headline_of(diagnosis.verdict)},
-          {"words", diagnosis.words},
+          {"words", sentences(diagnosis.findings)},
           {"before", Json::array({before_text(diagnosis.ladder.front())})},
           {"missing", missing_json(diagnosis)},
           {"surfaces", std::move(surfaces)},
           {"one_of", std::move(one_of)},
           {"after", after_json(diagnosis)},
-          {"next_measurement", diagnosis.next_measurement},
+          {"next_measurement", sentences(findings_of(diagnosis.proposals))},
           {"ladder", std::move(ladder)},
           {"below", below_json(diagnosis)},
           {"families", diagnosis.families},

@@ -6,6 +6,7 @@
 
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -70,8 +71,9 @@ Json function_json(const FitResult& result, ErrorSymbol symbol, const FunctionRo
   }
   const bool visible = error == nullptr || error->visible;
   json["state"] = visible ? "identified" : "invisible";
-  json["reason"] = visible ? "" : error->reason;
-  json["remedy"] = visible ? "" : error->remedy;
+  const Explanation words = visible ? Explanation{} : explanation(error->cause);
+  json["reason"] = words.reason;
+  json["remedy"] = words.remedy;
   add_curves(*rows, symbol.axis, json);
   add_knots(result, symbol, json);
   return json;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::report {
@@ -38,7 +39,7 @@ Json identified(const FitResult& result, const ParameterBlock& block) {
               {"meaning", meaning_of_location(symbol)},
               {"unit", is_rotation(symbol.component) ? "µrad" : "µm"},
               {"state", visible ? "identified" : "invisible"},
-              {"reason", visible ? "" : error->reason},
+              {"reason", visible ? "" : explanation(error->cause).reason},
               {"value", rounded(value * kPerMicro)},
               {"u", rounded(u * kPerMicro, 3)},
               {"U95", rounded(result.coverage_factor * u * kPerMicro, 3)}};

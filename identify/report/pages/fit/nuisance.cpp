@@ -4,6 +4,7 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/values/surface_values.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -73,7 +74,8 @@ Json nuisance_page(const PageInput& input) {
     ++count;
     rows.push_back(surface_row(surface));
   }
-  return {{"count", count}, {"held_by_prior", result.rank.held_by_prior}, {"rows", std::move(rows)}};
+  return {
+      {"count", count}, {"held_by_prior", sentences(result.rank.held_by_prior)}, {"rows", std::move(rows)}};
 }
 
 }  // namespace volcal::report

@@ -3,6 +3,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/values/correlation.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -16,6 +17,7 @@ bool turns(const std::string& symbol) {
 Json error_rows(const FitResult& result) {
   Json rows = Json::array();
   for (const Observability& error : result.rank.errors) {
+    const Explanation words = explanation(error.cause);
     rows.push_back({{"symbol", error.symbol},
                     {"axis", std::string(1, error.symbol.back())},
                     {"unit", turns(error.symbol) ? "µrad" : "µm"},
@@ -23,8 +25,8 @@ Json error_rows(const FitResult& result) {
                     {"visible_fraction", rounded(error.visible_fraction, 4)},
                     {"u_rms", rounded(error.u_rms * kPerMicro, 3)},
                     {"effective_parameters", rounded(error.effective_parameters, 3)},
-                    {"reason", error.reason},
-                    {"remedy", error.remedy}});
+                    {"reason", words.reason},
+                    {"remedy", words.remedy}});
   }
   return rows;
 }
@@ -46,7 +48,7 @@ Json correlation_json(const FitResult& result) {
 Json observability_page(const PageInput& input) {
   const FitResult& result = input.result;
   return {{"parameters", result.rank.parameters}, {"rank", result.rank.rank},
-          {"rank_text", rank_text(result)},       {"invisible", result.rank.invisible},
+          {"rank_text", rank_text(result)},       {"invisible", sentences(result.rank.invisible)},
           {"errors", error_rows(result)},         {"correlation", correlation_json(result)}};
 }
 

@@ -8,6 +8,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -61,7 +62,8 @@ Json invisible_errors(const FitResult& result) {
   Json list = Json::array();
   for (const Observability& error : result.rank.errors) {
     if (error.visible) continue;
-    list.push_back({{"symbol", error.symbol}, {"reason", error.reason}, {"remedy", error.remedy}});
+    const Explanation words = explanation(error.cause);
+    list.push_back({{"symbol", error.symbol}, {"reason", words.reason}, {"remedy", words.remedy}});
   }
   return list;
 }
@@ -135,7 +137,7 @@ Json summary_page(const PageInput& input) {
           {"level", words.level},
           {"headline", words.headline},
           {"meaning", words.meaning},
-          {"messages", input.result.messages},
+          {"messages", sentences(input.result.findings)},
           {"invisible", invisible_errors(input.result)},
           {"figures", figures(input)},
           {"facts", machine_facts(input)}};

@@ -8,6 +8,7 @@
 #include "volcal/identify/planning/registry.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text/plan_text.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::report {
@@ -95,7 +96,7 @@ Json plan_layout_page(const PlanPageInput& input) {
   if (plan.given) campaigns.push_back(campaign_of_page(*plan.given, plan));
   Json options = Json::array();
   for (const PlanOption& option : plan.options) {
-    options.push_back({{"words", option.words},
+    options.push_back({{"words", sentence(option.what)},
                        {"readings", option.readings},
                        {"u_um", rounded(option.volumetric_rms * kPerMicro, 4)},
                        {"made_visible", option.made_visible},
@@ -113,7 +114,7 @@ Json plan_layout_page(const PlanPageInput& input) {
           {"volume_mm", corners_json(sight.swept_w())},
           {"region_mm", corners_json(sight.stations_w())},
           {"campaigns", std::move(campaigns)},
-          {"invisible", plan.plan.result.rank.invisible},
+          {"invisible", sentences(plan.plan.result.rank.invisible)},
           {"options", std::move(options)}};
 }
 

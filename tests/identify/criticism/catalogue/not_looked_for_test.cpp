@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -12,9 +13,8 @@
 namespace volcal {
 namespace {
 
-using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Campaign tracked_campaign() {
@@ -49,9 +49,13 @@ TEST(NotLookedFor, NamesTheKindsThatNeedDirectionsOrTimes) {
     setup.readings.time.clear();
     setup.readings.direction[0].clear();
   }
-  EXPECT_THAT(not_looked_for(campaign, reversals(campaign)),
-              ElementsAre(AllOf(HasSubstr("no reading records dir_x:"), HasSubstr("reversal")),
-                          AllOf(HasSubstr("time_s"), HasSubstr("station-drift"))));
+  const std::vector<Finding> findings = not_looked_for(campaign, reversals(campaign));
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].code, FindingCode::DirectionsUnrecorded);
+  EXPECT_THAT(findings[0].texts("columns"), ElementsAre("dir_x"));
+  EXPECT_THAT(findings[0].texts("kinds"), Contains("reversal"));
+  EXPECT_EQ(findings[1].code, FindingCode::TimesUnrecorded);
+  EXPECT_THAT(findings[1].texts("kinds"), Contains("station-drift"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/sim/study.h"
@@ -65,7 +66,7 @@ TEST(NextMeasurement, AnInvisibleLengthScaleAsksForACalibratedLength) {
   EXPECT_TRUE(among(kLengthScale, proposal.makes_visible));
   EXPECT_GT(proposal.gain, 100.0);
   EXPECT_LT(proposal.plain_gain, 1.2);
-  EXPECT_THAT(diagnosis.next_measurement.front(), HasSubstr("ball-bar of calibrated length"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("ball-bar of calibrated length"));
 }
 
 /// A drift of 17 um/h: ONE_OF before, NAMED once the station was visited again.
@@ -76,7 +77,7 @@ TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
   sim::Study study = one_tool_per_station();
   study.hidden = {drift};
   const Diagnosis before = diagnosed_next(study);
-  ASSERT_EQ(before.verdict, Verdict::OneOf) << before.words.front();
+  ASSERT_EQ(before.verdict, Verdict::OneOf) << sentence(before.findings.front());
   ASSERT_FALSE(before.proposals.empty());
   const MeasurementProposal& proposal = before.proposals.front();
   EXPECT_EQ(proposal.action, "revisit");
@@ -88,7 +89,7 @@ TEST(NextMeasurement, ADriftThatLooksLikeADeadPathAsksForARevisit) {
   study = one_tool_per_station({"P1"});
   study.hidden = {drift};
   const Diagnosis after = diagnosed_next(study);
-  ASSERT_EQ(after.verdict, Verdict::Named) << after.words.front();
+  ASSERT_EQ(after.verdict, Verdict::Named) << sentence(after.findings.front());
   EXPECT_EQ(after.effects.front().name, kDrift);
 
   study = one_tool_per_station({"P3"});
@@ -106,8 +107,8 @@ TEST(NextMeasurement, APeriodThatDividesTheGridStepAsksForJitteredPositions) {
   const MeasurementProposal& proposal = diagnosis.proposals.front();
   EXPECT_EQ(proposal.action, "jittered-positions");
   EXPECT_TRUE(among(kLead, proposal.makes_visible));
-  EXPECT_THAT(proposal.words, HasSubstr("period 10 mm"));
-  EXPECT_THAT(proposal.words, HasSubstr("X off its step of 160 mm"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("period 10 mm"));
+  EXPECT_THAT(sentence(proposal.finding), HasSubstr("X off its step of 160 mm"));
   EXPECT_LT(proposal.plain_gain, 1.2);
 }
 

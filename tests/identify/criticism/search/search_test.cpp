@@ -13,6 +13,7 @@
 
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -51,7 +52,7 @@ TEST(Search, AStepTellsTheFirstEffectAndThatMoreHasAName) {
   EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
   EXPECT_THAT(kinds_and_targets(step.effects), ::testing::ElementsAre("reversal EXX"));
   EXPECT_EQ(step.ladder.size(), 2U);
-  EXPECT_THAT(step.words, ::testing::Contains(::testing::HasSubstr("the catalogue has a name for it")));
+  EXPECT_EQ(std::ranges::count(step.findings, FindingCode::DiagnosisMoreInCatalogue, &Finding::code), 1);
   EXPECT_THAT(kinds_and_targets(step.ranking), ::testing::Contains("reversal EYY"));
 }
 
@@ -77,9 +78,7 @@ TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
     found.insert(set->at(0).name.target);
   }
   EXPECT_EQ(found, (std::set<std::string>{"EAZ", "ECX"}));
-  EXPECT_EQ(std::ranges::count_if(diagnosis.words,
-                                  [](const auto& words) { return words.starts_with("One of these"); }),
-            2);
+  EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisOneOf, &Finding::code), 2);
 }
 
 /// A scan of both temperatures sees both effects at once, and does better than either name.
@@ -221,12 +220,13 @@ TEST(Search, WhatFollowsATemperatureAtOnceIsNotSaidToFollowItLate) {
   options.leave_out = {"thermal-drift"};
   Search search(study.model, std::vector<bool>(study.model.size(), false), options);
   search.run();
-  std::set<std::string> reasons;
+  std::vector<std::pair<FindingCode, std::string>> reasons;
   for (const auto& [family, reason] : search.rejected()) {
     if (search.reached().setting().families[family].name().kind == "lagged-temperature")
-      reasons.insert(reason);
+      reasons.emplace_back(reason.code, reason.has("shape") ? reason.text("shape") : "");
   }
-  EXPECT_THAT(reasons, ::testing::Contains("its time constant lies beyond what was looked for"));
+  EXPECT_THAT(reasons, ::testing::Contains(
+                           std::pair(FindingCode::RejectedShapeBeyondScan, std::string("time constant"))));
   for (const AddedEffect& added : search.reached().added())
     EXPECT_NE(search.reached().setting().families[added.test.family].name().kind, "lagged-temperature");
 }

@@ -1,4 +1,4 @@
-#include "volcal/identify/solve/noise_words.h"
+#include "volcal/identify/words/noise_words.h"
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/channels.h"

@@ -1,0 +1,122 @@
+#include "volcal/identify/solve/rank_causes.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "volcal/identify/solve/priors/resolution.h"
+#include "volcal/identify/solve/tool_tips.h"
+#include "volcal/model/description/finding_codes.h"
+
+namespace volcal {
+namespace {
+
+std::string letter(AxisName axis) { return std::string(1, letter_of(axis)); }
+
+bool axis_moves(const Campaign& campaign, AxisName axis) {
+  const MeasuredRange range = measured_range(campaign, axis);
+  return range.max - range.min > 1e-3 * campaign.machine.axis(axis).travel();
+}
+
+/// Tools in use, as offsets across direction `k`.
+double largest_sideways_offset(const Campaign& campaign, int k) {
+  double largest = 0.0;
+  for (const Setup& setup : campaign.setups) {
+    Eigen::Vector3d offset = campaign.machine.tools[setup.tool].offset;
+    offset[k] = 0.0;
+    largest = std::max(largest, offset.norm());
+  }
+  return largest;
+}
+
+std::set<std::string> stations(const ParameterLayout& layout) {
+  std::set<std::string> names;
+  for (const ParameterBlock& block : layout.blocks) {
+    if (block.name.starts_with("station ")) names.insert(block.name);
+  }
+  return names;
+}
+
+std::size_t tools_in_use(const Campaign& campaign) {
+  std::set<std::size_t> tools;
+  for (const Setup& setup : campaign.setups) tools.insert(setup.tool);
+  return tools.size();
+}
+
+/// The axis of an error function whose readings stand at one or two positions of it.
+std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  if (!symbol || automatic_intervals(campaign, symbol->axis) > 1) return std::nullopt;
+  return symbol->axis;
+}
+
+}  // namespace
+
+std::string straightness_beside(const std::string& name) {
+  const auto axis = turned_axis(name);
+  if (!axis) return "";
+  const int across = 3 - direction_of(LocationSymbol::parse(name)->component) - direction_of(*axis);
+  return ErrorSymbol{kAllComponents[static_cast<std::size_t>(across)], *axis}.name();
+}
+
+std::optional<Finding> cause_of_standing(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  const auto moving = symbol ? std::optional(symbol->axis) : turned_axis(name);
+  if (!moving || axis_moves(campaign, *moving)) return std::nullopt;
+  return Finding{FindingCode::NotVisibleAxisAtRest, {{"error", name}, {"axis", letter(*moving)}}};
+}
+
+Finding cause_of_unseen(const Campaign& campaign, const std::string& name) {
+  const auto symbol = ErrorSymbol::parse(name);
+  if (symbol && is_rotation(symbol->component)) {
+    const int k = direction_of(symbol->component);
+    const bool on_axis = largest_sideways_offset(campaign, k) < 1e-3;
+    return {on_axis ? FindingCode::NotVisibleToolsOnOneAxis : FindingCode::NotVisibleNoLeverArm,
+            {{"error", name}, {"about", std::string(1, "XYZ"[k])}}};
+  }
+  Finding cause{FindingCode::NotVisibleNoReadingChanges, {{"error", name}}};
+  if (symbol) {
+    cause.data["switch"] = "functions";
+  } else if (LocationSymbol::parse(name)) {
+    cause.data["switch"] = "locations";
+  }
+  return cause;
+}
+
+Finding cause_few_positions(const std::string& name, AxisName axis) {
+  return {FindingCode::NotVisibleFewPositions, {{"error", name}, {"axis", letter(axis)}}};
+}
+
+Finding cause_like_straightness(const std::string& name, ErrorSymbol straightness) {
+  return {FindingCode::NotVisibleLikeStraightness,
+          {{"error", name}, {"axis", letter(straightness.axis)}, {"straightness", straightness.name()}}};
+}
+
+Finding cause_exchangeable(const MeasurementModel& model, const std::string& name,
+                           std::vector<std::string> partners) {
+  const auto is_nuisance = [&](const std::string& partner) {
+    const ParameterBlock* block = model.layout().find_block(partner);
+    return block != nullptr && !block->location && block->kind != ParameterKind::Effect;
+  };
+  Finding cause{FindingCode::NotVisibleExchangeable, {{"error", name}}};
+  const std::size_t station_count = stations(model.layout()).size();
+  std::vector<std::string> remedies;
+  if (const auto axis = axis_at_few_positions(model.campaign(), name)) {
+    remedies.emplace_back("positions");
+    cause.data["axis"] = letter(*axis);
+  }
+  if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
+  if (tools_in_use(model.campaign()) < 2) remedies.emplace_back("second-tool");
+  if (const auto across = third_tool_across(model.campaign(), name, partners)) {
+    remedies.emplace_back("third-tool");
+    cause.data["third_tool_across"] = std::string(1, *across);
+  }
+  if (station_count == 0 && std::ranges::any_of(partners, is_nuisance))
+    remedies.emplace_back("holding-instrument");
+  if (remedies.empty()) remedies.emplace_back("other-lines");
+  cause.data["partners"] = std::move(partners);
+  cause.data["remedies"] = std::move(remedies);
+  return cause;
+}
+
+}  // namespace volcal

@@ -1,0 +1,111 @@
+/// What is noticed while a campaign is read.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "volcal/identify/text/nearest_name.h"
+#include "volcal/identify/words/sentence_lists.h"
+#include "volcal/model/description/finding_codes.h"
+
+namespace volcal {
+namespace {
+
+/// "direction_x" as it stands in a TOML text.
+std::string quoted(const std::string& name) {
+  std::string text = "\"";
+  for (const char c : name) {
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + '"';
+}
+
+std::string in_setup(const Finding& finding) {
+  return fmt::format("setup \"{}\" ({}): ", finding.text("setup"), finding.text("file"));
+}
+
+std::string columns_unused(const Finding& finding) {
+  const std::vector<std::string> columns = finding.texts("columns");
+  std::string text =
+      fmt::format("setup \"{}\": {} of {} {} not read", finding.text("setup"), join_names(columns),
+                  finding.text("file"), columns.size() == 1 ? "is" : "are");
+  const std::vector<std::string> keys = finding.texts("meant");
+  const std::vector<std::string> sources = finding.texts("meant_columns");
+  if (keys.size() != sources.size()) throw std::invalid_argument("meant columns without their names");
+  if (keys.empty()) return text;
+  std::string entries;
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    entries += (i == 0 ? "" : ", ") + keys[i] + " = " + quoted(sources[i]);
+  return text + fmt::format("; to read what is meant, add columns = {{ {} }}{}", entries,
+                            finding.flag("milliseconds") ? " and scale = { time_s = 0.001 }" : "");
+}
+
+std::string rows_repeated(const Finding& finding) {
+  return in_setup(finding) +
+         fmt::format(
+             "{} of {} rows repeat an earlier row in every column, line {} that of line {}: each counts as a "
+             "measurement of its own; remove the copies",
+             finding.count("repeats"), finding.count("rows"), finding.count("line"),
+             finding.count("first_line"));
+}
+
+std::string against_direction(const Finding& finding) {
+  const std::string& column = finding.text("column");
+  return in_setup(finding) +
+         fmt::format("{} of {} moves of {} go against {}: if its sign is reversed add scale = {{ {} = -1 }}",
+                     finding.count("against"), finding.count("moves"), finding.text("axis"), column, column);
+}
+
+std::string times_far_apart(const Finding& finding) {
+  constexpr double kDay_s = 86400.0;
+  return in_setup(finding) + fmt::format(
+                                 "its readings are {:.0f} s apart and span {:.1f} days: if the times are in "
+                                 "milliseconds add scale = {{ time_s = 0.001 }}",
+                                 finding.number("step").si, finding.number("span").si / kDay_s);
+}
+
+std::string moves_too_fast(const Finding& finding) {
+  return in_setup(finding) + fmt::format(
+                                 "by its times the machine moved at {:.0f} m/s between readings: are they in "
+                                 "minutes, hours or days? add scale = {{ time_s = 60.0 }}, 3600.0 or 86400.0",
+                                 finding.number("speed").si);
+}
+
+std::string duplicated(const Finding& finding) {
+  return fmt::format("setups \"{}\" and \"{}\" hold the same readings: they count twice; remove one of them",
+                     finding.text("first_setup"), finding.text("setup"));
+}
+
+std::string directions_derived(const Finding& finding) {
+  return fmt::format(
+      "directions of approach that the files do not record ({} in {}) follow from the order of the readings "
+      "along each line; if they do not stand in the order in which they were measured, set directions = "
+      "\"as-recorded\"",
+      join_names(finding.texts("columns")), join_names(finding.texts("setups")));
+}
+
+std::string left_out(const Finding& finding) {
+  const std::vector<std::int64_t> rows = finding.counts("rows");
+  return fmt::format("setup \"{}\" leaves out {} {}: {}", finding.text("setup"),
+                     rows.size() == 1 ? "row" : "rows", fmt::join(rows, ", "), finding.text("reason"));
+}
+
+}  // namespace
+
+std::span<const SentenceMaker> campaign_sentences() {
+  static constexpr auto kSentences = std::to_array<SentenceMaker>({
+      {FindingCode::ReadingsColumnsUnused, columns_unused},
+      {FindingCode::ReadingsRowsRepeated, rows_repeated},
+      {FindingCode::ReadingsAgainstDirection, against_direction},
+      {FindingCode::ReadingsTimesFarApart, times_far_apart},
+      {FindingCode::ReadingsMovesTooFast, moves_too_fast},
+      {FindingCode::ReadingsDuplicated, duplicated},
+      {FindingCode::ReadingsDirectionsDerived, directions_derived},
+      {FindingCode::ReadingsLeftOut, left_out},
+  });
+  return kSentences;
+}
+
+}  // namespace volcal

@@ -1,0 +1,224 @@
+/// What model criticism finds.
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "volcal/identify/words/sentence_lists.h"
+#include "volcal/model/description/finding_codes.h"
+
+namespace volcal {
+namespace {
+
+std::string model_contradicted(const Finding& finding) {
+  return contradiction(finding) + "; `volcal diagnose` tells which effect the model lacks";
+}
+
+constexpr std::size_t kMostAmplitudesInWords = 3;
+
+std::string named(const Finding& finding) {
+  std::string text = "The missing effect is: " + finding.text("effect") + " (" + finding.text("kind") + ")";
+  const std::vector<std::string> amplitudes = finding.texts("amplitudes");
+  const std::vector<FindingNumber> values = finding.numbers("values");
+  const std::vector<FindingNumber> expanded = finding.numbers("U");
+  if (values.size() != amplitudes.size() || expanded.size() != amplitudes.size())
+    throw std::invalid_argument("there is not one value and one U for each amplitude");
+  if (amplitudes.size() > kMostAmplitudesInWords) return text;
+  for (std::size_t i = 0; i < amplitudes.size(); ++i) {
+    text += fmt::format(", {} = {:.3g} +- {:.2g} {}", amplitudes[i], values[i].in_unit(),
+                        expanded[i].in_unit(), values[i].unit);
+  }
+  return text + (finding.text("shape").empty() ? "" : ", " + finding.text("shape"));
+}
+
+std::string dependence(const Finding& finding) {
+  const std::vector<std::string> variables = finding.texts("depends_on");
+  if (variables.empty()) return "nothing recorded that was tried";
+  std::string text = fmt::format("{}", fmt::join(variables, " and "));
+  if (finding.has("and_one_of"))
+    text += fmt::format(" and one of {}", fmt::join(finding.texts("and_one_of"), ", "));
+  return text;
+}
+
+std::string unnamed(const Finding& finding) {
+  std::string action = finding.text("direction");
+  if (finding.has("rotation")) {
+    action += ", as " + finding.text("rotation");
+  } else if (finding.has("period")) {
+    action += fmt::format(", every {:.4g} mm", finding.number("period").si * 1e3);
+  }
+  return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings",
+                     dependence(finding), action, finding.number("rms").si * 1e6);
+}
+
+std::string unknown(const Finding& finding) {
+  return "An effect that is in no catalogue: " + unnamed(finding);
+}
+
+std::string more_unknown(const Finding& finding) { return "More remains: " + unnamed(finding); }
+
+std::string names(const Finding& finding) {
+  return fmt::format("{}", fmt::join(finding.texts("effects"), "; "));
+}
+
+std::string one_of(const Finding& finding) {
+  return "One of these is missing, and these readings do not tell them apart: " + names(finding);
+}
+
+std::string nearest(const Finding& finding) {
+  return "Nearest in the catalogue, but not all of it: " + names(finding);
+}
+
+/// " A law that explains as much: EAY by y * z^2 with p = 120, 1.2 +- 0.1 urad."
+std::string laws(const Finding& finding) {
+  const std::vector<std::string> labels = finding.texts("laws"), shapes = finding.texts("law_shapes");
+  const std::vector<FindingNumber> amplitudes = finding.numbers("law_amplitudes");
+  const std::vector<FindingNumber> expanded = finding.numbers("law_U");
+  const std::size_t count = labels.size();
+  if (shapes.size() != count || amplitudes.size() != count || expanded.size() != count)
+    throw std::invalid_argument("there is not one shape, amplitude and U for each law");
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += fmt::format(" {} {}{}, {:.3g} +- {:.2g} {}.",
+                        i == 0 ? "A law that explains as much:" : "Or:", labels[i],
+                        shapes[i].empty() ? "" : " with " + shapes[i], amplitudes[i].in_unit(),
+                        expanded[i].in_unit(), amplitudes[i].unit);
+  }
+  return text;
+}
+
+/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310, z = -120; ..."
+std::string drawn(const Finding& finding) {
+  const std::vector<std::string> drivers = finding.texts("drivers");
+  const std::vector<FindingNumber> at = finding.numbers("at");
+  if (drivers.size() != at.size()) throw std::invalid_argument("there is not one value for each driver");
+  std::string place;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", drivers[i], at[i].si);
+  const FindingNumber& largest = finding.number("largest");
+  std::string text = fmt::format(
+      "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it and the error falls.",
+      finding.text("effect"), largest.in_unit(), finding.number("U").in_unit(), largest.unit, place);
+  text += laws(finding);
+  for (const std::string& part : finding.texts("left_open"))
+    text += " These readings leave open " + part + ".";
+  return text;
+}
+
+std::string more_one_of(const Finding& finding) { return "More remains, one of: " + names(finding); }
+
+std::string more_in_catalogue(const Finding&) {
+  return "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb "
+         "with "
+         "--auto.";
+}
+
+std::string heldout_not_reduced(const Finding&) {
+  return "More remains: readings that were held out are still off by more than noise, hardly less than "
+         "before. "
+         "The effect may be another one that acts in the same places.";
+}
+
+std::string nothing_above(const Finding&) {
+  return "Nothing is above the noise; what would have been found is in the table of smallest detectable "
+         "amplitudes.";
+}
+
+std::string effects_not_visible(const Finding& finding) {
+  return fmt::format(
+      "Nothing is above the noise, but {} of {} effects would not be visible with this measurement.",
+      finding.count("not_visible"), finding.count("families"));
+}
+
+std::string reinstated(const Finding& finding) {
+  return fmt::format(
+      "{} of {} readings that the outlier test had removed agree with the model reached and are used "
+      "again.",
+      finding.count("readings"), finding.count("of"));
+}
+
+std::string resolution(const Finding& finding) {
+  return "The error function " + finding.text("function") + " needs more knots.";
+}
+
+std::string not_named(const Finding& finding, const std::string& reason) {
+  return "Not named " + finding.text("effect") + ": " + reason + ".";
+}
+
+std::string leaves_more(const Finding& finding) {
+  return not_named(finding, "what it leaves exceeds the noise more than it does");
+}
+
+std::string driver_still_moves(const Finding& finding) {
+  return not_named(finding,
+                   fmt::format("{} still moves what it leaves", fmt::join(finding.texts("drivers"), " or ")));
+}
+
+std::string amplitude_varies(const Finding& finding) {
+  return not_named(finding, fmt::format("its amplitude varies with {} (log10 p {:.1f})",
+                                        finding.text("variable"), finding.number("log10_p").si));
+}
+
+std::string shape_beyond_scan(const Finding& finding) {
+  return not_named(finding, "its " + finding.text("shape") + " lies beyond what was looked for");
+}
+
+std::string several_powers(const Finding& finding) {
+  return not_named(finding, "several powers of its driver are needed");
+}
+
+std::string unnamed_exceeds(const Finding& finding) {
+  return not_named(finding, "what has no name exceeds the noise more than it does");
+}
+
+std::string directions_unrecorded(const Finding& finding) {
+  return fmt::format("Not looked for, as no reading records {}: {}.",
+                     fmt::join(finding.texts("columns"), ", "), fmt::join(finding.texts("kinds"), ", "));
+}
+
+std::string times_unrecorded(const Finding& finding) {
+  return fmt::format("Not looked for, as no reading records its time (time_s): {}.",
+                     fmt::join(finding.texts("kinds"), ", "));
+}
+
+}  // namespace
+
+std::string contradiction(const Finding& finding) {
+  return fmt::format(
+      "the residuals are no noise: {} would explain {:.2g} um RMS of the readings (log10 p {:.1f}, all {} "
+      "tests "
+      "counted)",
+      finding.text("leading"), finding.number("rms").si * 1e6, finding.number("log10_p").si,
+      finding.count("tests"));
+}
+
+std::span<const SentenceMaker> criticism_sentences() {
+  static constexpr auto kSentences = std::to_array<SentenceMaker>({
+      {FindingCode::ModelContradicted, model_contradicted},
+      {FindingCode::DiagnosisNamed, named},
+      {FindingCode::DiagnosisUnknown, unknown},
+      {FindingCode::DiagnosisOneOf, one_of},
+      {FindingCode::DiagnosisNearest, nearest},
+      {FindingCode::DiagnosisDrawn, drawn},
+      {FindingCode::DiagnosisMoreOneOf, more_one_of},
+      {FindingCode::DiagnosisMoreInCatalogue, more_in_catalogue},
+      {FindingCode::DiagnosisMoreUnknown, more_unknown},
+      {FindingCode::DiagnosisHeldoutNotReduced, heldout_not_reduced},
+      {FindingCode::DiagnosisNothingAbove, nothing_above},
+      {FindingCode::DiagnosisNotVisible, effects_not_visible},
+      {FindingCode::DiagnosisReadingsReinstated, reinstated},
+      {FindingCode::DiagnosisResolution, resolution},
+      {FindingCode::RejectedLeavesMore, leaves_more},
+      {FindingCode::RejectedDriverStillMoves, driver_still_moves},
+      {FindingCode::RejectedAmplitudeVaries, amplitude_varies},
+      {FindingCode::RejectedShapeBeyondScan, shape_beyond_scan},
+      {FindingCode::RejectedSeveralPowers, several_powers},
+      {FindingCode::RejectedUnnamedExceeds, unnamed_exceeds},
+      {FindingCode::DirectionsUnrecorded, directions_unrecorded},
+      {FindingCode::TimesUnrecorded, times_unrecorded},
+  });
+  return kSentences;
+}
+
+}  // namespace volcal

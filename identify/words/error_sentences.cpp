@@ -1,0 +1,43 @@
+/// Where errors are stated without readings, and what of them no table holds.
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "volcal/identify/words/sentence_lists.h"
+#include "volcal/model/description/finding_codes.h"
+
+namespace volcal {
+namespace {
+
+std::string held_beyond_readings(const Finding& finding) {
+  return fmt::format(
+      "{} was measured from {:g} to {:g} of {:g} to {:g} {}: beyond it the last measured error is held",
+      finding.text("axis"), finding.number("measured_from").in_unit(),
+      finding.number("measured_to").in_unit(), finding.number("travel_from").in_unit(),
+      finding.number("travel_to").in_unit(), finding.number("travel_to").unit);
+}
+
+std::string effect_in_no_table(const Finding& finding) {
+  return finding.text("effect") + " was identified and is in no table: it acts along a path or in one setup";
+}
+
+std::string rotary_in_no_table(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return fmt::format(
+      "errors of axis {} were identified and are in no table: tables are for linear axes with {} at 0", axis,
+      axis);
+}
+
+}  // namespace
+
+std::span<const SentenceMaker> error_sentences() {
+  static constexpr auto kSentences = std::to_array<SentenceMaker>({
+      {FindingCode::ErrorsHeldBeyondReadings, held_beyond_readings},
+      {FindingCode::EffectInNoTable, effect_in_no_table},
+      {FindingCode::RotaryErrorsInNoTable, rotary_in_no_table},
+  });
+  return kSentences;
+}
+
+}  // namespace volcal

@@ -1,0 +1,135 @@
+/// What the readings do not determine: why, and what to measure.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "volcal/identify/words/sentence_lists.h"
+#include "volcal/model/description/finding_codes.h"
+
+namespace volcal {
+namespace {
+
+Explanation axis_at_rest(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return {"axis " + axis + " does not move in this campaign", "measure along axis " + axis};
+}
+
+Explanation tools_on_one_axis(const Finding& finding) {
+  const std::string& about = finding.text("about");
+  return {"every tool offset lies on " + about,
+          "add setups with a tool offset sideways to " + about + " (100 mm or more)"};
+}
+
+Explanation no_lever_arm(const Finding& finding) {
+  const std::string& about = finding.text("about");
+  return {"no reading has a lever arm about " + about,
+          "add setups with another tool offset, or an angle instrument about " + about};
+}
+
+Explanation no_reading_changes(const Finding& finding) {
+  std::string off;
+  if (finding.has("switch"))
+    off = fmt::format(" ([{}] {} = {})", finding.text("switch"), finding.text("error"),
+                      finding.text("switch") == "functions" ? "{ basis = \"zero\" }" : "\"zero\"");
+  return {"no reading changes when it changes",
+          "add readings that are sensitive to it, or switch it off in the model" + off};
+}
+
+Explanation few_positions(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return {"the readings stand at too few positions of axis " + axis + " to tell its course between them",
+          "add positions along axis " + axis};
+}
+
+Explanation like_straightness(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return {"the readings stand at too few positions of axis " + axis +
+              ", or on too little of its travel, to tell it from " + finding.text("straightness"),
+          "add positions along the whole travel of axis " + axis};
+}
+
+Explanation readings_too_few(const Finding&) {
+  return {"the readings that depend on it are too few or too noisy", "add readings far from its pivot"};
+}
+
+std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
+  if (remedy == "positions") return "add positions along axis " + finding.text("axis");
+  if (remedy == "stations") return "measure from more stations (four, well apart)";
+  if (remedy == "second-tool") return "repeat with a second tool offset, sideways and of another length";
+  if (remedy == "third-tool") {
+    return fmt::format(
+        "repeat with a third tool, its tip 100 mm or more to the side in {} (those of the tools in use lie "
+        "on "
+        "one line)",
+        finding.text("third_tool_across"));
+  }
+  if (remedy == "holding-instrument") {
+    return "add an instrument that holds position or direction over the whole travel (tracer, straightness, "
+           "square)";
+  }
+  if (remedy == "other-lines")
+    return "add lines at other offsets, straightness or angle readings that tell them apart";
+  throw std::invalid_argument("a remedy \"" + remedy + "\" is not known");
+}
+
+Explanation exchangeable(const Finding& finding) {
+  std::vector<std::string> remedies;
+  for (const std::string& remedy : finding.texts("remedies"))
+    remedies.push_back(remedy_in_words(remedy, finding));
+  return {"a change of it can be exchanged with " + list_in_words(finding.texts("partners")) +
+              " without changing any reading",
+          list_in_words(remedies)};
+}
+
+Explanation as_written(const Finding& finding) { return {finding.text("reason"), finding.text("remedy")}; }
+
+using Explain = Explanation (*)(const Finding&);
+constexpr auto kExplanations = std::to_array<std::pair<FindingCode, Explain>>({
+    {FindingCode::NotVisibleVerbatim, as_written},
+    {FindingCode::NotVisibleAxisAtRest, axis_at_rest},
+    {FindingCode::NotVisibleToolsOnOneAxis, tools_on_one_axis},
+    {FindingCode::NotVisibleNoLeverArm, no_lever_arm},
+    {FindingCode::NotVisibleNoReadingChanges, no_reading_changes},
+    {FindingCode::NotVisibleFewPositions, few_positions},
+    {FindingCode::NotVisibleLikeStraightness, like_straightness},
+    {FindingCode::NotVisibleReadingsTooFew, readings_too_few},
+    {FindingCode::NotVisibleExchangeable, exchangeable},
+});
+
+std::string not_visible(const Finding& finding) {
+  const Explanation words = explanation(finding);
+  return finding.text("error") + ": not visible, " + words.reason + "; " + words.remedy;
+}
+
+std::string held_by_prior(const Finding& finding) {
+  const FindingNumber& sigma = finding.number("sigma");
+  return fmt::format("{} {}: held at its guess +- {:g} {}", finding.text("block"), finding.text("parameter"),
+                     sigma.in_unit(), sigma.unit);
+}
+
+}  // namespace
+
+Explanation explanation(const std::optional<Finding>& cause) {
+  if (!cause) return {};
+  const auto found = std::ranges::find(kExplanations, cause->code, &std::pair<FindingCode, Explain>::first);
+  if (found == kExplanations.end())
+    throw std::invalid_argument("\"" + std::string(to_string(cause->code)) +
+                                "\" is no reason for what is not visible");
+  return found->second(*cause);
+}
+
+std::span<const SentenceMaker> rank_sentences() {
+  static constexpr auto kSentences = [] {
+    std::array<SentenceMaker, kExplanations.size() + 1> all = {};
+    for (std::size_t i = 0; i < kExplanations.size(); ++i) all[i] = {kExplanations[i].first, not_visible};
+    all.back() = {FindingCode::RankHeldByPrior, held_by_prior};
+    return all;
+  }();
+  return kSentences;
+}
+
+}  // namespace volcal

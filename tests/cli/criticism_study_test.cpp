@@ -32,18 +32,25 @@ const Json& figure(const Json& study, const std::string& name) {
   return *found;
 }
 
+std::string layout_of_listed() {
+  return testing::short_or_long<std::string>("--seed 41 --readings 700", "--seed 40 --readings 1000");
+}
+
 /// Six campaigns for the night, of which two or more have a strong effect; one with a reversal in every run.
+/// Made once.
+const Json& listed_study() {
+  static const Json study = [] {
+    const auto run = run_program("study criticism --rows listed --json " +
+                                 testing::short_or_long<std::string>("-n 1 ", "-n 6 ") + layout_of_listed());
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return Json::parse(run.output);
+  }();
+  return study;
+}
+
 TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
-  const testing::ScratchFolder folder;
-  const std::string output = (folder.path() / "kept").string();
-  const auto run = run_program(
-      "study criticism --rows listed --json " +
-      testing::short_or_long<std::string>("-n 1 --seed 41 --readings 700", "-n 6 --seed 40 --readings 1000") +
-      " -o " + output);
-  ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const Json study = Json::parse(run.output);
   int strong = 0;
-  for (const auto& campaign : study.at("campaigns")) {
+  for (const auto& campaign : listed_study().at("campaigns")) {
     if (campaign.at("hidden")[0].at("signal").get<double>() < 11.9) continue;
     ++strong;
     // With two tools an offset of one is the opposite offset of the other, and nearly a load.
@@ -72,6 +79,41 @@ TEST(CriticismStudy, NamesWhatAShortDriftHasTakenUp) {
   EXPECT_EQ(diagnosis.at("verdict"), "NAMED");
   ASSERT_EQ(diagnosis.at("effects").size(), 1U);
   EXPECT_EQ(diagnosis.at("effects")[0].at("kind"), "servo-mismatch");
+}
+
+void expect_no_wrong_name(const Json& campaign) {
+  if (campaign.at("row") == "null") {
+    EXPECT_THAT(campaign.at("verdict"), ::testing::AnyOf("NOTHING_ABOVE", "NOT_VISIBLE")) << campaign;
+  }
+  EXPECT_EQ(campaign.at("failure"), "");
+  EXPECT_NE(campaign.at("outcome"), "wrong name") << campaign;
+  for (const auto& hidden : campaign.at("hidden")) {
+    EXPECT_GE(hidden.at("signal").get<double>(), 4.99);
+    EXPECT_NE(hidden.at("right"), "");
+  }
+}
+
+/// One campaign for a closer look is the one that the study counts.
+TEST(CriticismStudy, WritesOneCampaign) {
+  const testing::ScratchFolder scratch;
+  const std::string one = (scratch.path() / "one").string();
+  const auto written = run_program("study criticism --one listed:0 " + layout_of_listed() + " -o " + one);
+  ASSERT_EQ(written.exit_code, 0) << written.errors;
+  EXPECT_THAT(written.output, HasSubstr("volcal diagnose"));
+  const Json hidden = Json::parse(content(std::filesystem::path(one) / "truth" / "hidden.json"));
+  const Json& record = listed_study().at("campaigns").at(0);
+  expect_no_wrong_name(record);
+  EXPECT_NEAR(record.at("hidden").at(0).at("rms_um").get<double>(),
+              hidden.at("effects").at(0).at("rms_um").get<double>(), 1e-3);
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(one) / "campaign.toml"));
+  for (const char* wrong : {"listed", "listed:x", "gremlins:1", "listed:-1"}) {
+    const auto refused = run_program(std::string("study criticism --one ") + wrong + " -o " + one);
+    EXPECT_EQ(refused.exit_code, 2) << wrong;
+    EXPECT_THAT(refused.errors, HasSubstr("listed:11")) << wrong;
+  }
+  const auto nowhere = run_program("study criticism --one listed:0");
+  EXPECT_EQ(nowhere.exit_code, 2);
+  EXPECT_THAT(nowhere.errors, HasSubstr("-o FOLDER"));
 }
 
 class CriticismStudyFolder : public ::testing::Test {
@@ -109,18 +151,6 @@ class CriticismStudyFolder : public ::testing::Test {
   std::string output_ = (scratch_.path() / "kept").string();
   std::filesystem::path file_ = std::filesystem::path(output_) / "campaigns.jsonl";
 };
-
-void expect_no_wrong_name(const Json& campaign) {
-  if (campaign.at("row") == "null") {
-    EXPECT_THAT(campaign.at("verdict"), ::testing::AnyOf("NOTHING_ABOVE", "NOT_VISIBLE")) << campaign;
-  }
-  EXPECT_EQ(campaign.at("failure"), "");
-  EXPECT_NE(campaign.at("outcome"), "wrong name") << campaign;
-  for (const auto& hidden : campaign.at("hidden")) {
-    EXPECT_GE(hidden.at("signal").get<double>(), 4.99);
-    EXPECT_NE(hidden.at("right"), "");
-  }
-}
 
 TEST_F(CriticismStudyFolder, SaysNothingOfNothing) {
   ASSERT_EQ(nothing_hidden().exit_code, 0) << nothing_hidden().errors;
@@ -174,30 +204,6 @@ TEST_F(CriticismStudyFolder, GoesOnWhereItWasInterrupted) {
   ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
   EXPECT_EQ(resumed.output, nothing_hidden().output);
   EXPECT_EQ(kept().size(), 5U);
-}
-
-/// One campaign for a closer look is the one that the study counts.
-TEST_F(CriticismStudyFolder, WritesOneCampaign) {
-  const std::string one = (scratch_.path() / "one").string();
-  const auto written = run_program("study criticism --one listed:0 --readings 400 -o " + one);
-  ASSERT_EQ(written.exit_code, 0) << written.errors;
-  EXPECT_THAT(written.output, HasSubstr("volcal diagnose"));
-  const Json hidden = Json::parse(content(std::filesystem::path(one) / "truth" / "hidden.json"));
-  const auto counted = run_program("study criticism --rows listed -n 1 --readings 400 --json");
-  ASSERT_EQ(counted.exit_code, 0) << counted.errors;
-  const Json record = Json::parse(counted.output).at("campaigns").at(0);
-  expect_no_wrong_name(record);
-  EXPECT_NEAR(record.at("hidden").at(0).at("rms_um").get<double>(),
-              hidden.at("effects").at(0).at("rms_um").get<double>(), 1e-3);
-  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(one) / "campaign.toml"));
-  for (const char* wrong : {"listed", "listed:x", "gremlins:1", "listed:-1"}) {
-    const auto refused = run_program(std::string("study criticism --one ") + wrong + " -o " + one);
-    EXPECT_EQ(refused.exit_code, 2) << wrong;
-    EXPECT_THAT(refused.errors, HasSubstr("listed:11")) << wrong;
-  }
-  const auto nowhere = run_program("study criticism --one listed:0");
-  EXPECT_EQ(nowhere.exit_code, 2);
-  EXPECT_THAT(nowhere.errors, HasSubstr("-o FOLDER"));
 }
 
 TEST_F(CriticismStudyFolder, RefusesCampaignsOfAnotherRun) {

@@ -19,16 +19,23 @@ using testing_support::reversal;
 
 struct Diagnosed {
   sim::SimulatedCampaign simulated;
+  FitResult result;
   Diagnosis diagnosis;
 };
 
 Diagnosed diagnosed(const sim::Study& study) {
-  Diagnosed out{sim::simulate(study), {}};
-  const FitResult result = fit(out.simulated.campaign, ModelSpec{});
+  Diagnosed out{sim::simulate(study), {}, {}};
+  out.result = fit(out.simulated.campaign, ModelSpec{});
   DiagnoseOptions options;
   options.climb = true;
-  out.diagnosis = diagnose(out.simulated.campaign, result, options);
+  out.diagnosis = diagnose(out.simulated.campaign, out.result, options);
   return out;
+}
+
+/// Made once.
+const Diagnosed& diagnosed_reversal() {
+  static const Diagnosed found = diagnosed(hiding({reversal("EYY", 0.5e-6)}));
+  return found;
 }
 
 /// A reversal of Y by b moves the functional point by b/2 at every position.
@@ -85,7 +92,7 @@ TEST(Diagnosis, NothingHiddenIsNothingAbove) {
 }
 
 TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
-  const Diagnosed found = diagnosed(hiding({reversal("EYY", 0.5e-6)}));
+  const Diagnosed& found = diagnosed_reversal();
   EXPECT_EQ(to_string(found.diagnosis.verdict), "NAMED");
   ASSERT_EQ(found.diagnosis.effects.size(), 1U);
   const EffectFinding& effect = found.diagnosis.effects[0];
@@ -102,12 +109,13 @@ TEST(Diagnosis, AReversalIsNamedWithItsAmplitude) {
 
 /// To the bit.
 TEST(Diagnosis, TheNumberOfThreadsChangesNothing) {
-  const sim::SimulatedCampaign simulated = sim::simulate(hiding({reversal("EZZ", 0.4e-6)}));
-  const FitResult result = fit(simulated.campaign, ModelSpec{});
+  const Diagnosis& one = diagnosed_reversal().diagnosis;
   DiagnoseOptions options;
-  const Diagnosis one = diagnose(simulated.campaign, result, options);
+  options.climb = true;
+  ASSERT_EQ(options.threads, 1);
   options.threads = 3;
-  const Diagnosis three = diagnose(simulated.campaign, result, options);
+  const Diagnosis three =
+      diagnose(diagnosed_reversal().simulated.campaign, diagnosed_reversal().result, options);
   ASSERT_EQ(one.ranking.size(), three.ranking.size());
   for (std::size_t i = 0; i < one.ranking.size(); ++i) {
     EXPECT_EQ(one.ranking[i].name, three.ranking[i].name);
@@ -124,14 +132,13 @@ TEST(Diagnosis, TheNumberOfThreadsChangesNothing) {
 
 /// The extended model, fitted, explains what was hidden.
 TEST(Diagnosis, ItsEffectCanBeFitted) {
-  const Diagnosed found = diagnosed(hiding({reversal("EXX", 0.6e-6)}));
+  const Diagnosed& found = diagnosed_reversal();
   ASSERT_EQ(found.diagnosis.effects.size(), 1U);
   ModelSpec extended;
   extended.effects.push_back(found.diagnosis.effects[0].spec);
-  const FitResult without = fit(found.simulated.campaign, ModelSpec{});
   const FitResult with = fit(found.simulated.campaign, extended);
-  EXPECT_LT(with.chi2, without.chi2 - 100.0);
-  const ParameterBlock* block = with.layout.find_block("reversal EXX");
+  EXPECT_LT(with.chi2, found.result.chi2 - 100.0);
+  const ParameterBlock* block = with.layout.find_block("reversal EYY");
   ASSERT_NE(block, nullptr);
   EXPECT_NEAR(with.parameters[block->offset], found.simulated.hidden.at(0).amplitude, 0.3e-6);
 }

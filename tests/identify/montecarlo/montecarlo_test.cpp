@@ -169,6 +169,7 @@ TEST_F(TracerStudy, ThreadsDoNotChangeABit) {
       options.path = path;
       options.threads = threads;
       options.refits = 2;
+      options.grid_per_axis = 2;
       options.draws = path == DrawPath::Linear ? 12000 : path == DrawPath::Chord ? 1300 : 12;
       MonteCarloStudy study(campaign(), result(), options);
       while (!study.done()) study.run_block();
@@ -211,6 +212,7 @@ TEST_F(TracerStudy, RanksDoNotChangeABit) {
     options.path = path;
     options.refits = 1;
     options.threads = 1;
+    options.grid_per_axis = 2;
     options.draws = path == DrawPath::Linear ? 20250 : 1260;  // a last block of one batch
     MonteCarloStudy alone(campaign(), result(), options);
     while (!alone.done()) alone.run_block();
@@ -253,6 +255,7 @@ TEST_F(TracerStudy, ResumedStudyIsTheUninterruptedOne) {
   options.path = DrawPath::Linear;
   options.draws = 35000;
   options.refits = 1;
+  options.grid_per_axis = 2;
   MonteCarloStudy whole(campaign(), result(), options), interrupted(campaign(), result(), options),
       resumed(campaign(), result(), options);
   while (!whole.done()) whole.run_block();
@@ -283,6 +286,7 @@ TEST_F(TracerStudy, MonteCarloAgreesWithTheTables) {
     options.path = path;
     options.draws = static_cast<std::uint64_t>(draws);
     options.threads = 2;
+    options.grid_per_axis = 0;
     const MonteCarloResult study = studied(campaign(), result(), options);
     const double error = 5.0 * std::sqrt(0.5 / draws);
     for (const QuantityResult& value : study.quantities) {
@@ -299,6 +303,7 @@ TEST_F(TracerStudy, FixedFunctionsTellScatterAndBiasApart) {
   options.path = DrawPath::Chord;
   options.draws = 4000;
   options.threads = 2;
+  options.grid_per_axis = 0;
   options.sources.functions = FunctionRoughness::Fixed;
   const MonteCarloResult study = studied(campaign(), result(), options);
   MonteCarloOptions drawn = options;

@@ -25,7 +25,7 @@ class PoseReadings {
     campaign_.machine = machine;
     campaign_.machine.tools = {tool};
     campaign_.setups.resize(1);
-    view_.emplace(SetupView{campaign_, campaign_.setups.front(), {}, {}, clock_start});
+    view_.emplace(SetupView{campaign_, campaign_.setups.front(), {}, {}, clock_start, false});
     for (const auto& [channel, value] : conditions_.temperature_degC) readings().temperature[channel] = {};
   }
   PoseReadings(const PoseReadings&) = delete;

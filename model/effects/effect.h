@@ -69,6 +69,7 @@ struct SetupView {
       length;  ///< per row, m: length that scales the noise of channel 0; empty: nothing is measured
   /// s, time of the first reading, from which growth and drift count; absent: of `campaign`.
   std::optional<double> clock_start = {};
+  bool is_path = true;  ///< the rows were read one after another; false: poses that have no order
 
   std::size_t rows() const { return setup.readings.size(); }
 };

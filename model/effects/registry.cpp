@@ -10,7 +10,11 @@ namespace volcal {
 #define VOLCAL_EFFECTS(EFFECT)        \
   EFFECT(reversal_effect)             \
   EFFECT(position_reversal_effect)    \
+  EFFECT(curved_reversal_effect)      \
+  EFFECT(thermal_reversal_effect)     \
+  EFFECT(pre_travel_effect)           \
   EFFECT(lead_error_effect)           \
+  EFFECT(growing_lead_error_effect)   \
   EFFECT(encoder_subdivision_effect)  \
   EFFECT(screw_heating_effect)        \
   EFFECT(scale_expansion_effect)      \
@@ -20,6 +24,7 @@ namespace volcal {
   EFFECT(squareness_drift_effect)     \
   EFFECT(axis_coupling_effect)        \
   EFFECT(product_coupling_effect)     \
+  EFFECT(triple_coupling_effect)      \
   EFFECT(tool_load_effect)            \
   EFFECT(length_scale_effect)         \
   EFFECT(dead_path_effect)            \
@@ -32,6 +37,8 @@ namespace volcal {
   EFFECT(following_error_effect)      \
   EFFECT(lagged_temperature_effect)   \
   EFFECT(lagged_expansion_effect)     \
+  EFFECT(temperature_rate_effect)     \
+  EFFECT(tool_rate_effect)            \
   EFFECT(foundation_tilt_effect)      \
   EFFECT(beam_misalignment_effect)    \
   EFFECT(encoder_eccentricity_effect) \

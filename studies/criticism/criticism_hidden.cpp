@@ -227,7 +227,9 @@ const std::vector<std::pair<std::string, std::string>>& listed() {
       {"lagged-temperature", "lagged-temperature"},
       {"squareness-channel", "squareness-drift"},
       {"foundation-tilt", "foundation-tilt"},
-      {"tool-clamping", "tool-clamping"}};
+      {"tool-clamping", "tool-clamping"},
+      {"direction-temperature", "thermal-reversal"},
+      {"reversal-spike", "pre-travel"}};
   return kListed;
 }
 
@@ -243,26 +245,12 @@ std::span<const std::string> listed_kinds() {
 }
 
 std::span<const std::string> unlisted_kinds() {
-  static const std::vector<std::string> kKinds = {"tool-growth-on-off",
-                                                  "air-index",
-                                                  "station-swing",
-                                                  "station-expansion",
-                                                  "backlash-kink",
-                                                  "triangle-wave",
-                                                  "cross-wave",
-                                                  "local-bump",
-                                                  "position-step",
-                                                  "cross-kink",
-                                                  "reversal-spike",
-                                                  "direction-memory",
-                                                  "lagged-temperature by",
-                                                  "direction-temperature",
-                                                  "root-time",
-                                                  "heated-zone",
-                                                  "gradient-bending",
-                                                  "temperature-squared",
-                                                  "thermal-tilt by",
-                                                  "tool-load by"};
+  static const std::vector<std::string> kKinds = {
+      "tool-growth-on-off", "air-index",     "station-swing",    "station-expansion",
+      "backlash-kink",      "triangle-wave", "cross-wave",       "local-bump",
+      "position-step",      "cross-kink",    "direction-memory", "lagged-temperature by",
+      "root-time",          "heated-zone",   "gradient-bending", "temperature-squared",
+      "thermal-tilt by",    "tool-load by"};
   return kKinds;
 }
 

@@ -51,7 +51,7 @@ class Answerer {
       const EffectName candidate = found->make(spec, {})->name();
       if (candidate.target != target || (!driver.empty() && candidate.driver != driver)) continue;
       if (!shape.empty() && candidate.shape != shape) continue;
-      for (const char* stem : {"period", "time_constant", "time"}) {
+      for (const char* stem : {"period", "time_constant", "time", "length"}) {
         if (const auto value = hidden_.options.number(stem)) spec.options.set(stem, *value);
       }
       answer_.spec = spec;
@@ -73,6 +73,9 @@ class Answerer {
     const std::string symbol = text("symbol");
     if (is({"reversal"})) set("reversal", symbol, "");
     if (is({"reversal-position"})) set("position-reversal", symbol, "");
+    if (is({"reversal-spike"})) set("pre-travel", symbol, "");
+    if (is({"direction-temperature"}))
+      set("thermal-reversal", symbol, "dir_" + own_axis() + " " + temperature());
     if (is({"screw-lead"})) set("lead-error", symbol, "");
     if (is({"encoder-subdivision"})) set("encoder-subdivision", symbol, "");
     if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");

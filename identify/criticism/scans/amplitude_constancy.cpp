@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
+
+#include "volcal/model/effects/travel_since_turning.h"
 
 namespace volcal {
 namespace {
@@ -37,22 +38,12 @@ bool may_vary_with(const Family& family, const ScanVariable& variable) {
   });
 }
 
-/// Of one axis along the readings of a setup, m; 0 until it first turns. Where it went back and comes from
-/// the same side again it has turned as well.
-std::vector<double> since_turning(const Setup& setup, std::size_t axis) {
-  const Readings& readings = setup.readings;
-  std::vector<std::size_t> order(readings.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (!readings.time.empty())
-    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return readings.time[row]; });
-  std::vector<double> travelled(readings.size(), 0.0);
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    const std::size_t now = order[i], before = order[i - 1];
-    const double step =
-        readings.direction[axis][now] * (readings.position[axis][now] - readings.position[axis][before]);
-    const bool turned = step < 0.0 || readings.direction[axis][now] != readings.direction[axis][before];
-    travelled[now] = turned ? std::max(step, 0.0) : travelled[before] + step;
-  }
+/// As far as ever until it first turns.
+std::vector<double> since_turning(const Setup& setup, AxisName axis) {
+  std::vector<double> travelled = travel_since_turning(setup, axis);
+  double farthest = 0.0;
+  for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
+  for (double& each : travelled) each = std::min(each, farthest);
   return travelled;
 }
 
@@ -71,12 +62,8 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model) {
   const Campaign& campaign = model.campaign();
   std::vector<ScanVariable> variables;
   for (const Axis& axis : campaign.machine.axes) {
-    const std::size_t k = index_of(axis.name);
     std::vector<std::vector<double>> travelled;
-    for (const Setup& setup : campaign.setups) {
-      const bool known = !setup.readings.direction[k].empty();
-      travelled.push_back(known ? since_turning(setup, k) : std::vector<double>(setup.readings.size(), 0.0));
-    }
+    for (const Setup& setup : campaign.setups) travelled.push_back(since_turning(setup, axis.name));
     Eigen::VectorXd value(static_cast<Eigen::Index>(model.size()));
     for (std::size_t i = 0; i < model.size(); ++i) {
       const auto& place = model.observations()[i];

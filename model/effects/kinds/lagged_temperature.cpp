@@ -4,6 +4,7 @@
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
+#include "volcal/model/effects/lagged_channel.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -13,63 +14,6 @@ constexpr double kUsualLag = kSecondsPerHour;
 constexpr double kShortestLag = 600.0;
 constexpr double kLongestLag = 14400.0;
 constexpr int kLags = 8;
-
-struct Sample {
-  double time = 0.0;         ///< s
-  double temperature = 0.0;  ///< degC
-};
-
-bool has_both(const Setup& setup, const std::string& channel) {
-  return !setup.readings.time.empty() && setup.readings.temperature.contains(channel);
-}
-
-/// The channel of the whole campaign in the order of time.
-std::vector<Sample> samples_of(const Campaign& campaign, const std::string& channel) {
-  std::vector<Sample> samples;
-  for (const Setup& setup : campaign.setups) {
-    if (!has_both(setup, channel)) continue;
-    const std::vector<double>& temperature = setup.readings.temperature.at(channel);
-    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      samples.push_back({setup.readings.time[row], temperature[row]});
-    }
-  }
-  if (!std::ranges::is_sorted(samples, {}, &Sample::time)) {
-    std::ranges::stable_sort(samples, {}, &Sample::time);
-  }
-  return samples;
-}
-
-/// Solves lag y' = T - y in place, T piecewise linear between the samples, y = T at the first.
-void follow(std::vector<Sample>& samples, double lag) {
-  double before = samples.front().temperature;
-  double step = -1.0, left = 1.0;
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const double after = samples[i].temperature;
-    const double dt = samples[i].time - samples[i - 1].time;
-    double& followed = samples[i].temperature;
-    followed = samples[i - 1].temperature;
-    if (dt > 0.0) {
-      if (dt != step) left = std::exp(-dt / lag);
-      step = dt;
-      const double slope = (after - before) / dt;
-      followed = after - slope * lag + (followed - before + slope * lag) * left;
-    }
-    before = after;
-  }
-}
-
-/// Lagged temperature less 20 degC per reading; 0 where time or channel were not recorded.
-Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel, double lag) {
-  Eigen::VectorXd excess = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
-  if (!has_both(view.setup, channel)) return excess;
-  std::vector<Sample> samples = samples_of(view.campaign, channel);
-  follow(samples, lag);
-  for (std::size_t row = 0; row < view.rows(); ++row) {
-    const auto at = std::ranges::lower_bound(samples, view.setup.readings.time[row], {}, &Sample::time);
-    excess[static_cast<Eigen::Index>(row)] = at->temperature - kReferenceTemperature_degC;
-  }
-  return excess;
-}
 
 /// Adds the lag to an effect; no lag is looked for that is longer than the campaign.
 void add_lag(const EffectTable& table, const std::string& label, const std::string& channel,
@@ -87,14 +31,9 @@ void add_lag(const EffectTable& table, const std::string& label, const std::stri
     }
     return values;
   });
-  effect.count_unrecorded(
-      [channel](const SetupView& view) { return has_both(view.setup, channel) ? 0 : view.rows(); });
-}
-
-void check_recorded(const Campaign& campaign, const std::string& channel, const std::string& label,
-                    const SourcePlace& place) {
-  check_channel(campaign, channel, place);
-  check_time(campaign, label, place);
+  effect.count_unrecorded([channel](const SetupView& view) {
+    return has_time_and_channel(view.setup, channel) ? 0 : view.rows();
+  });
 }
 
 std::unique_ptr<FormulaEffect> make_lagged_temperature(const EffectTable& table) {
@@ -109,7 +48,7 @@ std::unique_ptr<FormulaEffect> make_lagged_temperature(const EffectTable& table)
       },
       [symbol, channel, label](const Campaign& campaign, const SourcePlace& place) {
         check_axis(campaign, symbol.axis, label, place);
-        check_recorded(campaign, channel, label, place);
+        check_time_and_channel(campaign, channel, label, place);
       });
   add_lag(table, label, channel, *effect);
   return effect;
@@ -125,7 +64,7 @@ std::unique_ptr<FormulaEffect> make_lagged_expansion(const EffectTable& table) {
         return lagged_excess(view, channel, shape[0]).replicate(1, 3);
       },
       [channel, label](const Campaign& campaign, const SourcePlace& place) {
-        check_recorded(campaign, channel, label, place);
+        check_time_and_channel(campaign, channel, label, place);
       });
   add_lag(table, label, channel, *effect);
   return effect;

@@ -17,8 +17,15 @@ struct PeriodRange {
   double min;
   double max;
   double finest_scan = 4e-3;  ///< m: ranges above are scanned evenly, others at the usual signal periods
+  bool grows = false;         ///< in proportion to the travel from home
 };
 constexpr PeriodRange kLead = {"lead-error", "lead error", 10e-3, 4e-3, 60e-3};
+constexpr PeriodRange kGrowingLead = {.kind = "growing-lead-error",
+                                      .label = "growing lead error",
+                                      .usual = 10e-3,
+                                      .min = 4e-3,
+                                      .max = 60e-3,
+                                      .grows = true};
 constexpr PeriodRange kEncoder = {"encoder-subdivision", "subdivision error", 1e-3, 20e-6, 3e-3};
 
 /// Evenly spaced frequencies, half a period over the travel apart: no line can hide between them.
@@ -40,6 +47,15 @@ std::vector<Eigen::VectorXd> usual_periods() {
   return values;
 }
 
+KeySchema wave_key(const std::string& stem, const std::string& unit, const PeriodRange& range) {
+  const std::string name = stem == "cos" ? "cosine" : "sine";
+  return {.key = stem + "_" + unit + (range.grows ? "_per_m" : ""),
+          .help = "amplitude of the " + name + (range.grows ? " per metre of travel" : "") +
+                  (unit == "um" ? ", displacements" : ", rotations"),
+          .plausible_min = 1e-6,
+          .plausible_max = 1e4};
+}
+
 EffectSchema periodic_schema(const PeriodRange& range, const std::string& summary,
                              const std::string& source) {
   return {.kind = range.kind,
@@ -47,36 +63,25 @@ EffectSchema periodic_schema(const PeriodRange& range, const std::string& summar
           .source = source,
           .keys = joined({{symbol_key("error motion: EXX, EYY, EZZ, or another motion of the axis")},
                           shape_keys("period", "mm", "period in positions of the axis"),
-                          {{.key = "cos_um",
-                            .help = "amplitude of the cosine, displacements",
-                            .plausible_min = 1e-6,
-                            .plausible_max = 1e4},
-                           {.key = "cos_urad",
-                            .help = "amplitude of the cosine, rotations",
-                            .plausible_min = 1e-6,
-                            .plausible_max = 1e4},
-                           {.key = "sin_um",
-                            .help = "amplitude of the sine, displacements",
-                            .plausible_min = 1e-6,
-                            .plausible_max = 1e4},
-                           {.key = "sin_urad",
-                            .help = "amplitude of the sine, rotations",
-                            .plausible_min = 1e-6,
-                            .plausible_max = 1e4}}})};
+                          {wave_key("cos", "um", range), wave_key("cos", "urad", range),
+                           wave_key("sin", "um", range), wave_key("sin", "urad", range)}})};
 }
 
 std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const PeriodRange& range) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = range.label + (" " + symbol.name());
+  const std::string per = range.grows ? "per_m" : "";
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{range.kind, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "periodic"},
-      std::vector{motion_amplitude(table, label + " cos", symbol, "", "cos"),
-                  motion_amplitude(table, label + " sin", symbol, "", "sin")},
-      [symbol](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
-        const Eigen::ArrayXd phase =
-            positions_from_home(view, symbol.axis).array() * (2.0 * std::numbers::pi / shape[0]);
+      EffectName{range.kind, symbol.name(), std::string(1, lower_letter_of(symbol.axis)),
+                 range.grows ? "growing wave" : "periodic"},
+      std::vector{motion_amplitude(table, label + " cos", symbol, per, "cos"),
+                  motion_amplitude(table, label + " sin", symbol, per, "sin")},
+      [symbol, grows = range.grows](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
+        const Eigen::ArrayXd position = positions_from_home(view, symbol.axis).array();
+        const Eigen::ArrayXd phase = position * (2.0 * std::numbers::pi / shape[0]);
         Eigen::MatrixXd drivers(phase.size(), 2);
         drivers << phase.cos(), phase.sin();
+        if (grows) drivers.array().colwise() *= position;
         return drivers;
       },
       [symbol, label](const Campaign& campaign, const SourcePlace& place) {
@@ -109,6 +114,18 @@ const EffectKind& lead_error_effect() {
                       "ISO 3408-3 (periodic travel deviation of ball screws)"),
       [](const EffectTable& table) { return make_periodic(table, kLead); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kLead.kind); });
+  return kind;
+}
+
+const EffectKind& growing_lead_error_effect() {
+  static const FormulaKind kind(
+      periodic_schema(
+          kGrowingLead,
+          "the error that repeats with a screw's lead grows in proportion to the travel from home: a "
+          "nut that is out of line with its screw, a bearing at one end",
+          "ISO 3408-3 (periodic travel deviation of ball screws)"),
+      [](const EffectTable& table) { return make_periodic(table, kGrowingLead); },
+      [](const Campaign& campaign) { return positioning_motions(campaign, kGrowingLead.kind); });
   return kind;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/travel_since_turning.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -319,6 +321,103 @@ TEST_F(Catalogue, EventsAreLookedForBetweenReadings) {
     return;
   }
   FAIL() << "no event at P1";
+}
+
+/// X: 0 100 200 towards +, back at 200 and 100 towards -, then from below again and on.
+TEST_F(Catalogue, TravelCountsFromWhereTheAxisTurned) {
+  volcal::Setup& setup = campaign_.setups[index("S1")];
+  Readings& readings = setup.readings;
+  readings.time.clear();
+  const double position[] = {0.0, 0.1, 0.2, 0.2, 0.1, 0.05, 0.08, 0.18, 0.15, 0.25};
+  const int direction[] = {1, 1, 1, -1, -1, 1, 1, 1, 1, 1};
+  const double unknown = std::numeric_limits<double>::infinity();
+  const double travelled[] = {unknown, unknown, unknown, 0.0, 0.1, 0.0, 0.03, 0.13, 0.0, 0.1};
+  for (std::size_t row = 0; row < 10; ++row) {
+    readings.position[0][row] = position[row];
+    readings.direction[0][row] = static_cast<std::int8_t>(direction[row]);
+  }
+  const std::vector<double> found = travel_since_turning(setup, AxisName::X);
+  for (std::size_t row = 0; row < 10; ++row) {
+    if (std::isinf(travelled[row])) {
+      EXPECT_TRUE(std::isinf(found[row])) << row;
+    } else {
+      EXPECT_NEAR(found[row], travelled[row], 1e-15) << row;
+    }
+  }
+  const EffectSpec spec = effect_spec("pre-travel", {{"symbol", std::string("EXX")}, {"length", 0.05}});
+  const Eigen::MatrixXd driver = drivers(spec, "S1");
+  EXPECT_EQ(driver(1, 0), 0.0) << "nothing is known of how far it has come";
+  EXPECT_NEAR(driver(3, 0), -0.5, 1e-15);
+  EXPECT_NEAR(driver(4, 0), -0.5 * std::exp(-2.0), 1e-15);
+  EXPECT_NEAR(driver(6, 0), 0.5 * std::exp(-0.6), 1e-15);
+}
+
+/// Poses of a table have no order: what is left after long travel stands there.
+TEST_F(Catalogue, PosesWithoutAnOrderHaveNoPreTravel) {
+  const MeasurementModel model(campaign_, model_);
+  SetupView view = setup_views(campaign_, model.binding(), model.chain())[0];
+  const EffectSpec spec = effect_spec("pre-travel", {{"symbol", std::string("EXX")}});
+  const auto effect = find_effect(spec.kind)->make(spec, "model.toml");
+  EXPECT_GT(effect->drivers(view, effect->shape_values()).norm(), 0.0);
+  view.is_path = false;
+  EXPECT_EQ(effect->drivers(view, effect->shape_values()).norm(), 0.0);
+}
+
+/// Half towards each side, by the kelvin over 20 degC; by the square of the way from home.
+TEST_F(Catalogue, AReversalChangesWithTemperatureAndWithTheSquareOfTheTravel) {
+  const EffectSpec warm = effect_spec(
+      "thermal-reversal", {{"symbol", std::string("EYY")}, {"temperature", std::string("spindle")}});
+  const EffectSpec curved = effect_spec("curved-reversal", {{"symbol", std::string("EYY")}});
+  EXPECT_EQ(find_effect("thermal-reversal")->make(warm, "")->amplitudes()[0].unit(), "um/K");
+  for (const std::size_t row : {3UL, 8UL}) {
+    const double half = 0.5 * readings("S1").direction[1][row], y = readings("S1").position[1][row];
+    const auto at = static_cast<Eigen::Index>(row);
+    EXPECT_NEAR(drivers(warm, "S1")(at, 0), half * 0.2 * static_cast<double>(row), 1e-12);
+    EXPECT_NEAR(drivers(curved, "S1")(at, 0), half * y * y, 1e-15);
+  }
+}
+
+TEST_F(Catalogue, AProductOfThreePositions) {
+  const auto spec = [](const char* axes) {
+    return effect_spec("triple-coupling", {{"symbol", std::string("EAY")}, {"axes", std::string(axes)}});
+  };
+  const double x = readings("S1").position[0][5], y = readings("S1").position[1][5],
+               z = readings("S1").position[2][5];
+  EXPECT_NEAR(drivers(spec("Z Y Z"), "S1")(5, 0), y * z * z, 1e-15);
+  EXPECT_NEAR(drivers(spec("X Y Z"), "S1")(5, 0), x * y * z, 1e-15);
+  const EffectKind* kind = find_effect("triple-coupling");
+  EXPECT_EQ(kind->make(spec("Z Y Z"), "")->amplitudes()[0].label, "EAY by y z^2");
+  for (const char* wrong : {"Z Z Z", "Y Z", "Y Z Q", "Y Z Z Z"})
+    EXPECT_THROW(kind->make(spec(wrong), "model.toml"), InputError) << wrong;
+  // Nine rotations by seven products, and a displacement in three directions by each of the seven.
+  EXPECT_EQ(kind->candidates(campaign_).size(), 9U * 7U + 3U * 7U);
+}
+
+TEST_F(Catalogue, AWaveGrowsWithTheWayFromHome) {
+  const EffectSpec spec =
+      effect_spec("growing-lead-error", {{"symbol", std::string("EXX")}, {"period", 0.02}});
+  const double x = readings("S1").position[0][7], phase = 2.0 * std::numbers::pi * x / 0.02;
+  const Eigen::MatrixXd driver = drivers(spec, "S1");
+  EXPECT_NEAR(driver(7, 0), x * std::cos(phase), 1e-12);
+  EXPECT_NEAR(driver(7, 1), x * std::sin(phase), 1e-12);
+  EXPECT_EQ(find_effect(spec.kind)->make(spec, "")->amplitudes()[1].unit(), "um/m");
+}
+
+/// Of a ramp r t the core lags by r tau (1 - exp(-t / tau)), in the end by tau times the rate.
+TEST_F(Catalogue, WhatFollowsTheRateOfATemperature) {
+  constexpr double kRate = 0.5 / 3600.0, kConstant = 900.0;
+  for (volcal::Setup& setup : campaign_.setups) {
+    auto& column = setup.readings.temperature["ramp"];
+    for (const double time : setup.readings.time) column.push_back(20.0 + kRate * time);
+  }
+  const EffectSpec spec = effect_spec(
+      "temperature-rate",
+      {{"symbol", std::string("EAZ")}, {"temperature", std::string("ramp")}, {"time_constant", kConstant}});
+  for (const char* setup : {"S1", "S3"}) {
+    const double t = readings(setup).time[9];
+    EXPECT_NEAR(drivers(spec, setup)(9, 0), kRate * kConstant * (1.0 - std::exp(-t / kConstant)), 1e-12);
+  }
+  EXPECT_EQ(find_effect(spec.kind)->make(spec, "")->scan(campaign_).size(), 1U);
 }
 
 }  // namespace

@@ -1,0 +1,75 @@
+#include "volcal/model/effects/lagged_channel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "volcal/model/description/units.h"
+
+namespace volcal {
+namespace {
+
+struct Sample {
+  double time = 0.0;         ///< s
+  double temperature = 0.0;  ///< degC
+};
+
+/// The channel of the whole campaign in the order of time.
+std::vector<Sample> samples_of(const Campaign& campaign, const std::string& channel) {
+  std::vector<Sample> samples;
+  for (const Setup& setup : campaign.setups) {
+    if (!has_time_and_channel(setup, channel)) continue;
+    const std::vector<double>& temperature = setup.readings.temperature.at(channel);
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      samples.push_back({setup.readings.time[row], temperature[row]});
+    }
+  }
+  if (!std::ranges::is_sorted(samples, {}, &Sample::time)) {
+    std::ranges::stable_sort(samples, {}, &Sample::time);
+  }
+  return samples;
+}
+
+/// Solves lag y' = T - y in place, T piecewise linear between the samples, y = T at the first.
+void follow(std::vector<Sample>& samples, double lag) {
+  double before = samples.front().temperature;
+  double step = -1.0, left = 1.0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const double after = samples[i].temperature;
+    const double dt = samples[i].time - samples[i - 1].time;
+    double& followed = samples[i].temperature;
+    followed = samples[i - 1].temperature;
+    if (dt > 0.0) {
+      if (dt != step) left = std::exp(-dt / lag);
+      step = dt;
+      const double slope = (after - before) / dt;
+      followed = after - slope * lag + (followed - before + slope * lag) * left;
+    }
+    before = after;
+  }
+}
+
+}  // namespace
+
+bool has_time_and_channel(const Setup& setup, const std::string& channel) {
+  return !setup.readings.time.empty() && setup.readings.temperature.contains(channel);
+}
+
+void check_time_and_channel(const Campaign& campaign, const std::string& channel, const std::string& label,
+                            const SourcePlace& place) {
+  check_channel(campaign, channel, place);
+  check_time(campaign, label, place);
+}
+
+Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel, double lag) {
+  Eigen::VectorXd excess = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
+  if (!has_time_and_channel(view.setup, channel)) return excess;
+  std::vector<Sample> samples = samples_of(view.campaign, channel);
+  follow(samples, lag);
+  for (std::size_t row = 0; row < view.rows(); ++row) {
+    const auto at = std::ranges::lower_bound(samples, view.setup.readings.time[row], {}, &Sample::time);
+    excess[static_cast<Eigen::Index>(row)] = at->temperature - kReferenceTemperature_degC;
+  }
+  return excess;
+}
+
+}  // namespace volcal

@@ -1,0 +1,36 @@
+#include "volcal/model/effects/travel_since_turning.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace volcal {
+namespace {
+
+std::vector<std::size_t> order_of_reading(const Readings& readings) {
+  std::vector<std::size_t> order(readings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!readings.time.empty())
+    std::ranges::stable_sort(order, {}, [&](std::size_t row) { return readings.time[row]; });
+  return order;
+}
+
+}  // namespace
+
+std::vector<double> travel_since_turning(const Setup& setup, AxisName axis) {
+  const Readings& readings = setup.readings;
+  const auto& direction = readings.direction[index_of(axis)];
+  const auto& position = readings.position[index_of(axis)];
+  std::vector<double> travelled(readings.size(), std::numeric_limits<double>::infinity());
+  if (direction.empty()) return travelled;
+  const std::vector<std::size_t> order = order_of_reading(readings);
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const std::size_t now = order[i], before = order[i - 1];
+    const double step = direction[now] * (position[now] - position[before]);
+    const bool turned = step < 0.0 || direction[now] != direction[before];
+    travelled[now] = turned ? std::max(step, 0.0) : travelled[before] + step;
+  }
+  return travelled;
+}
+
+}  // namespace volcal

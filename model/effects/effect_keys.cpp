@@ -7,6 +7,7 @@
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/nuisance.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -106,6 +107,8 @@ std::string station_of(const Setup& setup) {
   if (!setup.options.vector("station")) return {};
   return setup.options.text("station").value_or(setup.name);
 }
+
+bool measures_lengths(const Setup& setup) { return traits_of(setup).laser_length != LaserLength::None; }
 
 std::vector<std::string> station_names(const Campaign& campaign) {
   std::vector<std::string> stations;

@@ -48,6 +48,8 @@ std::vector<std::string> tools_in_use(const Campaign& campaign);
 std::string listed_names(const std::vector<std::string>& names);
 /// Station of a setup; empty for instruments that have none.
 std::string station_of(const Setup& setup);
+/// With a laser: its length scale and its dead path can be wrong.
+bool measures_lengths(const Setup& setup);
 bool has_time(const Campaign& campaign);
 /// First and last time, s; 0, 0 without times.
 std::pair<double, double> time_span(const Campaign& campaign);

@@ -27,6 +27,7 @@ constexpr auto kTargets = std::to_array<EffectWord>({
     {"tool TOOL", "offset of one tool, tool coordinates"},
     {"clamping in SETUP", "offset of the tool that one setup carries, tool coordinates"},
     {"station STATION", "position of a station, workpiece coordinates, or all that is read from it"},
+    {"stations", "positions of all stations, workpiece coordinates, or all that is read from them"},
     {"machine about AXIS", "rotation of the machine against the floor, about a workpiece axis"},
     {"readings", "readings of the instruments that the effect is about"},
     {"readings of SETUP", "readings of one setup"},

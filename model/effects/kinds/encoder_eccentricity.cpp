@@ -1,5 +1,6 @@
 // An angle encoder of a tracker whose circle is mounted off centre: its angle is wrong by one wave per turn.
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "volcal/model/effects/formula_effect.h"
@@ -22,24 +23,26 @@ int channel_of_encoder(const EffectTable& table, const std::string& encoder) {
   table.fail("\"" + encoder + "\" is no encoder", "write azimuth or elevation");
 }
 
-/// An encoder of an instrument that stands at a station.
+/// An encoder of an instrument that stands at a station, or of one that is carried from station to station.
 struct StationEncoder {
-  std::string station;
+  std::string station;  ///< empty: all
   std::string encoder;
   int channel = 0;
 
   bool reads(const Setup& setup) const {
-    return channel_of_encoder(traits_of(setup), encoder) == channel && station_of(setup) == station;
+    return channel_of_encoder(traits_of(setup), encoder) == channel &&
+           (station.empty() || station_of(setup) == station);
   }
 };
 
 std::unique_ptr<FormulaEffect> make_encoder_eccentricity(const EffectTable& table) {
-  const std::string station = table.text("station", "add station = \"NAME\"");
+  const std::string station = table.spec.options.text("station").value_or("");
   const std::string encoder = table.text("encoder", "add encoder = \"azimuth\"");
   const StationEncoder at{station, encoder, channel_of_encoder(table, encoder)};
-  const std::string label = encoder + " encoder at " + station;
+  const std::string label = encoder + " encoder" + (station.empty() ? " of all trackers" : " at " + station);
   return std::make_unique<FormulaEffect>(
-      EffectName{"encoder-eccentricity", "station " + station, encoder, "periodic"},
+      EffectName{"encoder-eccentricity", station.empty() ? "stations" : "station " + station, encoder,
+                 "periodic"},
       std::vector{reading_amplitude(table, label + " cos", "cos_urad", at.channel),
                   reading_amplitude(table, label + " sin", "sin_urad", at.channel)},
       [at](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
@@ -52,15 +55,17 @@ std::unique_ptr<FormulaEffect> make_encoder_eccentricity(const EffectTable& tabl
         return drivers;
       },
       [at, label](const Campaign& campaign, const SourcePlace& place) {
-        check_station(campaign, at.station, place);
+        if (!at.station.empty()) check_station(campaign, at.station, place);
         if (std::ranges::any_of(campaign.setups, [&](const Setup& setup) { return at.reads(setup); })) return;
         throw InputError(place, label + ": no laser tracker stands there",
                          "name the station of a setup that reads azimuth and elevation or remove the effect");
       });
 }
 
+/// At every station, and of all as one tracker that was carried.
 std::vector<EffectSpec> encoder_eccentricities(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
+  std::map<std::string, int> stations_of;
   for (const std::string& station : station_names(campaign)) {
     for (const Setup& setup : campaign.setups) {
       const auto& encoders = traits_of(setup).encoders;
@@ -68,9 +73,13 @@ std::vector<EffectSpec> encoder_eccentricities(const Campaign& campaign) {
       for (const AngleEncoder& encoder : encoders) {
         specs.push_back(
             effect_spec("encoder-eccentricity", {{"station", station}, {"encoder", encoder.name}}));
+        ++stations_of[encoder.name];
       }
       break;
     }
+  }
+  for (const auto& [encoder, stations] : stations_of) {
+    if (stations > 1) specs.push_back(effect_spec("encoder-eccentricity", {{"encoder", encoder}}));
   }
   return specs;
 }
@@ -84,7 +93,7 @@ const EffectKind& encoder_eccentricity_effect() {
                   "turn",
        .source =
            "Muralikrishnan et al., J. Res. NIST 114 (2009) 21: geometric misalignments in laser trackers",
-       .keys = {text_key("station", "name of the tracker's station"),
+       .keys = {text_key("station", "name of the tracker's station; absent = all, one tracker", false),
                 {.key = "encoder",
                  .type = KeyType::Text,
                  .required = true,

@@ -1,4 +1,4 @@
-// What the instrument does: length scale, dead path, stations that drift or are pushed, tool offsets.
+// What the instrument does: length scale, stations that drift or are pushed, tool offsets.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kSharpestEvent = 1.0;  // s
 constexpr std::size_t kEventTimes = 24;
-
-bool measures_lengths(const Setup& setup) { return traits_of(setup).laser_length != LaserLength::None; }
 
 /// 1 from `event` on, 0 before, rising within a second so that it has a slope.
 Eigen::ArrayXd after(const SetupView& view, double event) {
@@ -55,63 +53,36 @@ std::vector<EffectSpec> length_scales(const Campaign& campaign) {
   return specs;
 }
 
-std::unique_ptr<FormulaEffect> make_dead_path(const EffectTable& table) {
-  const std::string setup = table.text("setup", "add setup = \"NAME\"");
-  const std::string channel = table.spec.options.text("temperature").value_or("");
-  const std::string label = "dead path of " + setup + (channel.empty() ? " by time" : " by " + channel);
-  auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"dead-path", "readings of " + setup, channel.empty() ? "time" : "T_" + channel, "linear"},
-      std::vector{
-          reading_amplitude(table, label, channel.empty() ? "amplitude_um_per_h" : "amplitude_um_per_K")},
-      [setup, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        if (view.setup.name != setup) return constant(view, 0.0);
-        if (!channel.empty()) return temperature_excess(view, channel);
-        return view.setup.readings.time.empty()
-                   ? constant(view, 0.0)
-                   : Eigen::VectorXd(times(view).array() - view.setup.readings.time.front());
-      },
-      [setup, channel](const Campaign& campaign, const SourcePlace& place) {
-        if (!channel.empty()) check_channel(campaign, channel, place);
-        check_setup(campaign, setup, place);
-      });
-  return effect;
-}
-
-std::vector<EffectSpec> dead_paths(const Campaign& campaign) {
-  std::vector<EffectSpec> specs;
-  for (const Setup& setup : campaign.setups) {
-    if (!measures_lengths(setup)) continue;
-    if (!setup.readings.time.empty()) specs.push_back(effect_spec("dead-path", {{"setup", setup.name}}));
-    for (const auto& [channel, values] : setup.readings.temperature) {
-      specs.push_back(effect_spec("dead-path", {{"setup", setup.name}, {"temperature", channel}}));
-    }
-  }
-  return specs;
-}
-
 std::unique_ptr<FormulaEffect> make_station_drift(const EffectTable& table) {
-  const std::string station = table.text("station", "add station = \"NAME\"");
-  const std::string label = "drift of station " + station;
+  const std::string station = table.spec.options.text("station").value_or("");
+  const std::string label = station.empty() ? "drift of all stations" : "drift of station " + station;
   return std::make_unique<FormulaEffect>(
-      EffectName{"station-drift", "station " + station, "time", "linear"},
+      EffectName{"station-drift", station.empty() ? "stations" : "station " + station, "time", "linear"},
       vector_amplitudes(table, label, TargetKind::Station, "um_per_h"),
       [station](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        if (station_of(view.setup) != station) return constant(view, 0.0).replicate(1, 3);
+        const std::string own = station_of(view.setup);
+        if (own.empty() || (!station.empty() && own != station)) return constant(view, 0.0).replicate(1, 3);
         const double start = clock_start(view);
         return (times(view, start).array() - start).matrix().replicate(1, 3);
       },
       [station, label](const Campaign& campaign, const SourcePlace& place) {
-        check_station(campaign, station, place);
+        if (!station.empty()) check_station(campaign, station, place);
+        if (station_names(campaign).empty())
+          throw InputError(place, label + ": no instrument of the campaign has a station",
+                           "remove the effect");
         check_time(campaign, label, place);
       });
 }
 
+/// Every station on its own, and all as one: the machine drifts against its floor.
 std::vector<EffectSpec> station_drifts(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   if (!has_time(campaign)) return specs;
-  for (const std::string& station : station_names(campaign)) {
+  const auto stations = station_names(campaign);
+  for (const std::string& station : stations) {
     specs.push_back(effect_spec("station-drift", {{"station", station}}));
   }
+  if (stations.size() > 1) specs.push_back(effect_spec("station-drift", {}));
   return specs;
 }
 
@@ -206,26 +177,12 @@ const EffectKind& length_scale_effect() {
   return kind;
 }
 
-const EffectKind& dead_path_effect() {
-  static const FormulaKind kind(
-      {.kind = "dead-path",
-       .summary =
-           "the dead path of a setup changes with time or with a temperature (air index, thermal drift)",
-       .source = "ISO 230-6; Edlen, Metrologia 2 (1966) 71",
-       .keys = {text_key("setup", "name of the setup"),
-                text_key("temperature", "channel that drives it; absent = time", false),
-                amplitude_key("amplitude_um_per_h", "change of the reading per hour"),
-                amplitude_key("amplitude_um_per_K", "change of the reading per kelvin")}},
-      make_dead_path, dead_paths);
-  return kind;
-}
-
 const EffectKind& station_drift_effect() {
   static const FormulaKind kind(
       {.kind = "station-drift",
-       .summary = "a station moves slowly, in proportion to time",
+       .summary = "a station, or all in the same way, move slowly, in proportion to time",
        .source = "Schwenke et al., CIRP Annals 54 (2005): stability of stations in multilateration",
-       .keys = joined({{text_key("station", "name of the station")},
+       .keys = joined({{text_key("station", "only this station; absent = all", false)},
                        vector_amplitude_keys("um_per_h", "velocity in workpiece coordinates")})},
       make_station_drift, station_drifts);
   return kind;

@@ -420,5 +420,62 @@ TEST_F(Catalogue, WhatFollowsTheRateOfATemperature) {
   EXPECT_EQ(find_effect(spec.kind)->make(spec, "")->scan(campaign_).size(), 1U);
 }
 
+/// S1 and S3 stand at P1, S2 at P2, K1 and D1 are lasers too: one amplitude for what has one cause.
+TEST_F(Catalogue, ADeadPathIsOfASetupOfAStationOrOfAllLasers) {
+  const auto spec = [](const char* key, const char* name) {
+    EffectSpec made = effect_spec("dead-path", {{"temperature", std::string("spindle")}});
+    if (key != nullptr) made.options.set(key, std::string(name));
+    return made;
+  };
+  const auto acts_on = [&](const EffectSpec& which) {
+    std::vector<std::string> names;
+    for (const volcal::Setup& setup : campaign_.setups) {
+      if (drivers(which, setup.name).norm() > 0.0) names.push_back(setup.name);
+    }
+    return names;
+  };
+  EXPECT_THAT(acts_on(spec("setup", "S3")), ::testing::ElementsAre("S3"));
+  EXPECT_THAT(acts_on(spec("station", "P1")), ::testing::ElementsAre("S1", "S3"));
+  EXPECT_THAT(acts_on(spec(nullptr, "")), ::testing::ElementsAre("S1", "S2", "S3", "K1", "D1"));
+  EXPECT_NEAR(drivers(spec("station", "P1"), "S3")(10, 0), 2.0, 1e-12);
+  EffectSpec both = spec("setup", "S1");
+  both.options.set("station", std::string("P1"));
+  EXPECT_THROW(find_effect("dead-path")->make(both, "model.toml"), InputError);
+
+  std::vector<std::string> shared;
+  for (const EffectSpec& each : find_effect("dead-path")->candidates(campaign_)) {
+    const EffectName name = find_effect("dead-path")->make(each, "model.toml")->name();
+    if (!name.target.starts_with("readings of")) shared.push_back(name.target + " " + name.driver);
+  }
+  EXPECT_THAT(shared, ::testing::ElementsAre("station P1 time", "station P1 T_air", "station P1 T_spindle",
+                                             "readings time", "readings T_air", "readings T_spindle"));
+}
+
+TEST_F(Catalogue, AllStationsDriftTogether) {
+  const EffectSpec all = effect_spec("station-drift", {});
+  for (const char* setup : {"S1", "S2", "K1"})
+    EXPECT_NEAR(drivers(all, setup)(6, 1), readings(setup).time[6], 1e-9) << setup;
+  EXPECT_EQ(drivers(all, "D1").norm(), 0.0);
+  EXPECT_EQ(drivers(effect_spec("station-drift", {{"station", std::string("P2")}}), "S1").norm(), 0.0);
+}
+
+TEST_F(Catalogue, ATrackerThatIsCarriedHasOneEncoder) {
+  const auto carried = [&] {
+    std::vector<std::string> names;
+    for (const EffectSpec& each : find_effect("encoder-eccentricity")->candidates(campaign_)) {
+      if (!each.options.text("station")) names.push_back(*each.options.text("encoder"));
+    }
+    return names;
+  };
+  EXPECT_THAT(carried(), ::testing::IsEmpty()) << "one station";
+  volcal::Setup second = campaign_.setups[index("K1")];
+  second.name = "K2";
+  campaign_.setups.push_back(second);
+  EXPECT_THAT(carried(), ::testing::ElementsAre("azimuth", "elevation"));
+  const EffectSpec spec = effect_spec("encoder-eccentricity", {{"encoder", std::string("azimuth")}});
+  EXPECT_GT(drivers(spec, "K1").norm(), 0.0);
+  EXPECT_EQ(drivers(spec, "K1"), drivers(spec, "K2"));
+}
+
 }  // namespace
 }  // namespace volcal

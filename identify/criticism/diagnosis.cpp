@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "volcal/identify/criticism/alternative_sets.h"
 #include "volcal/identify/criticism/catalogue/not_looked_for.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/effect_findings.h"
@@ -85,6 +86,7 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
   diagnosis.generic_tests = reached.tests().scans.size();
   diagnosis.ladder = ladder_of(reached);
   list_added(reached, diagnosis);
+  diagnosis.sets = alternative_sets(reached, result);
   list_detectable(search.given(), diagnosis);
   list_ranking(reached, diagnosis);
   diagnosis.unknown = unknown_findings(reached, search.rejected());

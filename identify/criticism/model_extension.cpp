@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/model_extension.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "volcal/identify/criticism/catalogue/left_out.h"
@@ -64,8 +65,21 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
   return effect;
 }
 
-std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
+namespace {
+
+/// `instead`: of a set, by its place, the member in the place of the chosen one.
+std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
+                                         const std::map<std::size_t, std::size_t>& instead) {
   std::vector<EffectFinding> accepted = diagnosis.effects;
+  const auto sets = sets_of_alternatives(diagnosis);
+  for (std::size_t i = 0; i < std::min(sets.size(), diagnosis.sets.size()); ++i) {
+    const auto other = instead.find(i);
+    if (other != instead.end()) {
+      accepted.push_back((*sets[i])[other->second]);
+    } else if (const auto chosen = diagnosis.sets[i].chosen) {
+      accepted.push_back((*sets[i])[*chosen]);
+    }
+  }
   for (const SurfaceFinding& surface : diagnosis.surfaces) {
     EffectFinding& found = accepted.emplace_back();
     found.name = surface.name;
@@ -73,6 +87,25 @@ std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
     found.spec = surface.accepted_spec();
   }
   return accepted;
+}
+
+}  // namespace
+
+std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
+  return accepted_with(diagnosis, {});
+}
+
+std::vector<AlternativeModel> alternative_models(const Diagnosis& diagnosis) {
+  std::vector<AlternativeModel> models;
+  const auto sets = sets_of_alternatives(diagnosis);
+  for (std::size_t i = 0; i < std::min(sets.size(), diagnosis.sets.size()); ++i) {
+    for (std::size_t k = 0; k < sets[i]->size(); ++k) {
+      const EffectFinding& member = (*sets[i])[k];
+      if (k == diagnosis.sets[i].chosen || member.resolution) continue;
+      models.push_back({alternative_model_file(i, k), member.label, accepted_with(diagnosis, {{i, k}})});
+    }
+  }
+  return models;
 }
 
 }  // namespace volcal

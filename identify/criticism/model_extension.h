@@ -37,8 +37,17 @@ struct ExtensionWords {
 std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
                                      const ExtensionWords& words);
 
-/// What a diagnosis adds to a model: its effects, and for every surface the leading law or the surface
-/// itself.
+/// What a diagnosis adds to a model: its effects, of every set of alternatives the chosen one, and for every
+/// surface the leading law or the surface itself.
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis);
+
+/// The same with another member of a set.
+struct AlternativeModel {
+  std::string file;   ///< alternative_model_file()
+  std::string label;  ///< of the member
+  std::vector<EffectFinding> effects;
+};
+/// Of all members that are not chosen and can stand in a model file.
+std::vector<AlternativeModel> alternative_models(const Diagnosis& diagnosis);
 
 }  // namespace volcal

@@ -1,6 +1,8 @@
 #include "volcal/identify/criticism/verdict.h"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/result/result.h"
@@ -49,6 +51,24 @@ Finding unnamed(FindingCode code, const UnknownFinding& unknown) {
 
 Finding alternatives(FindingCode code, const std::vector<EffectFinding>& set) {
   return {code, {{"effects", labels(set)}}};
+}
+
+/// Whether it matters which of a set it is, and with which the extended model goes on.
+void add_choices(Diagnosis& diagnosis) {
+  const auto sets = sets_of_alternatives(diagnosis);
+  for (std::size_t i = 0; i < std::min(sets.size(), diagnosis.sets.size()); ++i) {
+    const SetFinding& set = diagnosis.sets[i];
+    if (!set.chosen) continue;
+    Finding finding{FindingCode::DiagnosisChoice, {{"chosen", (*sets[i])[*set.chosen].label}}};
+    if (set.farthest) {
+      const MemberFinding& other = set.members[*set.farthest];
+      finding.data["other"] = (*sets[i])[*set.farthest].label;
+      finding.data["difference"] = FindingNumber{other.difference, "um", kMicro};
+      finding.data["U"] = FindingNumber{kCoverageFactor * other.difference_u, "um", kMicro};
+      finding.data["matters"] = set.matters;
+    }
+    diagnosis.findings.push_back(std::move(finding));
+  }
 }
 
 void add_laws(const std::vector<FormulaFinding>& formulas, Finding& finding) {
@@ -126,6 +146,7 @@ void conclude_nothing(Diagnosis& diagnosis) {
 void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
   auto& findings = diagnosis.findings;
   findings.insert(findings.end(), remarks.rejected.begin(), remarks.rejected.end());
+  add_choices(diagnosis);
   for (const SurfaceFinding& surface : diagnosis.surfaces) findings.push_back(drawn(surface));
   if (const std::size_t back = remarks.removed_by_fit - diagnosis.removed_readings.size(); back > 0) {
     findings.push_back({FindingCode::DiagnosisReadingsReinstated,

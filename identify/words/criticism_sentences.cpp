@@ -70,6 +70,18 @@ std::string nearest(const Finding& finding) {
   return "Nearest in the catalogue, but not all of it: " + names(finding);
 }
 
+/// Of alternatives, the one that the extended model holds.
+std::string choice(const Finding& finding) {
+  const std::string chosen = "The extended model goes on with the simplest, " + finding.text("chosen");
+  if (!finding.has("difference")) return chosen + ".";
+  const std::string differ = fmt::format("{:.2g} um (U {:.2g} um)", finding.number("difference").in_unit(),
+                                         finding.number("U").in_unit());
+  if (!finding.flag("matters"))
+    return chosen + "; in the volume it does not matter: predictions differ by at most " + differ + ".";
+  return chosen + "; it matters in the volume: with " + finding.text("other") +
+         " predictions differ by up to " + differ + ".";
+}
+
 /// " A law that explains as much: EAY by y * z^2 with p = 120, 1.2 +- 0.1 urad."
 std::string laws(const Finding& finding) {
   const std::vector<std::string> labels = finding.texts("laws"), shapes = finding.texts("law_shapes");
@@ -200,6 +212,7 @@ std::span<const SentenceMaker> criticism_sentences() {
       {FindingCode::DiagnosisUnknown, unknown},
       {FindingCode::DiagnosisOneOf, one_of},
       {FindingCode::DiagnosisNearest, nearest},
+      {FindingCode::DiagnosisChoice, choice},
       {FindingCode::DiagnosisDrawn, drawn},
       {FindingCode::DiagnosisMoreOneOf, more_one_of},
       {FindingCode::DiagnosisMoreInCatalogue, more_in_catalogue},

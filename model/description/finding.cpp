@@ -47,6 +47,7 @@ constexpr auto kFindingCodes = std::to_array<FindingCodeRow>({
     {DiagnosisUnknown, "diagnosis.unknown", Severity::Warning},
     {DiagnosisOneOf, "diagnosis.one-of", Severity::Warning},
     {DiagnosisNearest, "diagnosis.nearest", Severity::Note},
+    {DiagnosisChoice, "diagnosis.choice", Severity::Note},
     {DiagnosisDrawn, "diagnosis.drawn", Severity::Note},
     {DiagnosisMoreOneOf, "diagnosis.more-one-of", Severity::Warning},
     {DiagnosisMoreInCatalogue, "diagnosis.more-in-catalogue", Severity::Warning},

@@ -43,6 +43,7 @@ enum class FindingCode : std::uint8_t {
   DiagnosisUnknown,
   DiagnosisOneOf,
   DiagnosisNearest,
+  DiagnosisChoice,
   DiagnosisDrawn,
   DiagnosisMoreOneOf,
   DiagnosisMoreInCatalogue,

@@ -190,6 +190,7 @@ TEST_F(FromADiagnosis, EveryFailureSaysWhatToDo) {
   expect(extend("--rank 1", output_), "has reversal EXX already");
   Diagnosis nothing = testing::hand_made_diagnosis();
   nothing.effects.clear();
+  nothing.sets.clear();
   nothing.verdict = Verdict::NothingAbove;
   write(nothing);
   expect(extend("--accepted"), "its verdict is NOTHING_ABOVE");

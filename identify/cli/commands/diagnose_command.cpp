@@ -57,8 +57,8 @@ int print_list(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-ModelSpec extended(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis) {
-  for (const EffectFinding& effect : accepted_effects(diagnosis)) {
+ModelSpec extended(ModelSpec model, const Campaign& campaign, const std::vector<EffectFinding>& effects) {
+  for (const EffectFinding& effect : effects) {
     extend_model({model, campaign.machine, &campaign}, effect.spec,
                  {.label = effect.label,
                   .remedy_if_known = "diagnose the campaign with a model without it",
@@ -87,8 +87,14 @@ void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaig
     folder.write("report.html", report_html(diagnosis, campaign, report_options()));
   }
   folder.write("machine.toml", machine_toml(campaign.machine));
-  folder.write("extended.toml", model_toml(extended(model, campaign, diagnosis), "machine.toml",
-                                           "the given model with the effects that volcal diagnose added"));
+  folder.write("extended.toml",
+               model_toml(extended(model, campaign, accepted_effects(diagnosis)), "machine.toml",
+                          "the given model with the effects that volcal diagnose added"));
+  for (const AlternativeModel& other : alternative_models(diagnosis)) {
+    folder.write(other.file, model_toml(extended(model, campaign, other.effects), "machine.toml",
+                                        "as extended.toml, with " + other.label +
+                                            " in the place of what the readings do not tell from it"));
+  }
   folder.commit();
 }
 

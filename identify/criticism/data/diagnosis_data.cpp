@@ -60,6 +60,10 @@ std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagno
   return sets;
 }
 
+std::string alternative_model_file(std::size_t set, std::size_t member) {
+  return fmt::format("alternative-{}-{}.toml", set + 1, member + 1);
+}
+
 std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals) {
   std::vector<Finding> findings;
   for (const MeasurementProposal& each : proposals) findings.push_back(each.finding);

@@ -112,6 +112,28 @@ struct SurfaceFinding {
   const std::string& accepted_label() const { return formulas.empty() ? label : formulas.front().label; }
 };
 
+/// A member of a set of alternatives. SI.
+struct MemberFinding {
+  double rms_heldout = std::numeric_limits<double>::quiet_NaN();  ///< with it in the model, as in the ladder
+  double systematic = std::numeric_limits<double>::quiet_NaN();
+  double systematic_low = std::numeric_limits<double>::quiet_NaN();
+  double systematic_high = std::numeric_limits<double>::quiet_NaN();
+  /// Of what it makes of the machine from what the chosen member does, the largest over the volume, m; NaN
+  /// for what is no effect.
+  double difference = std::numeric_limits<double>::quiet_NaN();
+  double difference_u = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> at = {};  ///< there, linear axes, m
+};
+
+/// What a set of alternatives means (alternative_sets.h).
+struct SetFinding {
+  std::optional<std::size_t> chosen;  ///< the simplest: it enters the extended model; none: no effect
+  std::vector<MemberFinding> members;
+  /// Whose prediction differs most from the chosen one's; of those that differ by more than U, if any do.
+  std::optional<std::size_t> farthest;
+  bool matters = false;  ///< it differs by more than U
+};
+
 /// One step of the ladder, all against the noise model at the last step. SI.
 struct LadderStep {
   std::string model;  ///< "0", "1" ...
@@ -182,6 +204,7 @@ struct Diagnosis {
   std::vector<EffectFinding> effects;                      ///< named, in the order in which they were added
   std::vector<EffectFinding> one_of;                       ///< alternatives that the readings do not separate
   std::vector<std::vector<EffectFinding>> further_one_of;  ///< sets beside the first
+  std::vector<SetFinding> sets;          ///< of one_of and those beside it, in their order; or empty
   std::vector<UnknownFinding> unknown;   ///< what surfaces were drawn for, in their order; then leading first
   std::vector<SurfaceFinding> surfaces;  ///< drawn for what has no name
   std::vector<EffectFinding> ranking;    ///< families by gain, at the model reached; at most 40
@@ -206,6 +229,9 @@ std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
+
+/// Where the model with this member in the place of the chosen one is kept: "alternative-1-2.toml".
+std::string alternative_model_file(std::size_t set, std::size_t member);
 
 /// What the proposals say.
 std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposals);

@@ -173,4 +173,17 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
   return ladder;
 }
 
+LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {
+  const SearchSetting& setting = state.setting();
+  const LinearModel& model = state.model();
+  Projector projector = *state.projector_without({added});
+  Eigen::MatrixXd effects(static_cast<Eigen::Index>(model.size()), 0);
+  for (std::size_t i = 0; i < state.added().size(); ++i) {
+    if (i != added) append_columns(state.added()[i].columns, effects);
+  }
+  append_columns(accept(model, setting.families[instead.family], instead, projector), effects);
+  std::optional<double> no_step_before;
+  return ladder_step(model, setting.heldout, state.noise(), projector, effects, no_step_before);
+}
+
 }  // namespace volcal

@@ -188,6 +188,27 @@ Json step_json(const LadderStep& step) {
           {"heldout_loglik_gain", finite_or_null(step.heldout_loglik_gain)}};
 }
 
+/// Beside the lists of effects, in their order.
+Json set_json(const SetFinding& set, std::size_t place) {
+  Json json = {{"matters", set.matters}, {"members", Json::array()}};
+  json["chosen"] = set.chosen ? Json(*set.chosen) : Json(nullptr);
+  json["farthest"] = set.farthest ? Json(*set.farthest) : Json(nullptr);
+  for (std::size_t i = 0; i < set.members.size(); ++i) {
+    const MemberFinding& member = set.members[i];
+    json["members"].push_back({{"rms_heldout_um", micro(member.rms_heldout)},
+                               {"systematic_um", micro(member.systematic)},
+                               {"systematic_low_um", micro(member.systematic_low)},
+                               {"systematic_high_um", micro(member.systematic_high)},
+                               {"difference_um", micro(member.difference)},
+                               {"difference_u_um", micro(member.difference_u)},
+                               {"at_mm", Json::array()}});
+    for (const double at : member.at) json["members"].back()["at_mm"].push_back(at * kPerMilli);
+    if (set.chosen && i != *set.chosen && !std::isnan(member.difference))
+      json["members"].back()["model"] = alternative_model_file(place, i);
+  }
+  return json;
+}
+
 Json noise_rows_json(const Diagnosis& diagnosis) {
   Json json = Json::array();
   for (const NoiseRow& row : diagnosis.noise) {
@@ -214,6 +235,9 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                {"one_of", list_json(diagnosis.one_of)},
                {"further_one_of", Json::array()}};
   for (const auto& set : diagnosis.further_one_of) json["further_one_of"].push_back(list_json(set));
+  json["sets"] = Json::array();
+  for (std::size_t i = 0; i < diagnosis.sets.size(); ++i)
+    json["sets"].push_back(set_json(diagnosis.sets[i], i));
   json["unknown"] = Json::array();
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["surfaces"] = Json::array();

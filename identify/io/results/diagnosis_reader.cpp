@@ -105,6 +105,41 @@ SurfaceFinding surface_from(const Json& json) {
   return surface;
 }
 
+std::optional<std::size_t> place_from(const Json& json, const char* key) {
+  return json.at(key).is_null() ? std::nullopt : std::optional(json.at(key).get<std::size_t>());
+}
+
+SetFinding set_from(const Json& json) {
+  SetFinding set;
+  set.chosen = place_from(json, "chosen");
+  set.farthest = place_from(json, "farthest");
+  set.matters = json.at("matters").get<bool>();
+  for (const Json& each : json.at("members")) {
+    MemberFinding& member = set.members.emplace_back();
+    member.rms_heldout = metres_of(each, "rms_heldout_um");
+    member.systematic = metres_of(each, "systematic_um");
+    member.systematic_low = metres_of(each, "systematic_low_um");
+    member.systematic_high = metres_of(each, "systematic_high_um");
+    member.difference = metres_of(each, "difference_um");
+    member.difference_u = metres_of(each, "difference_u_um");
+    for (const Json& at : each.at("at_mm")) member.at.push_back(at.get<double>() * kMetrePerMillimetre);
+  }
+  return set;
+}
+
+/// Every index is one of a set's members.
+void check_sets(const Diagnosis& diagnosis) {
+  const auto lists = sets_of_alternatives(diagnosis);
+  if (!diagnosis.sets.empty() && diagnosis.sets.size() != lists.size())
+    throw std::invalid_argument("there is not one entry of \"sets\" for each set");
+  for (std::size_t i = 0; i < diagnosis.sets.size(); ++i) {
+    const SetFinding& set = diagnosis.sets[i];
+    const bool fits = set.members.size() == lists[i]->size() && set.chosen.value_or(0) < set.members.size() &&
+                      set.farthest.value_or(0) < set.members.size();
+    if (!fits) throw std::invalid_argument("\"sets\" names members that its set does not have");
+  }
+}
+
 std::vector<EffectFinding> list_from(const Json& json) {
   std::vector<EffectFinding> effects;
   for (const Json& each : json) effects.push_back(effect_from(each));
@@ -226,6 +261,8 @@ Diagnosis diagnosis_from(const Json& json) {
   diagnosis.effects = list_from(json.at("effects"));
   diagnosis.one_of = list_from(json.at("one_of"));
   for (const Json& set : json.at("further_one_of")) diagnosis.further_one_of.push_back(list_from(set));
+  for (const Json& each : json.value("sets", Json::array())) diagnosis.sets.push_back(set_from(each));
+  check_sets(diagnosis);
   for (const Json& each : json.value("surfaces", Json::array()))
     diagnosis.surfaces.push_back(surface_from(each));
   for (const Json& each : json.at("unknown")) {

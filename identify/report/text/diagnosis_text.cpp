@@ -193,6 +193,41 @@ std::string effect_line(const EffectFinding& effect) {
   return fmt::format("  {}; log10 p {}\n", fmt::join(amplitudes, ", "), fixed_number(effect.log10_p, 1));
 }
 
+std::string choice_table(const std::vector<EffectFinding>& effects, const SetFinding& set,
+                         std::size_t place) {
+  TextTable table({{"with", Align::Left},
+                   {"rms held out [um]"},
+                   {"systematic [um]"},
+                   {"95 % interval [um]"},
+                   {"differs by up to [um]"},
+                   {"U [um]"},
+                   {"model", Align::Left}},
+                  "The error with each of them, and what it changes in the volume");
+  for (std::size_t i = 0; i < std::min(effects.size(), set.members.size()); ++i) {
+    const MemberFinding& member = set.members[i];
+    const bool chosen = i == set.chosen, compared = !std::isnan(member.difference);
+    table.add_row(
+        {effects[i].label, edge(member.rms_heldout, kMicro), edge(member.systematic, kMicro),
+         fmt::format("{} .. {}", edge(member.systematic_low, kMicro), edge(member.systematic_high, kMicro)),
+         chosen || !compared ? "-" : edge(member.difference, kMicro, 2),
+         chosen || !compared ? "-" : edge(kCoverageFactor * member.difference_u, kMicro, 2),
+         chosen      ? "extended.toml"
+         : !compared ? "-"
+                     : alternative_model_file(place, i)});
+  }
+  return table.text();
+}
+
+std::string alternatives_text(const Diagnosis& diagnosis, const std::vector<EffectFinding>& ranked) {
+  std::string text;
+  const auto sets = sets_of_alternatives(diagnosis);
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    text += "\n" + evidence_table(*sets[i], ranked, "The readings cannot separate", sets[i]->size());
+    if (i < diagnosis.sets.size()) text += "\n" + choice_table(*sets[i], diagnosis.sets[i], i);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
@@ -231,8 +266,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += "\n" + ladder_table(diagnosis);
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
-  for (const auto* set : sets_of_alternatives(diagnosis))
-    text += "\n" + evidence_table(*set, ranked, "The readings cannot separate", set->size());
+  text += alternatives_text(diagnosis, ranked);
   if (!remaining_unknown(diagnosis).empty())
     text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);

@@ -215,6 +215,7 @@ TEST_F(DiagnosisReport, AnAlternativeIsNotSaidToBeAdded) {
   document_ = Json::parse(report_json(diagnosis_, campaign_));
   EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());
   diagnosis_.further_one_of = {diagnosis_.one_of};
+  diagnosis_.sets.clear();
   diagnosis_.one_of = {testing::found_effect("reversal", "EYY", 1e-6)};
   document_ = Json::parse(report_json(diagnosis_, campaign_));
   EXPECT_TRUE(page("added_variable").at("alternative").get<bool>());

@@ -38,6 +38,13 @@ TEST(DiagnosisJson, HoldsEveryKeyInEdgeUnits) {
   EXPECT_EQ(document.at("one_of").at(0).at("target"), "EYY");
   EXPECT_EQ(document.at("further_one_of").at(0).at(0).at("target"), "EZZ");
   EXPECT_EQ(document.at("further_one_of").at(0).at(1).at("target"), "EYY");
+  const auto& set = document.at("sets").at(1);
+  EXPECT_EQ(set.at("chosen"), 1);
+  EXPECT_EQ(set.at("matters"), true);
+  EXPECT_EQ(set.at("members").at(0).at("difference_um"), 4.0);
+  EXPECT_EQ(set.at("members").at(0).at("at_mm").at(2), 125.0);
+  EXPECT_EQ(set.at("members").at(0).at("model"), "alternative-2-1.toml");
+  EXPECT_FALSE(set.at("members").at(1).contains("model"));
   const Json& unknown = document.at("unknown").at(0);
   EXPECT_EQ(unknown.at("variables"), (Json{"x", "time"}));
   EXPECT_EQ(unknown.at("direction"), "Z");

@@ -79,6 +79,14 @@ TEST(Search, KeepsEverySetOfNamesThatTheReadingsDoNotSeparate) {
   }
   EXPECT_EQ(found, (std::set<std::string>{"EAZ", "ECX"}));
   EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisOneOf, &Finding::code), 2);
+  ASSERT_EQ(diagnosis.sets.size(), 2U);
+  for (const SetFinding& set : diagnosis.sets) {
+    ASSERT_TRUE(set.farthest.has_value());
+    EXPECT_FALSE(set.matters) << "twins predict the same";
+    for (const MemberFinding& member : set.members)
+      EXPECT_LT(member.systematic, diagnosis.ladder.front().systematic);
+  }
+  EXPECT_EQ(std::ranges::count(diagnosis.findings, FindingCode::DiagnosisChoice, &Finding::code), 2);
 }
 
 /// A scan of both temperatures sees both effects at once, and does better than either name.

@@ -1,0 +1,141 @@
+// What a choice between alternatives changes in the volume, against refits with each of them.
+
+#include "volcal/identify/criticism/alternative_sets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tests/support/hidden_studies.h"
+#include "tests/support/search_states.h"
+#include "volcal/identify/criticism/model_extension.h"
+#include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/solve/fit.h"
+
+namespace volcal {
+namespace {
+
+using testing_support::FittedStudy;
+using testing_support::hiding;
+using testing_support::reversal;
+using testing_support::setting_of;
+using testing_support::test_of;
+
+constexpr int kPlaces = 5;  // per axis, as the lattice of alternative_sets.h
+
+struct PlaceOfVolume {
+  AxisPosition position{};
+  ApproachDirection direction{};
+};
+
+/// Of the measured positions, both ways.
+std::vector<PlaceOfVolume> places_of(const Campaign& campaign) {
+  std::array<std::pair<double, double>, 3> range;
+  for (std::size_t a = 0; a < 3; ++a) {
+    range[a] = {1e9, -1e9};
+    for (const Setup& setup : campaign.setups) {
+      for (const double q : setup.readings.position[a])
+        range[a] = {std::min(range[a].first, q), std::max(range[a].second, q)};
+    }
+  }
+  std::vector<PlaceOfVolume> places;
+  for (const std::int8_t direction : {std::int8_t{-1}, std::int8_t{1}}) {
+    for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
+      PlaceOfVolume place;
+      const int share[] = {i / (kPlaces * kPlaces), i / kPlaces % kPlaces, i % kPlaces};
+      for (std::size_t a = 0; a < 3; ++a) {
+        place.position[a] = range[a].first + (range[a].second - range[a].first) * share[a] / (kPlaces - 1.0);
+        place.direction[a] = direction;
+      }
+      places.push_back(place);
+    }
+  }
+  return places;
+}
+
+/// Displacements, less their mean.
+Eigen::Matrix3Xd predicted(const FitResult& result, const Tool& tool,
+                           const std::vector<PlaceOfVolume>& places) {
+  const ErrorField field(result, tool);
+  Eigen::Matrix3Xd all(3, static_cast<Eigen::Index>(places.size()));
+  for (Eigen::Index i = 0; i < all.cols(); ++i) {
+    const PlaceOfVolume& place = places[static_cast<std::size_t>(i)];
+    all.col(i) = field.at(place.position, place.direction).head<3>();
+  }
+  return all.colwise() - all.rowwise().mean().eval();
+}
+
+FitResult refitted(const FittedStudy& study, const EffectSpec& effect) {
+  ModelSpec model = study.result.identified;
+  model.effects = {effect};
+  FitOptions options;
+  options.noise = NoisePolicy::White;
+  return fit(study.simulated.campaign, model, options);
+}
+
+TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
+  const FittedStudy study(hiding({reversal("EYY", 1.0e-6)}, {5, 4, 4}));
+  const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
+  const FamilyTest own = test_of(given, {"reversal", "EYY", "", ""});
+  const FamilyTest rival = test_of(given, {"position-reversal", "EYY", "", ""});
+  ModelState reached = given.with(own);
+  std::vector<AddedEffect> added = reached.added();
+  added.front().rivals = {rival};
+  reached = reached.with_comparisons(std::move(added));
+
+  const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
+  ASSERT_EQ(sets.size(), 1U);
+  ASSERT_EQ(sets[0].members.size(), 2U);
+  EXPECT_EQ(sets[0].chosen, 0U) << "both have one amplitude";
+  EXPECT_EQ(sets[0].farthest, 1U);
+  const MemberFinding& member = sets[0].members[1];
+
+  const auto places = places_of(study.simulated.campaign);
+  const Tool& tool = study.simulated.campaign.machine.tools[0];
+  const auto spec = [&](const FamilyTest& test) { return given.setting().families[test.family].spec; };
+  const Eigen::Matrix3Xd difference = predicted(refitted(study, spec(rival)), tool, places) -
+                                      predicted(refitted(study, spec(own)), tool, places);
+  const double largest = difference.colwise().norm().maxCoeff();
+  EXPECT_GT(largest, 0.3e-6);
+  EXPECT_NEAR(member.difference, largest, 0.15 * largest);
+  EXPECT_GT(member.difference_u, 0.0);
+  EXPECT_TRUE(sets[0].matters);
+  EXPECT_EQ(member.at.size(), 3U);
+}
+
+EffectFinding labelled(const char* label) {
+  EffectFinding effect;
+  effect.label = label;
+  return effect;
+}
+
+std::vector<std::string> labels_of(const std::vector<EffectFinding>& effects) {
+  std::vector<std::string> labels;
+  for (const EffectFinding& each : effects) labels.push_back(each.label);
+  return labels;
+}
+
+/// A model for every member of every set, the other sets at what was chosen; finer functions are no effect.
+TEST(AlternativeSets, HaveAModelForEveryMember) {
+  using Labels = std::vector<std::string>;
+  Diagnosis diagnosis;
+  diagnosis.effects = {labelled("named")};
+  diagnosis.one_of = {labelled("a"), labelled("b")};
+  EffectFinding finer = labelled("finer");
+  finer.resolution = true;
+  diagnosis.further_one_of = {{labelled("c"), finer, labelled("d")}};
+  diagnosis.sets = {{.chosen = 1, .members = std::vector<MemberFinding>(2)},
+                    {.chosen = 0, .members = std::vector<MemberFinding>(3)}};
+  EXPECT_EQ(labels_of(accepted_effects(diagnosis)), (Labels{"named", "b", "c"}));
+  const std::vector<AlternativeModel> models = alternative_models(diagnosis);
+  ASSERT_EQ(models.size(), 2U);
+  EXPECT_EQ(models[0].file, "alternative-1-1.toml");
+  EXPECT_EQ(labels_of(models[0].effects), (Labels{"named", "a", "c"}));
+  EXPECT_EQ(models[1].file, "alternative-2-3.toml");
+  EXPECT_EQ(labels_of(models[1].effects), (Labels{"named", "b", "d"}));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -25,6 +25,7 @@ SearchOptions search_options(const DiagnoseOptions& options) {
           .most = options.most_effects,
           .climb = options.climb,
           .leave_out = options.leave_out,
+          .own = options.own,
           .progress = options.progress};
 }
 
@@ -89,6 +90,7 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
   diagnosis.sets = alternative_sets(reached, result);
   list_detectable(search.given(), diagnosis);
   list_ranking(reached, diagnosis);
+  list_tried(reached, options.own, diagnosis);
   diagnosis.unknown = unknown_findings(reached, search.rejected());
   diagnosis.surfaces = surface_findings(reached);
   for (std::size_t i = 0; i < reached.surfaces().size(); ++i)
@@ -101,6 +103,7 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
     progress("confounding", 0.95);
     compare_hypotheses(reached, result, options.planning, diagnosis);
   }
+  conclude_tried(diagnosis);
   if (options.figures) diagnosis.figures = diagnosis_figures(search.given(), reached);
   progress("done", 1.0);
   return diagnosis;

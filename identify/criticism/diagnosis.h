@@ -25,7 +25,8 @@ struct DiagnoseOptions {
   double heldout_share = 0.1;
   bool figures = true;                 ///< what the report draws; a study leaves it out
   std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
-  bool compare = true;                 ///< MIB, confounding matrix, next measurement
+  std::vector<EffectSpec> own;  ///< effects that the user thinks of, judged like those of the catalogue
+  bool compare = true;          ///< MIB, confounding matrix, next measurement
   PlanningOptions planning;
   std::function<void(const std::string& stage, double done)> progress;
 };

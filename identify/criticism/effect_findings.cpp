@@ -14,6 +14,7 @@
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
@@ -141,6 +142,20 @@ void list_detectable(const ModelState& given, Diagnosis& diagnosis) {
     const bool visible = test.score.dof > 0 && test.score.visible_fraction >= kThresholds.visible_fraction;
     if (!visible) diagnosis.not_visible.push_back(found);
     diagnosis.detectable.push_back(detectable(found, *family.effect, test.shape, visible, levers));
+  }
+}
+
+void list_tried(const ModelState& reached, std::span<const EffectSpec> own, Diagnosis& diagnosis) {
+  const std::vector<Family>& families = reached.setting().families;
+  for (const EffectSpec& spec : own) {
+    const EffectName name = find_effect(spec.kind)->make(spec, {})->name();
+    const auto family =
+        static_cast<std::size_t>(std::ranges::find(families, name, &Family::name) - families.begin());
+    if (family == families.size()) continue;  // the model has it
+    const auto added =
+        std::ranges::find(reached.added(), family, [](const AddedEffect& each) { return each.test.family; });
+    const FamilyTest& test = added != reached.added().end() ? added->test : reached.tests().families[family];
+    diagnosis.tried.push_back(finding(reached.setting(), test));
   }
 }
 

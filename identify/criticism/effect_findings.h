@@ -6,6 +6,8 @@
 /// chi-squared finds with the power of thresholds.h.
 /// Valid about the fit.
 
+#include <span>
+
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/criticism/search/model_state.h"
 
@@ -20,5 +22,7 @@ void list_added(const ModelState& reached, Diagnosis& diagnosis);
 void list_detectable(const ModelState& given, Diagnosis& diagnosis);
 /// Fills the ranking of what is not in the model.
 void list_ranking(const ModelState& reached, Diagnosis& diagnosis);
+/// Fills what the user thought of: beside the others where it was added, else at the model reached.
+void list_tried(const ModelState& reached, std::span<const EffectSpec> own, Diagnosis& diagnosis);
 
 }  // namespace volcal

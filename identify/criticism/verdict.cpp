@@ -158,6 +158,54 @@ void add_remarks(const Remarks& remarks, Diagnosis& diagnosis) {
 
 }  // namespace
 
+namespace {
+
+/// Nearest to an effect in the readings, by the matrix; nothing where nothing is near.
+struct NearestEffect {
+  std::string label;
+  double cosine = 0.0;
+};
+NearestEffect nearest_to(const EffectName& name, const Confounding& confounding) {
+  NearestEffect nearest;
+  const auto row = std::ranges::find(confounding.names, name) - confounding.names.begin();
+  if (row == std::ssize(confounding.names)) return nearest;
+  for (Eigen::Index k = 0; k < confounding.cosine.cols(); ++k) {
+    const double cosine = k == row ? 0.0 : confounding.cosine(row, k);
+    if (cosine > nearest.cosine) nearest = {confounding.labels[static_cast<std::size_t>(k)], cosine};
+  }
+  return nearest;
+}
+
+bool is_added(const EffectName& name, const Diagnosis& diagnosis) {
+  return std::ranges::find(diagnosis.effects, name, &EffectFinding::name) != diagnosis.effects.end();
+}
+
+bool is_alternative(const EffectName& name, const Diagnosis& diagnosis) {
+  return std::ranges::any_of(sets_of_alternatives(diagnosis), [&](const auto* set) {
+    return std::ranges::find(*set, name, &EffectFinding::name) != set->end();
+  });
+}
+
+}  // namespace
+
+void conclude_tried(Diagnosis& diagnosis) {
+  for (const EffectFinding& tried : diagnosis.tried) {
+    Finding finding{FindingCode::DiagnosisTried,
+                    {{"effect", tried.label},
+                     {"added", is_added(tried.name, diagnosis)},
+                     {"alternative", is_alternative(tried.name, diagnosis)},
+                     {"visible", tried.dof > 0},
+                     {"gain", FindingNumber{tried.gain}},
+                     {"log10_p", FindingNumber{tried.log10_p}},
+                     {"tests", count(diagnosis.families)}}};
+    if (const NearestEffect nearest = nearest_to(tried.name, diagnosis.confounding); nearest.cosine > 0.0) {
+      finding.data["nearest"] = nearest.label;
+      finding.data["cosine"] = FindingNumber{nearest.cosine};
+    }
+    diagnosis.findings.push_back(std::move(finding));
+  }
+}
+
 void conclude(const Remarks& remarks, Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty()) {
     conclude_named(remarks, diagnosis);

@@ -19,5 +19,7 @@ struct Remarks {
 };
 
 void conclude(const Remarks& remarks, Diagnosis& diagnosis);
+/// What became of the effects that the user thought of; after the verdict and the confounding matrix.
+void conclude_tried(Diagnosis& diagnosis);
 
 }  // namespace volcal

@@ -118,6 +118,22 @@ std::string drawn(const Finding& finding) {
   return text;
 }
 
+/// What became of an effect that the user thought of.
+std::string tried(const Finding& finding) {
+  const std::string effect = "Your own, " + finding.text("effect") + ": ";
+  if (!finding.flag("visible")) return effect + "these readings do not see it.";
+  const std::string became = finding.flag("added")         ? "it is what was missing"
+                             : finding.flag("alternative") ? "it is one of those that explain the readings"
+                                                           : "the readings do not ask for it";
+  std::string text =
+      fmt::format("{}{} (log10 p {:.1f} with all {} tests counted, gain {:.3g})", effect, became,
+                  finding.number("log10_p").si, finding.count("tests"), finding.number("gain").si);
+  if (finding.has("nearest"))
+    text += fmt::format("; nearest to it in these readings is {}, cosine {:.3f}", finding.text("nearest"),
+                        finding.number("cosine").si);
+  return text + ".";
+}
+
 std::string more_one_of(const Finding& finding) { return "More remains, one of: " + names(finding); }
 
 std::string more_in_catalogue(const Finding&) {
@@ -214,6 +230,7 @@ std::span<const SentenceMaker> criticism_sentences() {
       {FindingCode::DiagnosisNearest, nearest},
       {FindingCode::DiagnosisChoice, choice},
       {FindingCode::DiagnosisDrawn, drawn},
+      {FindingCode::DiagnosisTried, tried},
       {FindingCode::DiagnosisMoreOneOf, more_one_of},
       {FindingCode::DiagnosisMoreInCatalogue, more_in_catalogue},
       {FindingCode::DiagnosisMoreUnknown, more_unknown},

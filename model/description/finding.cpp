@@ -49,6 +49,7 @@ constexpr auto kFindingCodes = std::to_array<FindingCodeRow>({
     {DiagnosisNearest, "diagnosis.nearest", Severity::Note},
     {DiagnosisChoice, "diagnosis.choice", Severity::Note},
     {DiagnosisDrawn, "diagnosis.drawn", Severity::Note},
+    {DiagnosisTried, "diagnosis.tried", Severity::Note},
     {DiagnosisMoreOneOf, "diagnosis.more-one-of", Severity::Warning},
     {DiagnosisMoreInCatalogue, "diagnosis.more-in-catalogue", Severity::Warning},
     {DiagnosisMoreUnknown, "diagnosis.more-unknown", Severity::Warning},

@@ -45,6 +45,7 @@ enum class FindingCode : std::uint8_t {
   DiagnosisNearest,
   DiagnosisChoice,
   DiagnosisDrawn,
+  DiagnosisTried,
   DiagnosisMoreOneOf,
   DiagnosisMoreInCatalogue,
   DiagnosisMoreUnknown,

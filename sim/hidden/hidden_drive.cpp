@@ -23,6 +23,25 @@ void reversal_position(const HiddenSettings& settings, HiddenScene& scene) {
   });
 }
 
+void reversal_spike(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  if (is_rotary(symbol.axis)) settings.fail(symbol.name() + " is of a rotary axis", "use a linear axis");
+  scene.machine.add_state_error(
+      symbol, [half = 0.5 * settings.amplitude(), length = settings.positive("length"),
+               k = index_of(symbol.axis)](const MachineState& state) {
+        return half * state.direction[k] * std::exp(-state.since_reversal[k] / length);
+      });
+}
+
+void direction_temperature(const HiddenSettings& settings, HiddenScene& scene) {
+  const ErrorSymbol symbol = settings.symbol();
+  scene.machine.add_state_error(
+      symbol, [half = 0.5 * settings.amplitude(), excess = settings.excess_temperature("channel"),
+               k = index_of(symbol.axis)](const MachineState& state) {
+        return half * state.direction[k] * excess(state);
+      });
+}
+
 void periodic(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
   if (is_rotary(symbol.axis)) settings.fail(symbol.name() + " is of a rotary axis", "use a linear axis");
@@ -77,6 +96,20 @@ std::vector<HiddenKind> hidden_drive_kinds() {
        "",
        "full travel",
        reversal_position},
+      {"reversal-spike",
+       "drive",
+       "E += d a/2 exp(-s / length), s travelled since the axis turned round",
+       {symbol_key(), number_key("length_mm", "in which it dies away")},
+       "",
+       "",
+       reversal_spike},
+      {"direction-temperature",
+       "drive",
+       "E += d dT a/2, d of the symbol's axis",
+       {symbol_key(), text_key("channel", "temperature channel")},
+       "",
+       "K",
+       direction_temperature},
       {"screw-lead", "drive", wave + " (the lead of a ball screw)", periodic_keys(), "", "", periodic},
       {"encoder-subdivision", "drive", wave + " (the signal period of a scale)", periodic_keys(), "", "",
        periodic},

@@ -92,15 +92,6 @@ void cross_kink(const HiddenSettings& settings, HiddenScene& scene) {
       });
 }
 
-void reversal_spike(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  linear_axis_of_symbol(settings);
-  scene.machine.add_state_error(
-      symbol,
-      [half = half_by_direction(settings), length = settings.positive("length"), k = index_of(symbol.axis)](
-          const MachineState& state) { return half(state) * std::exp(-state.since_reversal[k] / length); });
-}
-
 void direction_memory(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
   linear_axis_of_symbol(settings);
@@ -165,13 +156,6 @@ std::vector<HiddenKind> hidden_unlisted_kinds() {
        "",
        "full travel",
        cross_kink},
-      {"reversal-spike",
-       "unlisted",
-       "E += d a/2 exp(-s / length), s travelled since the axis turned round",
-       {symbol_key(), number_key("length_mm", "in which it dies away")},
-       "",
-       "",
-       reversal_spike},
       {"direction-memory",
        "unlisted",
        "E += d a/2 (1 - 2 exp(-s / (length + |v| time_constant))), s travelled since the axis turned round",

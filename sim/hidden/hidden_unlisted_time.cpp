@@ -8,15 +8,6 @@
 namespace volcal::sim {
 namespace {
 
-void direction_temperature(const HiddenSettings& settings, HiddenScene& scene) {
-  const ErrorSymbol symbol = settings.symbol();
-  scene.machine.add_state_error(
-      symbol, [half = 0.5 * settings.amplitude(), excess = settings.excess_temperature("channel"),
-               k = index_of(symbol.axis)](const MachineState& state) {
-        return half * state.direction[k] * excess(state);
-      });
-}
-
 void root_time(const HiddenSettings& settings, HiddenScene& scene) {
   scene.machine.add_state_error(
       settings.symbol(), [a = settings.amplitude(), u = settings.share_or_one("by")](
@@ -60,13 +51,6 @@ std::vector<HiddenKind> hidden_unlisted_time_kinds() {
   const KeySchema channel = text_key("channel", "temperature channel");
   const KeySchema by = axis_key("by", "grows along this axis", false);
   return {
-      {"direction-temperature",
-       "unlisted",
-       "E += d dT a/2, d of the symbol's axis",
-       {symbol_key(), channel},
-       "",
-       "K",
-       direction_temperature},
       {"root-time",
        "unlisted",
        "E += a sqrt(h), times u of `by` if given",

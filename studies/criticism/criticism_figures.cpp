@@ -323,6 +323,9 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
     add(std::string(title) + ": nothing above", outcome({Outcome::Silent, Outcome::NotVisible}), row(name),
         "");
   }
+  add("one cause in several places: right name or in a set of up to 3", right, row("shared"), ">= 90 %");
+  add("  its driver alone: right name", outcome({Outcome::Right}), row("shared"), ">= 90 %");
+  add("  a wrong name", wrong, row("shared"), "");
   add("two hidden, both and nothing else", outcome({Outcome::Right}), row("pairs"), ">= 97 %");
   add("  by name or in a set of up to 3", right, row("pairs"), ">= 97 %");
   add("  the same in these readings counted once",
@@ -343,7 +346,7 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   const auto offered = [](const CampaignRecord& record) {
     return recovered_share(record, record.ms_offered) >= kRecovered;
   };
-  for (const char* name : {"listed", "unlisted", "left-out", "pairs"})
+  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared"})
     add(fmt::format("the model offered recovers >= 0.9, s >= 12: {}", name), offered, row(name, 12.0),
         ">= 97 %");
   figures.push_back({"amplitude inside its 95 % interval, s >= 5", coverage(campaigns, false), "93 to 97 %"});

@@ -15,6 +15,11 @@ namespace volcal::cli {
 namespace {
 
 constexpr std::array<const char*, 3> kAxes = {"X", "Y", "Z"};
+constexpr const char* kAtStation = " at a station";
+constexpr const char* kEverywhere = " everywhere";
+
+/// One cause in several places.
+bool is_shared(const std::string& kind) { return kind.ends_with(kAtStation) || kind.ends_with(kEverywhere); }
 
 class Drawer {
  public:
@@ -109,12 +114,13 @@ class Drawer {
   }
 
   void draw_place() {
-    if (is({"station-drift", "station-event", "station-swing", "station-expansion"}))
+    if (kind_.ends_with(kAtStation)) set("station", station());
+    if (!is_shared(kind_) && is({"station-drift", "station-event", "station-swing", "station-expansion"}))
       set("station", station());
     if (is({"tool-clamping"})) set("setup", one_of(plans_).name);
     if (is({"length-scale"}) && random_.uniform() < 0.5) set("station", station());
     if (is({"dead-path-air"})) {
-      set("setup", one_of(plans_).name);
+      if (!is_shared(kind_)) set("setup", one_of(plans_).name);
       set("dead_path", 0.3);
       if (random_.uniform() < 0.7) set("channel", channel());
     }
@@ -251,6 +257,13 @@ std::span<const std::string> unlisted_kinds() {
       "position-step",      "cross-kink",    "direction-memory", "lagged-temperature by",
       "root-time",          "heated-zone",   "gradient-bending", "temperature-squared",
       "thermal-tilt by",    "tool-load by"};
+  return kKinds;
+}
+
+std::span<const std::string> shared_kinds() {
+  static const std::vector<std::string> kKinds = {std::string("dead-path-air") + kAtStation,
+                                                  std::string("dead-path-air") + kEverywhere,
+                                                  std::string("station-drift") + kEverywhere};
   return kKinds;
 }
 

@@ -12,6 +12,8 @@ namespace volcal::cli {
 /// Kinds of sim/ that the catalogue holds, and kinds that it does not.
 std::span<const std::string> listed_kinds();
 std::span<const std::string> unlisted_kinds();
+/// One cause with one amplitude in several setups or stations: "dead-path-air at a station".
+std::span<const std::string> shared_kinds();
 
 /// Kind of the catalogue for a listed kind of sim/.
 std::string catalogue_kind(const std::string& hidden_kind);

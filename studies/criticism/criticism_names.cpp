@@ -118,13 +118,15 @@ class Answerer {
   }
 
   void name_instrument() {
-    const std::string station = "station " + text("station"), setup = "readings of " + text("setup");
-    if (is({"length-scale"}) && !has("setup")) set("length-scale", has("station") ? station : "readings", "");
-    if (is({"dead-path-air"})) set("dead-path", setup, has("channel") ? temperature() : "time");
+    const std::string station = has("station") ? "station " + text("station") : "stations";
+    const std::string lasers = has("station") ? station : "readings";
+    const std::string readings = has("setup") ? "readings of " + text("setup") : lasers;
+    if (is({"length-scale"}) && !has("setup")) set("length-scale", lasers, "");
+    if (is({"dead-path-air"})) set("dead-path", readings, has("channel") ? temperature() : "time");
     if (is({"station-drift"})) set("station-drift", station, "");
     if (is({"station-event"})) set("station-event", station, "");
     if (is({"bar-length"})) set("ball-bar-length", "readings", "");
-    if (is({"beam-cosine"})) set("beam-misalignment", setup, "");
+    if (is({"beam-cosine"})) set("beam-misalignment", readings, "");
     if (is({"encoder-eccentricity"})) {
       set("encoder-eccentricity", station, has("encoder") ? text("encoder") : "azimuth");
     }

@@ -175,7 +175,7 @@ class Planner {
                            "scale-expansion"}[static_cast<std::size_t>(plan_.index) % 3]};
       return;
     }
-    const auto list = is("unlisted") ? unlisted_kinds() : listed_kinds();
+    const auto list = is("unlisted") ? unlisted_kinds() : is("shared") ? shared_kinds() : listed_kinds();
     const auto count = static_cast<int>(list.size());
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift) % count)]);
     if (!is("pairs")) return;
@@ -199,7 +199,8 @@ class Planner {
       measure_standard(noise);
       return;
     }
-    const bool tells_tools = hides({"tool-load", "tool-load by", "tool-offset", "tool-clamping"});
+    const bool tells_tools =
+        is("shared") || hides({"tool-load", "tool-load by", "tool-offset", "tool-clamping"});
     Layout layout(study.machine, study.seed, tells_tools ? 2 : 1);
     study.measurements.push_back(layout.measurement(readings_, noise));
     plan_.layout = layout.text();
@@ -261,7 +262,7 @@ class Planner {
 
   void set_size(PlannedEffect& effect, sim::RandomStream& random) const {
     if (is("listed")) effect.signal = drawn(random, kSignals);
-    if (is("pairs")) effect.signal = drawn(random, kPairSignals);
+    if (is("pairs") || is("shared")) effect.signal = drawn(random, kPairSignals);
     if (is("unlisted") || is("left-out")) effect.signal = drawn(random, kUnlistedSignals);
     if (is("partial")) effect.rms = drawn(random, kPartialRms);
     if (is("mdb")) {
@@ -279,7 +280,7 @@ class Planner {
 
 std::span<const std::string> criticism_rows() {
   static const std::vector<std::string> kRows = {"null",     "listed",  "unlisted", "pairs",
-                                                 "left-out", "partial", "mdb"};
+                                                 "left-out", "partial", "mdb",      "shared"};
   return kRows;
 }
 

@@ -7,6 +7,7 @@
 #include "volcal/identify/cli/options/effect_list.h"
 #include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/written_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/diagnosis.h"
@@ -36,6 +37,8 @@ struct DiagnoseArguments {
   bool json = false;
   bool verbose = false;
   std::vector<std::string> separate;
+  std::vector<std::string> tried;
+  std::vector<std::string> parameters;
   std::size_t readings = PlanningOptions{}.readings;
 };
 
@@ -117,6 +120,8 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   for (const std::string& effect : arguments.separate) {
     options.planning.separate.push_back(named_effect("--separate", effect, campaign));
   }
+  for (const std::string& text : arguments.tried)
+    options.own.push_back(written_effect("--try", text, arguments.parameters).spec);
   ProgressBar bar("diagnose");
   FitOptions fit_options;
   fit_options.threads = arguments.threads;
@@ -153,6 +158,11 @@ std::function<int()> define_diagnose(CLI::App& app) {
       ->check(number_of_threads());
   app.add_flag("--auto", arguments->climb,
                "add everything that is found, one effect after another, not the first alone");
+  app.add_option(
+      "--try", arguments->tried,
+      "\"TARGET: expression\" or \"TARGET += expression\": an effect of your own, judged like those "
+      "of the catalogue; may be given several times");
+  add_parameter_option(app, arguments->parameters);
   app.add_option("--separate", arguments->separate,
                  "KIND:TARGET,KIND:TARGET: which measurement would separate these effects, or show them")
       ->delimiter(',');
@@ -180,6 +190,7 @@ const Command& diagnose_command() {
                                   "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
                                   "  volcal diagnose campaign.toml --separate station-drift:\"station "
                                   "P1\",dead-path:\"readings of P1_short\"\n"
+                                  "  volcal diagnose campaign.toml --try \"EXX += dir_x * (T_air - 20)\"\n"
                                   "  volcal diagnose --show diagnosis\n"
                                   "  volcal diagnose --list\n"
                                   "  volcal diagnose campaign.toml --list\n",

@@ -166,7 +166,7 @@ EffectName Family::name() const {
   return resolution_name(*resolution);
 }
 
-std::vector<Family> families(const LinearModel& model) {
+std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own) {
   std::set<EffectName> present;
   for (const EffectBinding& effect : model.model().binding().effects) present.insert(effect.effect->name());
   std::vector<Family> all;
@@ -177,6 +177,13 @@ std::vector<Family> families(const LinearModel& model) {
       std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
       all.push_back({std::move(spec), std::move(effect), std::nullopt, std::move(scan)});
     }
+  }
+  for (const EffectSpec& spec : own) {
+    std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
+    if (!present.insert(effect->name()).second) continue;
+    effect->check(model.campaign(), {});
+    std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
+    all.push_back({spec, std::move(effect), std::nullopt, std::move(scan)});
   }
   for (LeftOutError& error : left_out_errors(model.model())) {
     all.push_back({std::move(error.spec), std::move(error.effect), std::nullopt, {Eigen::VectorXd()}});

@@ -2,6 +2,7 @@
 /// Named hypotheses: every effect of the catalogue that could act in a campaign, as columns of its readings.
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,9 @@ struct Family {
   bool independent_components() const;
 };
 
-/// Without the model's own effects; with the errors that the model leaves out (left_out.h).
-std::vector<Family> families(const LinearModel& model);
+/// Without the model's own effects; with the errors that the model leaves out (left_out.h), and `own`,
+/// effects that the user thinks of. Throws InputError where one of these cannot act in the campaign.
+std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own = {});
 
 /// Columns at one of the shapes.
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape);

@@ -208,6 +208,7 @@ struct Diagnosis {
   std::vector<UnknownFinding> unknown;   ///< what surfaces were drawn for, in their order; then leading first
   std::vector<SurfaceFinding> surfaces;  ///< drawn for what has no name
   std::vector<EffectFinding> ranking;    ///< families by gain, at the model reached; at most 40
+  std::vector<EffectFinding> tried;      ///< that the user thought of, at the model reached, as given
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
   std::vector<EffectFinding> model_changes;

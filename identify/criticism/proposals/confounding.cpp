@@ -209,6 +209,7 @@ void add_confounding(const CriticismState& state, Diagnosis& diagnosis) {
     }
   };
   for (const auto* set : sets_of_alternatives(diagnosis)) add(*set, set->size());
+  add(diagnosis.tried, diagnosis.tried.size());
   add(diagnosis.ranking, diagnosis.ranking.size());
   add(diagnosis.not_visible, kInvisibleListed);
   RivalSearch search(state, accepted, std::move(others));
@@ -221,7 +222,7 @@ void add_confounding(const CriticismState& state, Diagnosis& diagnosis) {
     found[state.families[search.focus()[i].family].name()] = &nearest[i];
   }
   std::vector<std::vector<EffectFinding>*> lists = {&diagnosis.effects, &diagnosis.one_of, &diagnosis.ranking,
-                                                    &diagnosis.not_visible};
+                                                    &diagnosis.not_visible, &diagnosis.tried};
   for (auto& set : diagnosis.further_one_of) lists.push_back(&set);
   for (auto* list : lists) {
     for (EffectFinding& finding : *list) {

@@ -75,8 +75,9 @@ void find_exceeding(const ModelState& state, ModelTests& tests) {
 }  // namespace
 
 SearchSetting::SearchSetting(const LinearModel& model, std::vector<bool> held,
-                             const std::vector<std::string>& leave_out, int thread_count)
-    : families(volcal::families(model)),
+                             const std::vector<std::string>& leave_out, int thread_count,
+                             std::span<const EffectSpec> own)
+    : families(volcal::families(model, own)),
       variables(scan_variables(model)),
       constancy_variables(variables),
       heldout(std::move(held)),

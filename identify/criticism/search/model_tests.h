@@ -7,6 +7,8 @@
 /// Valid at the noise of the state. The same for any number of threads.
 
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/catalogue/families.h"
@@ -19,9 +21,10 @@ class ModelState;
 
 /// What is the same for all states of a search.
 struct SearchSetting {
-  /// `heldout`: observations that judge and never choose; `leave_out`: kinds that are not looked for.
+  /// `heldout`: observations that judge and never choose; `leave_out`: kinds that are not looked for; `own`:
+  /// effects that the user thinks of, tested beside the catalogue.
   SearchSetting(const LinearModel& model, std::vector<bool> heldout,
-                const std::vector<std::string>& leave_out, int threads);
+                const std::vector<std::string>& leave_out, int threads, std::span<const EffectSpec> own = {});
 
   std::vector<Family> families;
   std::vector<ScanVariable> variables;            ///< of the scans

@@ -61,7 +61,7 @@ Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions optio
     : options_(std::move(options)),
       model_(std::move(model)),
       setting_(std::make_shared<SearchSetting>(model_, std::move(heldout), options_.leave_out,
-                                               options_.threads)) {}
+                                               options_.threads, options_.own)) {}
 
 void Search::run() {
   start();

@@ -38,6 +38,7 @@ struct SearchOptions {
   int most = 8;       ///< effects added
   bool climb = true;  ///< false: in the end one effect is kept
   std::vector<std::string> leave_out;
+  std::vector<EffectSpec> own;  ///< effects that the user thinks of
   std::function<void(const std::string& stage, double done)> progress;
 };
 

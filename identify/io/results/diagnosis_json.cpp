@@ -242,6 +242,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["surfaces"] = Json::array();
   for (const SurfaceFinding& surface : diagnosis.surfaces) json["surfaces"].push_back(surface_json(surface));
+  if (!diagnosis.tried.empty()) json["tried"] = list_json(diagnosis.tried);
   json["not_visible"] = list_json(diagnosis.not_visible);
   json["next_measurement"] = Json::array();
   for (const MeasurementProposal& proposal : diagnosis.proposals) {

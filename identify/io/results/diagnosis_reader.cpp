@@ -272,6 +272,7 @@ Diagnosis diagnosis_from(const Json& json) {
                                  metres_of(each, "rms_um"), number_or_nan(each, "log10_p"),
                                  wave_period(each)});
   }
+  diagnosis.tried = list_from(json.value("tried", Json::array()));
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {
     diagnosis.proposals.push_back(proposal_from(each));

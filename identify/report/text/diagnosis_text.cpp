@@ -267,6 +267,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   if (!diagnosis.effects.empty())
     text += "\n" + evidence_table(diagnosis.effects, ranked, "Added", diagnosis.effects.size());
   text += alternatives_text(diagnosis, ranked);
+  if (!diagnosis.tried.empty())
+    text += "\n" + evidence_table(diagnosis.tried, ranked, "Your own", diagnosis.tried.size());
   if (!remaining_unknown(diagnosis).empty())
     text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);

@@ -319,6 +319,32 @@ const std::vector<WordedFinding>& examples() {
        "EAY by "
        "y * z, 2 +- 0.3 urad. These readings leave open what is straight in y: the rest of the model holds "
        "it."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"added", true},
+         {"alternative", false},
+         {"visible", true},
+         {"gain", FindingNumber{45.6}},
+         {"log10_p", FindingNumber{-12.3}},
+         {"tests", std::int64_t{400}},
+         {"nearest", "b"},
+         {"cosine", FindingNumber{0.912}}}},
+       "Your own, a: it is what was missing (log10 p -12.3 with all 400 tests counted, gain 45.6); nearest "
+       "to "
+       "it in these readings is b, cosine 0.912."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"visible", true},
+         {"gain", FindingNumber{-5.0}},
+         {"log10_p", FindingNumber{0.0}},
+         {"tests", std::int64_t{400}}}},
+       "Your own, a: the readings do not ask for it (log10 p 0.0 with all 400 tests counted, gain -5)."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"gain", FindingNumber{0.0}},
+         {"log10_p", FindingNumber{0.0}},
+         {"tests", std::int64_t{400}}}},
+       "Your own, a: these readings do not see it."},
       {{FindingCode::DiagnosisMoreOneOf, {{"effects", Texts{"a", "b"}}}}, "More remains, one of: a; b"},
       {{FindingCode::DiagnosisMoreInCatalogue},
        "More remains, and the catalogue has a name for it: extend the model and diagnose again, or climb "

@@ -14,6 +14,7 @@
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
 namespace {
@@ -127,14 +128,44 @@ TEST(Search, NamesTwoEffectsThatHideEachOther) {
               ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
 }
 
-TEST(Search, WhatIsInNoCatalogueGetsNoName) {
+sim::HiddenEffect bump() {
   sim::HiddenEffect bump = hidden_beside("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);
   bump.options.set("width", 0.12);
-  bump.options.set("by", "Y");
+  bump.options.set("by", std::string("Y"));
   bump.options.set("by_centre", 0.1);
   bump.options.set("by_width", 0.12);
-  const FittedStudy study(hiding({bump}, kGrid));
+  return bump;
+}
+
+/// What the user thinks of is tested beside the catalogue: the right shape is named, the wrong one is not
+/// asked for, and both are told.
+TEST(Search, NamesWhatTheUserThinksOf) {
+  const FittedStudy study(hiding({bump()}, kGrid));
+  DiagnoseOptions options;
+  options.climb = true;
+  options.figures = false;
+  options.planning.readings = 16;
+  const auto own = [](const char* expression) {
+    return effect_spec("custom", {{"target", std::string("EZX")}, {"expression", std::string(expression)}});
+  };
+  options.own = {own("exp(-((x - 100) / 120)^2 / 2 - ((y - 100) / 120)^2 / 2)"), own("dir_y * x")};
+  const Diagnosis diagnosis = diagnose(study.simulated.campaign, study.result, options);
+  EXPECT_EQ(to_string(diagnosis.verdict), "NAMED");
+  EXPECT_THAT(kinds_and_targets(diagnosis.effects), ::testing::ElementsAre("custom EZX"));
+  EXPECT_TRUE(diagnosis.surfaces.empty());
+  ASSERT_EQ(diagnosis.tried.size(), 2U);
+  std::vector<bool> added;
+  for (const Finding& finding : diagnosis.findings) {
+    if (finding.code == FindingCode::DiagnosisTried) added.push_back(finding.flag("added"));
+  }
+  EXPECT_EQ(added, (std::vector<bool>{true, false}));
+  EXPECT_LT(diagnosis.tried[0].log10_p, -10.0);
+  EXPECT_GT(diagnosis.tried[1].log10_p, -1.0);
+}
+
+TEST(Search, WhatIsInNoCatalogueGetsNoName) {
+  const FittedStudy study(hiding({bump()}, kGrid));
   const Diagnosis diagnosis = searched(study, false);
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/statistics/normal.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/instruments/registry.h"
 
 namespace volcal {
 namespace {
@@ -71,12 +73,20 @@ void add_mean_conditions(const Campaign& campaign, std::size_t count, Readings& 
   }
 }
 
+/// The instrument that reads the displacements of the functional point themselves.
+std::string reader_of_error_vectors() {
+  for (const Instrument* instrument : instruments()) {
+    if (instrument->schema().traits.reads_error_vectors) return instrument->schema().name;
+  }
+  throw std::logic_error("no instrument reads error vectors");
+}
+
 /// Error vectors at the lattice, with a tool, approached from one side.
 Setup points_of_volume(const Campaign& campaign, const std::vector<AxisPosition>& poses, std::size_t tool,
                        std::int8_t direction) {
   Setup setup;
   setup.name = "volume of tool " + std::to_string(tool) + (direction > 0 ? " +" : " -");
-  setup.instrument = "volumetric-points";
+  setup.instrument = reader_of_error_vectors();
   setup.tool = tool;
   setup.options.set("alignment", std::string("none"));
   setup.noise.set("constant", kAnyNoise);

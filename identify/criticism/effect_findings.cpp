@@ -118,19 +118,25 @@ EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
   return out;
 }
 
-void list_added(const ModelState& reached, Diagnosis& diagnosis) {
-  if (reached.added().empty()) return;
-  const auto projector = reached.projector_of_all_readings();
-  const Eigen::VectorXd solution = projector->solution();
-  const Eigen::MatrixXd covariance = projector->accepted_covariance();
+std::vector<EffectFinding> added_findings(const ModelState& state, const Projector& projector) {
+  const Eigen::VectorXd solution = projector.solution();
+  const Eigen::MatrixXd covariance = projector.accepted_covariance();
+  std::vector<EffectFinding> findings;
   Eigen::Index at = 0;
-  for (const AddedEffect& added : reached.added()) {
+  for (const AddedEffect& added : state.added()) {
     const Eigen::Index count = added.columns.cols();
     const Eigen::VectorXd values = solution.segment(solution.size() - covariance.rows() + at, count);
     const Eigen::VectorXd u = covariance.diagonal().segment(at, count).cwiseMax(0.0).cwiseSqrt();
     at += count;
-    list(reached, added, estimated(reached, added, values, u), diagnosis);
+    findings.push_back(estimated(state, added, values, u));
   }
+  return findings;
+}
+
+void list_added(const ModelState& reached, Diagnosis& diagnosis) {
+  if (reached.added().empty()) return;
+  const std::vector<EffectFinding> findings = added_findings(reached, *reached.projector_of_all_readings());
+  for (std::size_t i = 0; i < findings.size(); ++i) list(reached, reached.added()[i], findings[i], diagnosis);
 }
 
 void list_detectable(const ModelState& given, Diagnosis& diagnosis) {

@@ -7,6 +7,7 @@
 /// Valid about the fit.
 
 #include <span>
+#include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/criticism/search/model_state.h"
@@ -14,6 +15,10 @@
 namespace volcal {
 
 EffectFinding finding(const SearchSetting& setting, const FamilyTest& test);
+
+/// Everything that was added, estimated together by a projector of the state: of all readings, or of those
+/// that are not held out.
+std::vector<EffectFinding> added_findings(const ModelState& state, const Projector& projector);
 
 /// Fills names, changes of the model and sets of alternatives: everything that was added, estimated together
 /// from all readings. What was held out has judged by now.

@@ -27,7 +27,7 @@ BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT /
 
 # sample -> (its file, the registry, the list in it, the line)
 PLUGINS = {
-    "effect": ("model/effects/kinds/sample.cpp", "model/effects/registry.cpp", "EFFECT", "sample_effect"),
+    "effect": ("model/effects/kinds/drive/sample.cpp", "model/effects/registry.cpp", "EFFECT", "sample_effect"),
     "instrument": ("model/instruments/sample.cpp", "model/instruments/registry.cpp", "INSTRUMENT", "sample_instrument"),
     "basis": ("model/functions/sample.cpp", "model/functions/registry.cpp", "BASIS", "kSampleBasis"),
     "format": ("identify/compensation/formats/sample.cpp", "identify/compensation/table_formats.cpp", "FORMAT",

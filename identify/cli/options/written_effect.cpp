@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "volcal/model/description/errors.h"
-#include "volcal/model/effects/kinds/custom.h"
+#include "volcal/model/effects/kinds/open/custom.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal::cli {

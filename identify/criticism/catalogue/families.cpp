@@ -178,18 +178,18 @@ std::vector<Family> families(const LinearModel& model, std::span<const EffectSpe
       all.push_back({std::move(spec), std::move(effect), std::nullopt, std::move(scan)});
     }
   }
+  for (LeftOutError& error : left_out_errors(model.model())) {
+    all.push_back({std::move(error.spec), std::move(error.effect), std::nullopt, {Eigen::VectorXd()}});
+  }
+  for (const ErrorSymbol symbol : model.model().layout().symbols()) {
+    all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});
+  }
   for (const EffectSpec& spec : own) {
     std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
     if (!present.insert(effect->name()).second) continue;
     effect->check(model.campaign(), {});
     std::vector<Eigen::VectorXd> scan = effect->scan(model.campaign());
     all.push_back({spec, std::move(effect), std::nullopt, std::move(scan)});
-  }
-  for (LeftOutError& error : left_out_errors(model.model())) {
-    all.push_back({std::move(error.spec), std::move(error.effect), std::nullopt, {Eigen::VectorXd()}});
-  }
-  for (const ErrorSymbol symbol : model.model().layout().symbols()) {
-    all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});
   }
   return all;
 }

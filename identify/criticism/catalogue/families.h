@@ -28,7 +28,7 @@ struct Family {
   bool independent_components() const;
 };
 
-/// Without the model's own effects; with the errors that the model leaves out (left_out.h), and `own`,
+/// Without the model's own effects; with the errors that the model leaves out (left_out.h), and last `own`,
 /// effects that the user thinks of. Throws InputError where one of these cannot act in the campaign.
 std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own = {});
 

@@ -173,6 +173,14 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
   return ladder;
 }
 
+LadderStep last_step_of(const ModelState& state) {
+  Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
+  for (const AddedEffect& added : state.added()) append_columns(added.columns, effects);
+  std::optional<double> no_step_before;
+  return ladder_step(state.model(), state.setting().heldout, state.noise(), state.projector(), effects,
+                     no_step_before);
+}
+
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {
   const SearchSetting& setting = state.setting();
   const LinearModel& model = state.model();

@@ -26,6 +26,9 @@ bool heldout_error_not_reduced(std::span<const LadderStep> ladder);
 /// without an effect holds part of it, and would hide its fall.
 std::vector<LadderStep> ladder_of(const ModelState& state);
 
+/// The last step alone.
+LadderStep last_step_of(const ModelState& state);
+
 /// The last step with another effect in the place of an added one, at the same noise and smoothing.
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead);
 

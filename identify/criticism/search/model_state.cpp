@@ -50,6 +50,23 @@ ModelState ModelState::with(const FamilyTest& effect) const {
   return next;
 }
 
+ModelState ModelState::with_at_this_noise(const FamilyTest& effect) const {
+  ModelState next = *this;
+  next.tests_.reset();
+  auto projector = std::make_shared<Projector>(*projector_);
+  next.added_.push_back({effect, accept(model_, setting_->families[effect.family], effect, *projector), {}});
+  next.projector_ = std::move(projector);
+  next.smoothing_of_steps_.push_back(model_.smoothing());
+  return next;
+}
+
+ModelState ModelState::with_setting(std::shared_ptr<const SearchSetting> setting) const {
+  ModelState other = *this;
+  other.setting_ = std::move(setting);
+  other.tests_.reset();
+  return other;
+}
+
 ModelState ModelState::with_surface(const SurfaceTest& surface,
                                     const std::vector<AddedEffect>& beside) const {
   ModelState next = *this;
@@ -153,6 +170,18 @@ std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,
   }
   if (columns.cols() > 0) projector->accept(columns);
   return projector;
+}
+
+Eigen::VectorXd ModelState::residual() const {
+  const NoiseProblem& problem = model_.problem();
+  const Eigen::VectorXd solution = projector_->solution();
+  Eigen::Index at = problem.jacobian.cols();
+  Eigen::VectorXd residual = problem.residual - problem.jacobian * solution.head(at);
+  for (const AddedEffect& effect : added_) {
+    residual -= effect.columns * solution.segment(at, effect.columns.cols());
+    at += effect.columns.cols();
+  }
+  return residual;
 }
 
 NoiseProblem ModelState::problem() const {

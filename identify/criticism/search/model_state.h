@@ -49,6 +49,10 @@ class ModelState {
   /// With a further effect, noise and smoothing found anew, and the readings back in use that agree with it:
   /// a fit without the effect takes what it moves most for outliers.
   ModelState with(const FamilyTest& effect) const;
+  /// With a further effect at the same noise and smoothing, its shape as tested: a first answer.
+  ModelState with_at_this_noise(const FamilyTest& effect) const;
+  /// The same with more effects of the user's own in the catalogue.
+  ModelState with_setting(std::shared_ptr<const SearchSetting> setting) const;
   /// With a further surface and none of the effects that were added. What `beside`, effects that are to be
   /// added again, can imitate of it is theirs.
   ModelState with_surface(const SurfaceTest& surface, const std::vector<AddedEffect>& beside) const;
@@ -60,6 +64,7 @@ class ModelState {
 
   const LinearModel& model() const { return model_; }
   const SearchSetting& setting() const { return *setting_; }
+  const std::shared_ptr<const SearchSetting>& shared_setting() const { return setting_; }
   const std::vector<AddedEffect>& added() const { return added_; }
   bool has(std::size_t family) const;
   const std::vector<AddedSurface>& surfaces() const { return surfaces_; }
@@ -77,6 +82,8 @@ class ModelState {
   /// Smoothing of the given model, then with every effect as it was added.
   const std::vector<std::vector<SmoothingTerm>>& smoothing_of_steps() const { return smoothing_of_steps_; }
 
+  /// Reading minus prediction, all observations.
+  Eigen::VectorXd residual() const;
   /// The linear model with the added effects as further columns.
   NoiseProblem problem() const;
   /// Without some of the added effects, by their places.

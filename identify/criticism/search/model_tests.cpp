@@ -76,11 +76,12 @@ void find_exceeding(const ModelState& state, ModelTests& tests) {
 
 SearchSetting::SearchSetting(const LinearModel& model, std::vector<bool> held,
                              const std::vector<std::string>& leave_out, int thread_count,
-                             std::span<const EffectSpec> own)
-    : families(volcal::families(model, own)),
+                             std::span<const EffectSpec> own_effects)
+    : families(volcal::families(model, own_effects)),
       variables(scan_variables(model)),
       constancy_variables(variables),
       heldout(std::move(held)),
+      own(own_effects.size()),
       threads(thread_count) {
   std::erase_if(families, [&](const Family& family) {
     return std::ranges::find(leave_out, family.name().kind) != leave_out.end();

@@ -30,6 +30,7 @@ struct SearchSetting {
   std::vector<ScanVariable> variables;            ///< of the scans
   std::vector<ScanVariable> constancy_variables;  ///< and the travel since turning (amplitude_constancy.h)
   std::vector<bool> heldout;
+  std::size_t own;        ///< number of effects that the user thinks of
   int threads;            ///< at least 1
   double log10_families;  ///< log10 of the number of families
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "volcal/model/effects/kinds/custom.h"
+#include "volcal/model/effects/kinds/open/custom.h"
 
 namespace volcal {
 namespace {

@@ -1,5 +1,5 @@
 // What a user writes: a target and a formula of what was recorded, its amplitude unknown.
-#include "volcal/model/effects/kinds/custom.h"
+#include "volcal/model/effects/kinds/open/custom.h"
 
 #include <algorithm>
 #include <array>

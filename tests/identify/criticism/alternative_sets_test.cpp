@@ -68,7 +68,7 @@ Eigen::Matrix3Xd predicted(const FitResult& result, const Tool& tool,
 }
 
 FitResult refitted(const FittedStudy& study, const EffectSpec& effect) {
-  ModelSpec model = study.result.identified;
+  ModelSpec model;
   model.effects = {effect};
   FitOptions options;
   options.noise = NoisePolicy::White;
@@ -126,8 +126,11 @@ TEST(AlternativeSets, HaveAModelForEveryMember) {
   EffectFinding finer = labelled("finer");
   finer.resolution = true;
   diagnosis.further_one_of = {{labelled("c"), finer, labelled("d")}};
-  diagnosis.sets = {{.chosen = 1, .members = std::vector<MemberFinding>(2)},
-                    {.chosen = 0, .members = std::vector<MemberFinding>(3)}};
+  diagnosis.sets.resize(2);
+  diagnosis.sets[0].chosen = 1;
+  diagnosis.sets[0].members.resize(2);
+  diagnosis.sets[1].chosen = 0;
+  diagnosis.sets[1].members.resize(3);
   EXPECT_EQ(labels_of(accepted_effects(diagnosis)), (Labels{"named", "b", "c"}));
   const std::vector<AlternativeModel> models = alternative_models(diagnosis);
   ASSERT_EQ(models.size(), 2U);

@@ -128,7 +128,7 @@ TEST(Search, NamesTwoEffectsThatHideEachOther) {
               ::testing::UnorderedElementsAre("reversal EYY", "position-reversal EYY"));
 }
 
-sim::HiddenEffect bump() {
+sim::HiddenEffect bump_in_xy() {
   sim::HiddenEffect bump = hidden_beside("local-bump", "EZX", 1.5e-6);
   bump.options.set("centre", 0.1);
   bump.options.set("width", 0.12);
@@ -141,7 +141,7 @@ sim::HiddenEffect bump() {
 /// What the user thinks of is tested beside the catalogue: the right shape is named, the wrong one is not
 /// asked for, and both are told.
 TEST(Search, NamesWhatTheUserThinksOf) {
-  const FittedStudy study(hiding({bump()}, kGrid));
+  const FittedStudy study(hiding({bump_in_xy()}, kGrid));
   DiagnoseOptions options;
   options.climb = true;
   options.figures = false;
@@ -165,7 +165,7 @@ TEST(Search, NamesWhatTheUserThinksOf) {
 }
 
 TEST(Search, WhatIsInNoCatalogueGetsNoName) {
-  const FittedStudy study(hiding({bump()}, kGrid));
+  const FittedStudy study(hiding({bump_in_xy()}, kGrid));
   const Diagnosis diagnosis = searched(study, false);
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());

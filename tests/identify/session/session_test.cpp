@@ -6,10 +6,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 
 #include "tests/support/hidden_studies.h"
-#include "volcal/identify/criticism/diagnosis.h"
+#include "volcal/identify/criticism/effect_findings.h"
+#include "volcal/identify/criticism/search/ladder.h"
+#include "volcal/identify/criticism/search/search.h"
+#include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
@@ -50,31 +55,42 @@ class SessionOfTwo : public ::testing::Test {
   }
 };
 
-/// A diagnosis that may add nothing ranks the same effects by the same numbers.
+/// As a diagnosis ranks the given model.
 TEST_F(SessionOfTwo, RanksAsADiagnosisToTheBit) {
   FitOptions fit_options;
   fit_options.threads = 1;
   fit_options.outliers = OutlierPolicy::Remove;
   fit_options.noise = NoisePolicy::White;
-  DiagnoseOptions options;
-  options.climb = true;
-  options.most_effects = 0;
-  options.figures = options.compare = false;
-  const Diagnosis diagnosis = diagnose(campaign(), fit(campaign(), ModelSpec{}, fit_options), options);
-  const std::vector<EffectFinding> ranking = session().rank();
-  ASSERT_GE(ranking.size(), diagnosis.ranking.size());
-  ASSERT_GE(diagnosis.ranking.size(), 20U);
-  EXPECT_EQ(ranking.front().name, kReversal);
-  for (std::size_t i = 0; i < diagnosis.ranking.size(); ++i) {
-    const EffectFinding& own = ranking[i];
-    const EffectFinding& other = diagnosis.ranking[i];
-    EXPECT_EQ(own.gain, other.gain) << i;
-    EXPECT_EQ(own.log10_p, other.log10_p) << i;
-    if (own.name != other.name || own.amplitudes.empty()) continue;  // equal ones in another order
-    EXPECT_EQ(own.amplitudes[0].value, other.amplitudes[0].value) << own.label;
-    EXPECT_EQ(own.amplitudes[0].mdb, other.amplitudes[0].mdb) << own.label;
+  const FitResult result = fit(campaign(), ModelSpec{}, fit_options);
+  const LinearModel model(campaign(), result);
+  SearchOptions options;
+  options.most = 0;
+  Search search(model, heldout_lines(model, SessionOptions{}.heldout_share), options);
+  search.run();
+  const ModelState& given = search.given();
+  std::map<EffectName, EffectFinding> found;
+  for (const FamilyTest& test : given.tests().families) {
+    EffectFinding each = finding(given.setting(), test);
+    if (test.score.dof > 0) found[each.name] = std::move(each);
   }
-  EXPECT_EQ(session().current().figures.rms_heldout, diagnosis.ladder.front().rms_heldout);
+  const std::vector<EffectFinding> ranking = session().rank();
+  EXPECT_EQ(ranking.size(), found.size());
+  ASSERT_GE(ranking.size(), 100U);
+  EXPECT_EQ(ranking.front().name, kReversal);
+  for (std::size_t i = 0; i < ranking.size(); ++i) {
+    const EffectFinding& own = ranking[i];
+    const EffectFinding& other = found.at(own.name);
+    EXPECT_LE(own.gain, ranking[i > 0 ? i - 1 : 0].gain);
+    EXPECT_EQ(own.gain, other.gain) << own.label;
+    EXPECT_EQ(own.log10_p, other.log10_p) << own.label;
+    ASSERT_EQ(own.amplitudes.size(), other.amplitudes.size());
+    for (std::size_t k = 0; k < own.amplitudes.size(); ++k) {
+      EXPECT_EQ(own.amplitudes[k].value, other.amplitudes[k].value) << own.label;
+      EXPECT_EQ(own.amplitudes[k].u, other.amplitudes[k].u) << own.label;
+    }
+  }
+  EXPECT_EQ(session().current().figures.rms_heldout, ladder_of(given).back().rms_heldout);
+  EXPECT_EQ(session().current().figures.systematic, ladder_of(given).back().systematic);
 }
 
 TEST_F(SessionOfTwo, APreviewIsWhatAddingGives) {
@@ -133,7 +149,7 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   ASSERT_EQ(confirmed.effects.size(), 2U);
   const AmplitudeFigure& figure = confirmed.effects[0].amplitudes[0];
   EXPECT_NEAR(figure.value, previewed, 0.25 * kCoverageFactor * figure.u);
-  EXPECT_NEAR(rms(own->residual()), residual, 0.05 * residual);
+  EXPECT_NEAR(rms(own->residual()), residual, 0.1 * residual);
   const ModelSpec model = own->model();
   ASSERT_EQ(model.effects.size(), 2U);
   EXPECT_EQ(model.effects[0].options.number("amplitude"), figure.value);
@@ -153,7 +169,7 @@ TEST_F(SessionOfTwo, AFormulaIsOneMoreTest) {
   const EffectPreview same = session().formula(own("dir_y / 2"));
   const EffectFinding reversal = session().preview(kReversal).effect;
   EXPECT_NEAR(same.effect.amplitudes[0].value, reversal.amplitudes[0].value, 1e-12);
-  EXPECT_EQ(same.effect.log10_p, reversal.log10_p);
+  EXPECT_NEAR(same.effect.log10_p, reversal.log10_p, 1e-6);
   EXPECT_GT(reversal.log10_p, before) << "one more effect was looked at";
   session().formula(own("dir_y / 2"));
   EXPECT_EQ(session().preview(kReversal).effect.log10_p, reversal.log10_p) << "the same again is no test";
@@ -187,8 +203,7 @@ TEST_F(SessionOfTwo, IsLeftAsItWasByAStepThatIsStopped) {
   EXPECT_EQ(session().current().standing, ModelStanding::Preview);
   EXPECT_EQ(session().residual(), residual);
   const auto never = [](const std::string& /*stage*/, double /*done*/) { return false; };
-  EXPECT_THROW(Session(campaign(), ModelSpec{}, options_of(never)),
-               SessionStopped);
+  EXPECT_THROW(Session(campaign(), ModelSpec{}, options_of(never)), SessionStopped);
 }
 
 }  // namespace

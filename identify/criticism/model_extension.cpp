@@ -64,6 +64,16 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
   return effect;
 }
 
+ModelSpec extended_model(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis) {
+  for (const EffectFinding& effect : accepted_effects(diagnosis)) {
+    extend_model({model, campaign.machine, &campaign}, effect.spec,
+                 {.label = effect.label,
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
+  }
+  return model;
+}
+
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
   std::vector<EffectFinding> accepted = diagnosis.effects;
   for (const SurfaceFinding& surface : diagnosis.surfaces) {

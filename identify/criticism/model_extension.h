@@ -41,4 +41,7 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
 /// itself.
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis);
 
+/// The model that was diagnosed with all of that.
+ModelSpec extended_model(ModelSpec model, const Campaign& campaign, const Diagnosis& diagnosis);
+
 }  // namespace volcal

@@ -1,0 +1,20 @@
+#include "volcal/identify/io/results/diagnosis_folder.h"
+
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/results/diagnosis_json.h"
+#include "volcal/identify/text/atomic_folder.h"
+
+namespace volcal {
+
+void write_diagnosis_folder(const Diagnosis& diagnosis, const Machine& machine, const ModelSpec& extended,
+                            const std::string& target, const std::map<std::string, std::string>& more) {
+  AtomicFolder folder(target);
+  folder.write("diagnosis.json", diagnosis_json(diagnosis));
+  for (const auto& [name, content] : more) folder.write(name, content);
+  folder.write("machine.toml", machine_toml(machine));
+  folder.write("extended.toml", model_toml(extended, "machine.toml",
+                                           "the given model with the effects that volcal diagnose added"));
+  folder.commit();
+}
+
+}  // namespace volcal

@@ -13,8 +13,8 @@
 #include "volcal/identify/cli/outcome.h"
 #include "volcal/identify/cli/process.h"
 #include "volcal/identify/cli/provenance.h"
-#include "volcal/identify/cli/today.h"
 #include "volcal/identify/text/nearest_name.h"
+#include "volcal/identify/text/today.h"
 
 namespace {
 
@@ -88,7 +88,7 @@ int run(int argc, char** argv) {
                  volcal::cli::shown(explain(app, error, argc, argv)).c_str());
     return volcal::cli::kBadInput;
   }
-  volcal::cli::present_time();  // a wrong SOURCE_DATE_EPOCH is refused before the work, not after it
+  volcal::present_time();  // a wrong SOURCE_DATE_EPOCH is refused before the work, not after it
   volcal::cli::set_current_work(app.get_subcommands().front()->get_name());
   return work.at(app.get_subcommands().front())();
 }

@@ -1,8 +1,6 @@
 #include "volcal/identify/cli/provenance.h"
 
-#include <fmt/chrono.h>
-
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/text/today.h"
 
 namespace volcal::cli {
 namespace {
@@ -32,9 +30,7 @@ void remember_command_line(int count, char** arguments) {
 }
 
 Provenance provenance() {
-  return {.version = VOLCAL_VERSION,
-          .date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(present_time())),
-          .command = command_line()};
+  return {.version = VOLCAL_VERSION, .date = present_time_text(), .command = command_line()};
 }
 
 ReportOptions report_options() { return {.date = today(), .provenance = provenance()}; }

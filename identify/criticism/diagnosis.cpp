@@ -15,6 +15,7 @@
 #include "volcal/identify/criticism/surface_findings.h"
 #include "volcal/identify/criticism/verdict.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/solve/fit.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -70,6 +71,24 @@ void compare_hypotheses(const ModelState& reached, const FitResult& result, cons
 }
 
 }  // namespace
+
+Diagnosis diagnose(const Campaign& campaign, const ModelSpec& model, const DiagnoseOptions& options) {
+  constexpr double kShareOfFit = 0.3;
+  FitOptions fit_options;
+  fit_options.threads = options.threads;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;
+  if (!options.progress) return diagnose(campaign, fit(campaign, model, fit_options), options);
+  fit_options.progress = [&](const std::string& stage, double done) {
+    options.progress("fit: " + stage, kShareOfFit * done);
+  };
+  const FitResult result = fit(campaign, model, fit_options);
+  DiagnoseOptions after = options;
+  after.progress = [&](const std::string& stage, double done) {
+    options.progress(stage, kShareOfFit + (1.0 - kShareOfFit) * done);
+  };
+  return diagnose(campaign, result, after);
+}
 
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
   const auto progress = [&](const std::string& stage, double done) {

@@ -15,6 +15,7 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/model/description/model_spec.h"
 
 namespace volcal {
 
@@ -30,6 +31,10 @@ struct DiagnoseOptions {
   PlanningOptions planning;
   std::function<void(const std::string& stage, double done)> progress;
 };
+
+/// Adjusts the campaign by the model as a diagnosis wants it, outliers removed and readings independent,
+/// since the diagnosis estimates the noise at every step anew; then diagnoses that.
+Diagnosis diagnose(const Campaign& campaign, const ModelSpec& model, const DiagnoseOptions& options);
 
 /// `result` must come from fit() of this campaign.
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options);

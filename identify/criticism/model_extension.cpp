@@ -89,20 +89,37 @@ std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
   return accepted;
 }
 
+ModelSpec extended_model(ModelSpec model, const Campaign& campaign,
+                         const std::vector<EffectFinding>& effects) {
+  for (const EffectFinding& effect : effects) {
+    extend_model({model, campaign.machine, &campaign}, effect.spec,
+                 {.label = effect.label,
+                  .remedy_if_known = "diagnose the campaign with a model without it",
+                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
+  }
+  return model;
+}
+
 }  // namespace
 
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
   return accepted_with(diagnosis, {});
 }
 
-std::vector<AlternativeModel> alternative_models(const Diagnosis& diagnosis) {
-  std::vector<AlternativeModel> models;
+std::vector<OfferedModel> offered_models(const ModelSpec& model, const Campaign& campaign,
+                                         const Diagnosis& diagnosis) {
+  std::vector<OfferedModel> models{{"extended.toml",
+                                    "the given model with the effects that volcal diagnose added",
+                                    extended_model(model, campaign, accepted_effects(diagnosis))}};
   const auto sets = sets_of_alternatives(diagnosis);
   for (std::size_t i = 0; i < std::min(sets.size(), diagnosis.sets.size()); ++i) {
     for (std::size_t k = 0; k < sets[i]->size(); ++k) {
       const EffectFinding& member = (*sets[i])[k];
       if (k == diagnosis.sets[i].chosen || member.resolution) continue;
-      models.push_back({alternative_model_file(i, k), member.label, accepted_with(diagnosis, {{i, k}})});
+      models.push_back({alternative_model_file(i, k),
+                        "as extended.toml, with " + member.label +
+                            " in the place of what the readings do not tell from it",
+                        extended_model(model, campaign, accepted_with(diagnosis, {{i, k}}))});
     }
   }
   return models;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/data/offered_model.h"
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/model_spec.h"
@@ -41,13 +42,9 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
 /// surface the leading law or the surface itself.
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis);
 
-/// The same with another member of a set.
-struct AlternativeModel {
-  std::string file;   ///< alternative_model_file()
-  std::string label;  ///< of the member
-  std::vector<EffectFinding> effects;
-};
-/// Of all members that are not chosen and can stand in a model file.
-std::vector<AlternativeModel> alternative_models(const Diagnosis& diagnosis);
+/// The given model with these, first, and for every other member of a set that can stand in a model file one
+/// with it in the place of the chosen one.
+std::vector<OfferedModel> offered_models(const ModelSpec& model, const Campaign& campaign,
+                                         const Diagnosis& diagnosis);
 
 }  // namespace volcal

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iterator>
 
@@ -94,6 +95,16 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads)
   return leading.take(families.size() + scans.size(), result.noise.more_than_white
                                                           ? kThresholds.screening_log10_risk_of_drift
                                                           : kThresholds.screening_log10_risk);
+}
+
+void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result) {
+  if (options.loss != RobustLoss::None || result.status == FitStatus::NotConverged) return;
+  constexpr double kShareBefore = 0.95;
+  if (options.progress) options.progress("scans of the residuals", kShareBefore);
+  const auto start = std::chrono::steady_clock::now();
+  judge(screen(campaign, result, options.threads), result);
+  result.timings.push_back({"scans of the residuals",
+                            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
 
 void judge(const Screening& screening, FitResult& result) {

@@ -5,6 +5,7 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
@@ -13,6 +14,10 @@ namespace volcal {
 /// more than white is not exactly known: a test then counts from a much smaller probability on. Readings that
 /// the outlier test flags are left out. The same for any number of threads.
 Screening screen(const Campaign& campaign, const FitResult& result, int threads);
+
+/// screen() and judge() with the time that they took. Nothing where there are no residuals to test: a robust
+/// loss has no likelihood, an adjustment that did not converge none to trust.
+void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result);
 
 /// A fit that a test contradicts lacks something: status Ok becomes LackOfFit, and a finding says so.
 void judge(const Screening& screening, FitResult& result);

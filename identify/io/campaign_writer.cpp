@@ -36,49 +36,13 @@ int decimals_of(const std::string& column) {
   return 10;
 }
 
-struct CsvColumn {
-  std::string name;
-  double si_per_unit;
-  int decimals;
-  std::vector<double> values;
-};
-
-CsvColumn measured_column(const std::string& name, const std::vector<double>& values) {
+ReadingColumn measured_column(const std::string& name, const std::vector<double>& values) {
   return {name, unit_of_key(name).si_per_unit, decimals_of(name), values};
 }
 
 template <class Integer>
-CsvColumn integer_column(const std::string& name, const std::vector<Integer>& values) {
+ReadingColumn integer_column(const std::string& name, const std::vector<Integer>& values) {
   return {name, 1.0, 0, std::vector<double>(values.begin(), values.end())};
-}
-
-std::vector<CsvColumn> columns_of(const Setup& setup, const Machine& machine) {
-  const Readings& readings = setup.readings;
-  const InstrumentSchema& schema = schema_of(setup);
-  std::vector<CsvColumn> columns;
-  if (!readings.time.empty()) columns.push_back(measured_column("time_s", readings.time));
-  if (!readings.line.empty()) columns.push_back(integer_column("line", readings.line));
-  if (!readings.run.empty()) columns.push_back(integer_column("run", readings.run));
-  const auto letter = [](AxisName axis) {
-    return std::string(1, static_cast<char>(std::tolower(letter_of(axis))));
-  };
-  for (const Axis& axis : machine.axes) {
-    columns.push_back(measured_column(position_column(axis.name), readings.position[index_of(axis.name)]));
-  }
-  for (const Axis& axis : machine.axes) {
-    const auto& direction = readings.direction[index_of(axis.name)];
-    if (!direction.empty()) columns.push_back(integer_column("dir_" + letter(axis.name), direction));
-  }
-  if (!readings.feed.empty()) columns.push_back(measured_column("feed_mm_min", readings.feed));
-  for (const auto& [channel, values] : readings.temperature) {
-    columns.push_back(measured_column("T_" + channel + "_degC", values));
-  }
-  if (!readings.sigma.empty()) columns.push_back(measured_column(sigma_column(schema), readings.sigma));
-  const auto& set = schema.column_sets.at(readings.column_set);
-  for (std::size_t k = 0; k < set.size(); ++k) {
-    columns.push_back(measured_column(set[k].column, readings.value.at(k)));
-  }
-  return columns;
 }
 
 /// Fixed decimals without the zeros at their end.
@@ -172,6 +136,35 @@ std::string setup_toml(const Setup& setup, const Machine& machine) {
 
 }  // namespace
 
+std::vector<ReadingColumn> reading_columns(const Setup& setup, const Machine& machine) {
+  const Readings& readings = setup.readings;
+  const InstrumentSchema& schema = schema_of(setup);
+  std::vector<ReadingColumn> columns;
+  if (!readings.time.empty()) columns.push_back(measured_column("time_s", readings.time));
+  if (!readings.line.empty()) columns.push_back(integer_column("line", readings.line));
+  if (!readings.run.empty()) columns.push_back(integer_column("run", readings.run));
+  const auto letter = [](AxisName axis) {
+    return std::string(1, static_cast<char>(std::tolower(letter_of(axis))));
+  };
+  for (const Axis& axis : machine.axes) {
+    columns.push_back(measured_column(position_column(axis.name), readings.position[index_of(axis.name)]));
+  }
+  for (const Axis& axis : machine.axes) {
+    const auto& direction = readings.direction[index_of(axis.name)];
+    if (!direction.empty()) columns.push_back(integer_column("dir_" + letter(axis.name), direction));
+  }
+  if (!readings.feed.empty()) columns.push_back(measured_column("feed_mm_min", readings.feed));
+  for (const auto& [channel, values] : readings.temperature) {
+    columns.push_back(measured_column("T_" + channel + "_degC", values));
+  }
+  if (!readings.sigma.empty()) columns.push_back(measured_column(sigma_column(schema), readings.sigma));
+  const auto& set = schema.column_sets.at(readings.column_set);
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    columns.push_back(measured_column(set[k].column, readings.value.at(k)));
+  }
+  return columns;
+}
+
 std::string readings_file_name(const Setup& setup) {
   std::string name = setup.name;
   const auto awkward = [](unsigned char c) {
@@ -197,9 +190,9 @@ std::string campaign_toml(const Campaign& campaign, const std::string& machine_p
 }
 
 std::string readings_csv(const Setup& setup, const Machine& machine) {
-  const std::vector<CsvColumn> columns = columns_of(setup, machine);
+  const std::vector<ReadingColumn> columns = reading_columns(setup, machine);
   std::string text;
-  for (const CsvColumn& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  for (const ReadingColumn& column : columns) text += (text.empty() ? "" : ",") + column.name;
   text += '\n';
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
     for (std::size_t k = 0; k < columns.size(); ++k) {

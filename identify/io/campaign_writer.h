@@ -4,10 +4,22 @@
 /// of a degree; the numbers of campaign.toml come back to rounding.
 
 #include <string>
+#include <vector>
 
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
+
+/// A column of readings as a CSV file has it.
+struct ReadingColumn {
+  std::string name;  ///< with its unit: "x_mm"
+  double si_per_unit = 1.0;
+  int decimals = 0;            ///< that are written
+  std::vector<double> values;  ///< SI
+};
+/// Time, line, run, axes, directions, feed, temperatures, sigma, reading, as far as they were recorded.
+/// Throws std::invalid_argument for an instrument that is not registered.
+std::vector<ReadingColumn> reading_columns(const Setup& setup, const Machine& machine);
 
 /// File of a setup's readings: its name with characters that file systems dislike replaced, and ".csv".
 std::string readings_file_name(const Setup& setup);

@@ -48,6 +48,19 @@ void add(const Eigen::Ref<const Eigen::MatrixXd>& values, ContentHash& hash) {
 
 }  // namespace
 
+DrawPath draw_path(const std::string& word) {
+  for (const DrawPath path : {DrawPath::Automatic, DrawPath::Linear, DrawPath::Chord, DrawPath::Refit}) {
+    if (to_string(path) == word) return path;
+  }
+  throw InputError({}, "path \"" + word + "\" is not known", "choose one of auto, linear, chord, refit");
+}
+
+FunctionRoughness function_roughness(const std::string& word) {
+  if (word == "drawn") return FunctionRoughness::Drawn;
+  if (word == "fixed") return FunctionRoughness::Fixed;
+  throw InputError({}, "functions \"" + word + "\" is not known", "choose \"drawn\" or \"fixed\"");
+}
+
 std::string_view to_string(DrawPath path) {
   switch (path) {
     case DrawPath::Automatic:

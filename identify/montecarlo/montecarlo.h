@@ -27,6 +27,9 @@ namespace volcal {
 
 enum class DrawPath { Automatic, Linear, Chord, Refit };
 std::string_view to_string(DrawPath path);
+/// "auto", "linear", "chord", "refit"; "drawn", "fixed". Throw InputError for another word.
+DrawPath draw_path(const std::string& word);
+FunctionRoughness function_roughness(const std::string& word);
 
 struct MonteCarloOptions {
   DrawPath path = DrawPath::Automatic;  ///< the fastest that the sample of refits supports

@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "volcal/identify/compensation/compensation.h"
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -23,6 +25,13 @@ void add_pieces(const Basis& basis, std::vector<double>& ends) {
     for (int k = 0; k < parts; ++k) ends.push_back(pieces[i] + (pieces[i + 1] - pieces[i]) * k / parts);
   }
   if (!pieces.empty()) ends.push_back(pieces.back());
+}
+
+Eigen::Vector3d offset_of_tool(const Machine& machine, const std::string& tool) {
+  if (tool.empty() && machine.tools.empty()) return Eigen::Vector3d::Zero();
+  TableFormatOptions options;
+  options.tool = tool;
+  return tool_of(machine, options).offset;
 }
 
 AxisPosition axis_position_of(const Eigen::Vector3d& position) {
@@ -108,6 +117,25 @@ class EffectIntervals {
 };
 
 }  // namespace
+
+FunctionalPoint functional_point(const Machine& machine, const std::string& tool,
+                                 const std::string& lengths_from) {
+  FunctionalPoint point;
+  point.without_length = offset_of_tool(machine, tool);
+  if (!lengths_from.empty()) point.lengths_from = offset_of_tool(machine, lengths_from);
+  return point;
+}
+
+NcSetup nc_setup(const Machine& machine) {
+  NcSetup setup;
+  for (const AxisName axis : kLinearAxes) {
+    if (!machine.has_axis(axis))
+      throw InputError({}, std::string("the machine has no axis ") + letter_of(axis),
+                       "programs are compensated on machines with X, Y and Z");
+    setup.home[direction_of(axis)] = machine.axis(axis).home;
+  }
+  return setup;
+}
 
 ProgramErrors program_errors(const FitResult& result, const std::string& tool_name,
                              const Conditions& conditions) {

@@ -39,6 +39,15 @@ struct FunctionalPoint {
   }
 };
 
+/// The functional point while no tool length is active: that of `tool`, by default the machine's first one;
+/// tool lengths count from the spindle reference, or are differences to the tool `lengths_from`. Throws
+/// InputError.
+FunctionalPoint functional_point(const Machine& machine, const std::string& tool,
+                                 const std::string& lengths_from);
+
+/// Of a machine, nothing set but its homes. Throws InputError for a machine without X, Y or Z.
+NcSetup nc_setup(const Machine& machine);
+
 /// Sign of every linear axis's motion; axes that move less than a picometre keep theirs.
 void turn_directions(const Eigen::Vector3d& motion, ApproachDirection& directions);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include "volcal/identify/text/plain_number.h"
 #include "volcal/identify/text/text_file.h"
@@ -358,7 +359,47 @@ std::optional<char> CsvTable::other_delimiter() const {
   return std::nullopt;
 }
 
+CsvTable CsvTable::of_columns(std::vector<NumberColumn> columns, const std::string& name) {
+  if (columns.empty() || columns.front().values.empty())
+    throw InputError({name, 0}, "there are no readings",
+                     "give one array for each column, one value per reading");
+  CsvTable table;
+  table.file_ = name;
+  for (const NumberColumn& column : columns) {
+    if (column.values.size() != columns.front().values.size()) {
+      throw InputError({name, 0},
+                       "column " + printable(column.name) + " has " + std::to_string(column.values.size()) +
+                           " rows, column " + printable(columns.front().name) + " has " +
+                           std::to_string(columns.front().values.size()),
+                       "give arrays of the same length, one value per reading");
+    }
+    table.header_.push_back(column.name);
+  }
+  table.in_memory_ = std::move(columns);
+  return table;
+}
+
+CsvColumns CsvTable::numbers_in_memory(std::span<const std::size_t> columns) const {
+  CsvColumns read;
+  for (const std::size_t index : columns) {
+    const NumberColumn& column = in_memory_[index];
+    const auto wrong =
+        std::ranges::find_if_not(column.values, [](double value) { return std::isfinite(value); });
+    if (wrong != column.values.end()) {
+      throw InputError(
+          {file_, static_cast<int>(wrong - column.values.begin()) + 1},
+          "column " + printable(column.name) + " holds \"" + std::to_string(*wrong) + "\", no finite number",
+          "leave out rows without a reading");
+    }
+    read.values.emplace_back(column.values.begin(), column.values.end());
+  }
+  read.source_line.resize(in_memory_.front().values.size());
+  std::iota(read.source_line.begin(), read.source_line.end(), std::int64_t{1});
+  return read;
+}
+
 CsvColumns CsvTable::numbers(std::span<const std::size_t> columns) const {
+  if (!in_memory_.empty()) return numbers_in_memory(columns);
   return RowReader(*this, columns).read();
 }
 

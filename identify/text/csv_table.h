@@ -27,6 +27,12 @@ struct CsvFormat {
   std::size_t skip_rows = 0;  ///< lines of the file before the header is looked for
 };
 
+/// A column of numbers in memory, in the unit of its name.
+struct NumberColumn {
+  std::string name;
+  std::span<const double> values;
+};
+
 struct CsvColumns {
   std::vector<std::vector<double>> values;  ///< [asked column][row], in the unit of the file
   std::vector<std::int64_t> source_line;    ///< [row], 1-based
@@ -40,6 +46,10 @@ class CsvTable {
   static CsvTable read(const std::string& path, const CsvFormat& format, const SourcePlace& named_at = {});
   static CsvTable parse(std::string text, const std::string& file, const CsvFormat& format);
 
+  /// Columns in memory in place of a file; rows count from 1. What they refer to must outlive the table.
+  /// Throws InputError for columns of different length and where there is none or no row.
+  static CsvTable of_columns(std::vector<NumberColumn> columns, const std::string& name);
+
   const std::string& file() const { return file_; }
   const std::vector<std::string>& header() const { return header_; }
   SourcePlace header_place() const { return {file_, static_cast<int>(header_line_)}; }
@@ -51,7 +61,9 @@ class CsvTable {
   CsvColumns numbers(std::span<const std::size_t> columns) const;
 
  private:
+  CsvTable() = default;
   CsvTable(std::string text, std::string file, const CsvFormat& format);
+  CsvColumns numbers_in_memory(std::span<const std::size_t> columns) const;
 
   class RowReader;
 
@@ -61,6 +73,7 @@ class CsvTable {
   std::vector<std::string> header_;
   std::int64_t header_line_ = 0;
   std::size_t body_ = 0;  ///< offset of the first byte after the header
+  std::vector<NumberColumn> in_memory_;
 };
 
 }  // namespace volcal

@@ -65,16 +65,16 @@ std::optional<Recorded> recorded_range(const Campaign& campaign, const std::stri
 }
 
 /// Columns without a change; of an expression only where no variable of it changes.
-std::vector<std::string> constant_columns(const Campaign& campaign, const EffectName& name) {
+std::vector<std::string> constant_columns(const Campaign& campaign, const Effect& effect) {
   std::vector<std::string> constant;
-  std::istringstream words(name.driver);
+  std::istringstream words(effect.name().driver);
   for (std::string variable; words >> variable;) {
     const auto found = recorded_range(campaign, variable);
     const bool unknown_direction =
         found && found->range.constant() && found->range.min == 0.0 && variable.starts_with("dir_");
     if (found && found->range.constant() && !unknown_direction) {
       constant.push_back(found->column);
-    } else if (name.kind == "custom") {
+    } else if (effect.changes_with_any_driver()) {
       return {};
     }
   }
@@ -92,7 +92,7 @@ void check_drivers_vary(const Campaign& campaign, const ModelSpec& model) {
 }
 
 void check_drivers_vary(const Campaign& campaign, const Effect& effect, const SourcePlace& place) {
-  const std::vector<std::string> constant = constant_columns(campaign, effect.name());
+  const std::vector<std::string> constant = constant_columns(campaign, effect);
   if (constant.empty()) return;
   throw InputError(place,
                    fmt::format("{} depends on {}: the same in all readings", effect_label(effect),

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "volcal/model/description/units.h"
+
 namespace volcal {
 
 std::optional<ParameterLayout::FunctionPlace> ParameterLayout::find(ErrorSymbol symbol) const {
@@ -49,6 +51,27 @@ std::vector<ErrorSymbol> ParameterLayout::symbols() const {
   std::vector<ErrorSymbol> all;
   for (const FunctionGroup& group : groups) {
     all.insert(all.end(), group.symbols.begin(), group.symbols.end());
+  }
+  return all;
+}
+
+std::vector<NamedParameter> named_parameters(const ParameterLayout& layout) {
+  std::vector<NamedParameter> all(static_cast<std::size_t>(layout.size));
+  for (const FunctionGroup& group : layout.groups) {
+    for (int j = 0; j < group.basis->size(); ++j) {
+      for (int slot = 0; slot < group.count(); ++slot) {
+        const ErrorSymbol symbol = group.symbols[static_cast<std::size_t>(slot)];
+        all[static_cast<std::size_t>(group.index(j, slot))] = {
+            symbol.name() + " " + std::to_string(j), is_rotation(symbol.component) ? "urad" : "um", kMicro};
+      }
+    }
+  }
+  for (const ParameterBlock& block : layout.blocks) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(block.size()); ++k) {
+      const std::string& label = block.labels[k];
+      all[static_cast<std::size_t>(block.offset) + k] = {
+          label.empty() ? block.name : block.name + " " + label, block.units[k], block.si_per_unit[k]};
+    }
   }
   return all;
 }

@@ -74,4 +74,13 @@ struct ParameterLayout {
   std::vector<ErrorSymbol> symbols() const;
 };
 
+/// A parameter as lists and files state it: "EXX 3" is the fourth coefficient of EXX.
+struct NamedParameter {
+  std::string name;
+  std::string unit;  ///< edge
+  double si_per_unit = 1.0;
+};
+/// All of a layout, in its order.
+std::vector<NamedParameter> named_parameters(const ParameterLayout& layout);
+
 }  // namespace volcal

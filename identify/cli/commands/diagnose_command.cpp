@@ -1,26 +1,26 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <string>
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/effect_list.h"
-#include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/written_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
-#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/results/diagnosis_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/atomic_folder.h"
 
 namespace volcal::cli {
@@ -60,16 +60,6 @@ int print_list(const DiagnoseArguments& arguments) {
   return kDone;
 }
 
-ModelSpec extended(ModelSpec model, const Campaign& campaign, const std::vector<EffectFinding>& effects) {
-  for (const EffectFinding& effect : effects) {
-    extend_model({model, campaign.machine, &campaign}, effect.spec,
-                 {.label = effect.label,
-                  .remedy_if_known = "diagnose the campaign with a model without it",
-                  .remedy_if_absent = "diagnose the campaign with a model of its machine"});
-  }
-  return model;
-}
-
 /// The ladder of an earlier diagnosis again.
 int show(const DiagnoseArguments& arguments) {
   if (!arguments.campaign.empty()) {
@@ -82,23 +72,11 @@ int show(const DiagnoseArguments& arguments) {
 }
 
 void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
-                     const Diagnosis& diagnosis, const std::string& json) {
-  AtomicFolder folder(arguments.output);
-  folder.write("diagnosis.json", json);
-  folder.write("diagnosis.txt", diagnosis_text(diagnosis));
-  if (report_available()) {
-    folder.write("report.html", report_html(diagnosis, campaign, report_options()));
-  }
-  folder.write("machine.toml", machine_toml(campaign.machine));
-  folder.write("extended.toml",
-               model_toml(extended(model, campaign, accepted_effects(diagnosis)), "machine.toml",
-                          "the given model with the effects that volcal diagnose added"));
-  for (const AlternativeModel& other : alternative_models(diagnosis)) {
-    folder.write(other.file, model_toml(extended(model, campaign, other.effects), "machine.toml",
-                                        "as extended.toml, with " + other.label +
-                                            " in the place of what the readings do not tell from it"));
-  }
-  folder.commit();
+                     const Diagnosis& diagnosis) {
+  std::map<std::string, std::string> more = {{"diagnosis.txt", diagnosis_text(diagnosis)}};
+  if (report_available()) more["report.html"] = report_html(diagnosis, campaign, report_options());
+  write_diagnosis_folder(diagnosis, campaign.machine, offered_models(model, campaign, diagnosis),
+                         arguments.output, more);
 }
 
 int run_diagnose(const DiagnoseArguments& arguments) {
@@ -123,21 +101,12 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   for (const std::string& text : arguments.tried)
     options.own.push_back(written_effect("--try", text, arguments.parameters).spec);
   ProgressBar bar("diagnose");
-  FitOptions fit_options;
-  fit_options.threads = arguments.threads;
-  fit_options.outliers = OutlierPolicy::Remove;
-  fit_options.noise = NoisePolicy::White;  // the diagnosis estimates it, at every step anew
-  fit_options.progress = [&bar](const std::string& stage, double done) {
-    bar.update("fit: " + stage, 0.3 * done);
-  };
-  const FitResult result = fit(campaign, model, fit_options);
-  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, 0.3 + 0.7 * done); };
-  const Diagnosis diagnosis = diagnose(campaign, result, options);
+  options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
+  const Diagnosis diagnosis = diagnose(campaign, model, options);
   bar.finish();
-  const std::string json = diagnosis_json(diagnosis);
-  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosis, json);
+  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosis);
   if (arguments.json) {
-    fmt::print("{}", json);
+    fmt::print("{}", diagnosis_json(diagnosis));
   } else {
     const bool kept = !arguments.output.empty();
     fmt::print("{}",

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/written_effect.h"
+#include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/options/fit_policies.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
@@ -18,6 +16,7 @@
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/fit_words.h"
 #include "volcal/identify/text/atomic_folder.h"
 
 namespace volcal::cli {
@@ -41,27 +40,13 @@ struct FitArguments {
 FitOptions fit_options(const FitArguments& arguments) {
   FitOptions options;
   options.threads = arguments.threads;
-  options.loss = arguments.loss == "huber"    ? RobustLoss::Huber
-                 : arguments.loss == "cauchy" ? RobustLoss::Cauchy
-                                              : RobustLoss::None;
+  options.loss = robust_loss(arguments.loss);
   options.outliers = outlier_policy(arguments.outliers);
-  options.solver = arguments.solver == "per-reading" ? SolverKind::PerReading : SolverKind::Compressed;
+  options.solver = solver_kind(arguments.solver);
   options.noise = noise_policy(arguments.noise);
   options.variance_components = !arguments.keep_stated_sigma;
   options.exact_kinematics = !arguments.first_order;
   return options;
-}
-
-/// A robust loss has no likelihood to test by; an adjustment that did not converge has no residuals to trust.
-bool can_be_screened(const FitResult& result, const FitOptions& options) {
-  return options.loss == RobustLoss::None && result.status != FitStatus::NotConverged;
-}
-
-void add_screening(const Campaign& campaign, int threads, FitResult& result) {
-  const auto start = std::chrono::steady_clock::now();
-  judge(screen(campaign, result, threads), result);
-  result.timings.push_back({"scans of the residuals",
-                            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
 
 std::string diagnosis_of(const FitArguments& arguments) {
@@ -78,10 +63,7 @@ int run_fit(const FitArguments& arguments) {
   ProgressBar bar("fit");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
   FitResult result = fit(campaign, model, options);
-  if (can_be_screened(result, options)) {
-    bar.update("scans of the residuals", 0.95);
-    add_screening(campaign, options.threads, result);
-  }
+  screen_fit(campaign, options, result);
   result.provenance = provenance();
   bar.finish();
   std::map<std::string, std::string> more;
@@ -109,17 +91,16 @@ std::function<int()> define_fit(CLI::App& app) {
                  "B-splines, automatic knots");
   app.add_option("-o,--output", arguments->output, "result folder (replaced as a whole)")->required();
   app.add_option("--outliers", arguments->outliers, "readings flagged by the w-test: list or remove them")
-      ->check(CLI::IsMember({"list", "remove"}));
-  app.add_option("--robust", arguments->loss, "robust loss")
-      ->check(CLI::IsMember({"none", "huber", "cauchy"}));
+      ->check(one_of(kOutlierWords));
+  app.add_option("--robust", arguments->loss, "robust loss")->check(one_of(kLossWords));
   app.add_option("--solver", arguments->solver,
                  "compressed normal equations, or one residual block per reading")
-      ->check(CLI::IsMember({"compressed", "per-reading"}));
+      ->check(one_of(kSolverWords));
   app.add_option(
          "--noise", arguments->noise,
          "auto: estimate correlated drift, offsets of lines and noise in proportion to length, and weight by "
          "what is supported; white: independent readings")
-      ->check(CLI::IsMember({"auto", "white"}));
+      ->check(one_of(kNoiseWords));
   app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
       ->check(number_of_threads());
   app.add_flag("--keep-stated-sigma", arguments->keep_stated_sigma,

@@ -12,11 +12,10 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/draw_ranks.h"
 #include "volcal/identify/cli/interrupt_watch.h"
-#include "volcal/identify/cli/options/fit_policies.h"
-#include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
@@ -27,6 +26,7 @@
 #include "volcal/identify/report/text/montecarlo_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/fit_words.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -54,13 +54,6 @@ struct MonteCarloArguments {
 /// Of the ranks that share the draws.
 bool is_first(const MonteCarloArguments& arguments) {
   return arguments.options.team == nullptr || arguments.options.team->rank() == 0;
-}
-
-DrawPath draw_path(const std::string& name) {
-  for (const DrawPath path : {DrawPath::Linear, DrawPath::Chord, DrawPath::Refit}) {
-    if (to_string(path) == name) return path;
-  }
-  return DrawPath::Automatic;
 }
 
 FitResult fitted(const MonteCarloArguments& arguments, const Campaign& campaign, ProgressBar& bar) {
@@ -220,8 +213,7 @@ struct Drawn {
 MonteCarloOptions study_options(const MonteCarloArguments& arguments, const Campaign& campaign) {
   MonteCarloOptions options = arguments.options;
   options.path = draw_path(arguments.path);
-  options.sources.functions =
-      arguments.functions == "fixed" ? FunctionRoughness::Fixed : FunctionRoughness::Drawn;
+  options.sources.functions = function_roughness(arguments.functions);
   for (const std::string& text : arguments.disturbances)
     options.sources.disturbances.push_back(disturbance(text, campaign));
   return options;
@@ -337,9 +329,8 @@ std::function<int()> define_montecarlo(CLI::App& app) {
          "that the fit knows nothing of, of standard uncertainty U or within limits A; may be repeated")
       ->allow_extra_args(false);
   app.add_option("--outliers", arguments->outliers, "of the fit: list or remove flagged readings")
-      ->check(CLI::IsMember({"list", "remove"}));
-  app.add_option("--noise", arguments->noise, "of the fit: auto or white")
-      ->check(CLI::IsMember({"auto", "white"}));
+      ->check(one_of(kOutlierWords));
+  app.add_option("--noise", arguments->noise, "of the fit: auto or white")->check(one_of(kNoiseWords));
   app.add_option("--minutes", arguments->minutes,
                  "of drawing, of a study without --draws: it ends with what it has reached, exit 1, and "
                  "--resume goes on; 0 = no limit")

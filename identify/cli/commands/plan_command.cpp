@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
-#include "volcal/identify/cli/options/named_effect.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/criticism/catalogue/named_effect.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"

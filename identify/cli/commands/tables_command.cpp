@@ -10,8 +10,7 @@
 #include "volcal/identify/cli/options/axis_position.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
-#include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/compensation/volume_check.h"
+#include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/compensation_text.h"
@@ -28,8 +27,6 @@
 
 namespace volcal::cli {
 namespace {
-
-constexpr double kDefaultTolerance_um = 0.2;
 
 struct TablesArguments {
   std::string result;
@@ -53,18 +50,6 @@ struct TablesArguments {
   bool dry_run = false;
   bool list = false;
   bool json = false;
-};
-
-/// Tables that were made, and what they leave.
-struct MadeTables {
-  const TableFormat* format = nullptr;
-  TableFormatOptions options;
-  StepChoice step;
-  double tolerance = 0.0;  ///< m; 0 = the step was given or is the format's own
-  std::vector<TableFile> files;
-  CompensationTables read_back;
-  VolumeCheck check;
-  std::vector<Finding> effects_left_out;
 };
 
 std::string format_help() {
@@ -165,23 +150,9 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
 }
 
 MadeTables make_tables(const FitResult& result, const TablesArguments& arguments) {
-  MadeTables made;
-  made.format = find_table_format(arguments.format);
-  made.options = table_options(*made.format, result, arguments);
-  check_table_options(*made.format, result, made.options);
-  const bool own_positions = made.format->positions_of_own && arguments.tolerance_um == 0.0;
-  if (arguments.step_mm == 0.0 && !own_positions) {
-    made.tolerance =
-        (arguments.tolerance_um > 0.0 ? arguments.tolerance_um : kDefaultTolerance_um) * kMetrePerMicrometre;
-    made.step = choose_step(*made.format, result, made.options, made.tolerance);
-    made.options.step = made.step.step;
-  }
-  if (made.format->step_of != nullptr) made.options.step = made.format->step_of(made.options);
-  made.files = write_tables(*made.format, result, made.options);
-  made.read_back = made.format->read(made.files);
-  made.check = check_in_volume(result, made.options, made.read_back);
-  made.effects_left_out = errors_in_no_table(result);
-  return made;
+  const TableFormat& format = *find_table_format(arguments.format);
+  return make_tables(format, result, table_options(format, result, arguments),
+                     arguments.tolerance_um * kMetrePerMicrometre);
 }
 
 std::vector<std::string> file_names(const MadeTables& made) {

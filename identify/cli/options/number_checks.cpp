@@ -1,7 +1,9 @@
 #include "volcal/identify/cli/options/number_checks.h"
 
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/text/text_file.h"
@@ -37,6 +39,10 @@ CLI::Validator positive(double most) {
 }
 
 CLI::Validator positive() { return positive(kMost); }
+
+CLI::Validator one_of(std::span<const std::string_view> words) {
+  return CLI::IsMember(std::vector<std::string>(words.begin(), words.end()));
+}
 
 CLI::Validator number_of_threads() { return not_negative(kMostThreads); }
 

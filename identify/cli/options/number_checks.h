@@ -1,7 +1,9 @@
 #pragma once
-/// Checks of numeric options that say what is wrong in words: "--threads: -1 must not be negative".
+/// Checks of options that say what is wrong in words: "--threads: -1 must not be negative".
 
 #include <CLI/App.hpp>
+#include <span>
+#include <string_view>
 
 namespace volcal::cli {
 
@@ -12,5 +14,7 @@ CLI::Validator positive();
 CLI::Validator positive(double most);
 /// 0 to as many as thread_count() gives.
 CLI::Validator number_of_threads();
+/// One of these words.
+CLI::Validator one_of(std::span<const std::string_view> words);
 
 }  // namespace volcal::cli

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 
-#include "volcal/identify/compensation/table_format.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -73,23 +72,10 @@ void add_tool_length(const std::string& text, NcSetup& setup) {
     throw InputError({}, "--tool-length " + name + " is given twice", "give it once");
 }
 
-Eigen::Vector3d offset_of(const Machine& machine, const std::string& tool) {
-  if (tool.empty() && machine.tools.empty()) return Eigen::Vector3d::Zero();
-  TableFormatOptions options;
-  options.tool = tool;
-  return tool_of(machine, options).offset;
-}
-
 }  // namespace
 
 NcSetup program_setup(const ProgramSetupArguments& arguments, const Machine& machine) {
-  NcSetup setup;
-  for (const AxisName axis : kLinearAxes) {
-    if (!machine.has_axis(axis))
-      throw InputError({}, fmt::format("the machine has no axis {}", letter_of(axis)),
-                       "programs are compensated on machines with X, Y and Z");
-    setup.home[direction_of(axis)] = machine.axis(axis).home;
-  }
+  NcSetup setup = nc_setup(machine);
   for (const std::string& text : arguments.work_offsets) add_work_offset(text, setup);
   for (const std::string& text : arguments.tool_lengths) add_tool_length(text, setup);
   if (!arguments.start.empty()) setup.start = three_coordinates("--start", arguments.start);
@@ -97,14 +83,6 @@ NcSetup program_setup(const ProgramSetupArguments& arguments, const Machine& mac
     setup.length_unit = arguments.units == "inch" ? kMetrePerInch : kMetrePerMillimetre;
   if (!arguments.block_delete.empty()) setup.block_delete = arguments.block_delete == "on";
   return setup;
-}
-
-FunctionalPoint functional_point(const Machine& machine, const std::string& tool,
-                                 const std::string& lengths_from) {
-  FunctionalPoint point;
-  point.without_length = offset_of(machine, tool);
-  if (!lengths_from.empty()) point.lengths_from = offset_of(machine, lengths_from);
-  return point;
 }
 
 }  // namespace volcal::cli

@@ -19,10 +19,4 @@ struct ProgramSetupArguments {
 /// Throws InputError naming the option.
 NcSetup program_setup(const ProgramSetupArguments& arguments, const Machine& machine);
 
-/// The functional point while no tool length is active: that of `tool`, by default the machine's first one;
-/// tool lengths count from the spindle reference, or are differences to the tool `lengths_from`. Throws
-/// InputError.
-FunctionalPoint functional_point(const Machine& machine, const std::string& tool,
-                                 const std::string& lengths_from);
-
 }  // namespace volcal::cli

@@ -47,8 +47,9 @@ struct DeclaredSetup {
 
 class CampaignReader {
  public:
-  CampaignReader(TomlDocument document, const std::string& file)
-      : document_(std::move(document)), root_(document_.root()) {
+  /// `in_memory`: the setups name no files.
+  CampaignReader(TomlDocument document, const std::string& file, bool in_memory = false)
+      : document_(std::move(document)), root_(document_.root()), in_memory_(in_memory) {
     campaign_.file = file;
     document_.require_format(kCampaignFormat);
   }
@@ -69,7 +70,7 @@ class CampaignReader {
     if (noise_) repeatability_ = read_repeatability(*noise_).value_or(0.0);
     for (const TomlTable& table : root_.required_tables("setups", kNoSetups))
       declared_.push_back(read_setup(table));
-    reject_readings_given_twice();
+    if (!in_memory_) reject_readings_given_twice();
     if (noise_) know_all_noise_keys();
     document_.reject_unknown();
   }
@@ -81,9 +82,26 @@ class CampaignReader {
   }
 
   Campaign with_readings() {
+    return with_readings([&](std::size_t setup) {
+      const DeclaredSetup& declared = declared_[setup];
+      return CsvTable::read(declared.setup.data, declared.format, declared.data_place);
+    });
+  }
+
+  Campaign with_readings(const std::vector<std::vector<NumberColumn>>& readings) {
+    return with_readings([&](std::size_t setup) {
+      return CsvTable::of_columns(readings.at(setup), "readings of " + declared_[setup].setup.name);
+    });
+  }
+
+ private:
+  /// `table_of`: the readings of a setup by its place.
+  template <class TableOf>
+  Campaign with_readings(const TableOf& table_of) {
     std::vector<std::vector<UnusedColumn>> unused;
-    for (DeclaredSetup& declared : declared_) {
-      const CsvTable table = CsvTable::read(declared.setup.data, declared.format, declared.data_place);
+    for (std::size_t setup = 0; setup < declared_.size(); ++setup) {
+      DeclaredSetup& declared = declared_[setup];
+      const CsvTable table = table_of(setup);
       ColumnChoice choice = choose_columns(table, declared.mapping, campaign_.machine, *declared.instrument);
       declared.setup.readings =
           read_readings(table, declared.mapping, choice, campaign_.machine, *declared.instrument);
@@ -101,7 +119,6 @@ class CampaignReader {
     return campaign;
   }
 
- private:
   DeclaredSetup read_setup(const TomlTable& table) {
     DeclaredSetup declared;
     Setup& setup = declared.setup;
@@ -109,10 +126,7 @@ class CampaignReader {
     setup.name = read_name(table);
     declared.instrument = &read_instrument(table);
     setup.instrument = declared.instrument->name;
-    const std::string data = table.required_text("data");
-    if (data.empty()) table.fail("data", table.path() + ".data is empty", "name the file of the readings");
-    setup.data = resolve_path(campaign_.file, data);
-    declared.data_place = table.place("data");
+    if (!in_memory_) read_data(table, declared);
     setup.tool = read_tool(table);
     setup.options = table.options(declared.instrument->keys);
     read_noise(table, *declared.instrument, setup);
@@ -121,6 +135,13 @@ class CampaignReader {
     declared.leave_out = read_leave_out(table);
     declared.directions_as_recorded = as_recorded(table).value_or(directions_as_recorded_);
     return declared;
+  }
+
+  void read_data(const TomlTable& table, DeclaredSetup& declared) const {
+    const std::string data = table.required_text("data");
+    if (data.empty()) table.fail("data", table.path() + ".data is empty", "name the file of the readings");
+    declared.setup.data = resolve_path(campaign_.file, data);
+    declared.data_place = table.place("data");
   }
 
   /// Two setups that read the same columns of the same file with the same instrument, tool and station would
@@ -265,6 +286,7 @@ class CampaignReader {
 
   TomlDocument document_;
   TomlTable root_;
+  bool in_memory_;
   Campaign campaign_;
   std::optional<TomlTable> noise_;
   double repeatability_ = 0.0;
@@ -285,6 +307,13 @@ Campaign read_campaign_description(const std::string& path) {
   CampaignReader reader(TomlDocument::read(path), path);
   reader.read_setups(reader.read_named_machine());
   return reader.description();
+}
+
+Campaign campaign_in_memory(const std::string& text, const std::string& name, const Machine& machine,
+                            const std::vector<std::vector<NumberColumn>>& readings) {
+  CampaignReader reader(TomlDocument::parse(text, name), name, true);
+  reader.read_setups(machine);
+  return reader.with_readings(readings);
 }
 
 Campaign parse_campaign_description(const std::string& text, const std::string& file,

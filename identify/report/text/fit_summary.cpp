@@ -10,6 +10,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/report/values/error_range.h"
 #include "volcal/identify/report/values/residual_sample.h"
 #include "volcal/identify/report/values/surface_values.h"
 #include "volcal/identify/words/noise_words.h"
@@ -44,33 +45,9 @@ std::string reference_line(const FitResult& result) {
          temperature + ".\n";
 }
 
-/// Values of an error where it was measured, SI; NaN where nothing was.
-struct ErrorRange {
-  double low = std::nan(""), high = std::nan("");
-  double expanded = std::nan("");  ///< largest U95
-
-  double magnitude() const { return std::fmax(std::abs(low), std::abs(high)); }
-};
-
-ErrorRange range_of(const FitResult& result, const std::vector<ErrorTableRow>& table,
-                    const Observability& error) {
-  if (const ParameterBlock* block = result.layout.find_block(error.symbol)) {
-    const double value = result.parameters[block->offset];
-    return {value, value, result.coverage_factor * error.u_rms};
-  }
-  ErrorRange range;
-  for (const ErrorTableRow& row : table) {
-    if (row.symbol != error.symbol || row.extrapolated) continue;
-    range.low = std::fmin(range.low, row.value);
-    range.high = std::fmax(range.high, row.value);
-    range.expanded = std::fmax(range.expanded, result.coverage_factor * row.u);
-  }
-  return range;
-}
-
 void add_function_row(const FitResult& result, const std::vector<ErrorTableRow>& table,
                       const Observability& error, TextTable& text) {
-  const ErrorRange range = range_of(result, table, error);
+  const report::ErrorRange range = report::error_range(result, table, error);
   const auto symbol = ErrorSymbol::parse(error.symbol);
   const bool rotation = symbol && is_rotation(symbol->component);
   const auto value = [](double si) { return fixed_number(si * kPerMicro, 2); };
@@ -215,12 +192,7 @@ bool is_angle(const FitResult& result, const std::string& symbol) {
   return parsed && is_rotation(parsed->component);
 }
 
-bool is_effect(const FitResult& result, const Observability& error) {
-  const ParameterBlock* block = result.layout.find_block(error.symbol);
-  return block != nullptr && block->kind == ParameterKind::Effect;
-}
-
-void extend_extremes(const Observability& error, const ErrorRange& range, ErrorExtremes& extremes) {
+void extend_extremes(const Observability& error, const report::ErrorRange& range, ErrorExtremes& extremes) {
   if (range.magnitude() * kPerMicro >= extremes.value) {
     extremes.value = range.magnitude() * kPerMicro;
     extremes.largest = error.symbol;
@@ -238,10 +210,11 @@ std::string errors_lines(const FitResult& result) {
   std::vector<std::string> invisible;
   std::size_t errors = 0;
   for (const Observability& error : result.rank.errors) {
-    if (is_effect(result, error)) continue;
+    if (report::is_amplitude(result, error)) continue;
     ++errors;
     if (error.visible) {
-      extend_extremes(error, range_of(result, table, error), extremes[is_angle(result, error.symbol)]);
+      extend_extremes(error, report::error_range(result, table, error),
+                      extremes[is_angle(result, error.symbol)]);
     } else {
       invisible.push_back(error.symbol);
     }
@@ -262,7 +235,7 @@ std::string effects_lines(const FitResult& result) {
   std::string text;
   std::size_t shown = 0, more = 0;
   for (const Observability& error : result.rank.errors) {
-    if (!is_effect(result, error)) continue;
+    if (!report::is_amplitude(result, error)) continue;
     if (shown++ >= kLeadingEffects) {
       ++more;
       continue;

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <utility>
 
+#include "tests/support/effect_campaign.h"
 #include "tests/support/hidden_studies.h"
 #include "tests/support/search_states.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/effects/effect_keys.h"
 
 namespace volcal {
 namespace {
@@ -105,39 +107,42 @@ TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
   EXPECT_EQ(member.at.size(), 3U);
 }
 
-EffectFinding labelled(const char* label) {
+EffectFinding reversal_of(const std::string& symbol) {
   EffectFinding effect;
-  effect.label = label;
+  effect.spec = effect_spec("reversal", {{"symbol", symbol}});
+  effect.label = "reversal " + symbol;
   return effect;
 }
 
-std::vector<std::string> labels_of(const std::vector<EffectFinding>& effects) {
-  std::vector<std::string> labels;
-  for (const EffectFinding& each : effects) labels.push_back(each.label);
-  return labels;
+std::vector<std::string> symbols_of(const ModelSpec& model) {
+  std::vector<std::string> symbols;
+  for (const EffectSpec& each : model.effects) symbols.push_back(*each.options.text("symbol"));
+  return symbols;
 }
 
 /// A model for every member of every set, the other sets at what was chosen; finer functions are no effect.
 TEST(AlternativeSets, HaveAModelForEveryMember) {
-  using Labels = std::vector<std::string>;
+  using Symbols = std::vector<std::string>;
   Diagnosis diagnosis;
-  diagnosis.effects = {labelled("named")};
-  diagnosis.one_of = {labelled("a"), labelled("b")};
-  EffectFinding finer = labelled("finer");
+  diagnosis.effects = {reversal_of("EXX")};
+  diagnosis.one_of = {reversal_of("EYX"), reversal_of("EZX")};
+  EffectFinding finer;
   finer.resolution = true;
-  diagnosis.further_one_of = {{labelled("c"), finer, labelled("d")}};
+  diagnosis.further_one_of = {{reversal_of("EYY"), finer, reversal_of("EZZ")}};
   diagnosis.sets.resize(2);
   diagnosis.sets[0].chosen = 1;
   diagnosis.sets[0].members.resize(2);
   diagnosis.sets[1].chosen = 0;
   diagnosis.sets[1].members.resize(3);
-  EXPECT_EQ(labels_of(accepted_effects(diagnosis)), (Labels{"named", "b", "c"}));
-  const std::vector<AlternativeModel> models = alternative_models(diagnosis);
-  ASSERT_EQ(models.size(), 2U);
-  EXPECT_EQ(models[0].file, "alternative-1-1.toml");
-  EXPECT_EQ(labels_of(models[0].effects), (Labels{"named", "a", "c"}));
-  EXPECT_EQ(models[1].file, "alternative-2-3.toml");
-  EXPECT_EQ(labels_of(models[1].effects), (Labels{"named", "b", "d"}));
+  const std::vector<OfferedModel> models =
+      offered_models(ModelSpec{}, testing_support::effect_campaign(), diagnosis);
+  ASSERT_EQ(models.size(), 3U);
+  EXPECT_EQ(models[0].file, "extended.toml");
+  EXPECT_EQ(symbols_of(models[0].model), (Symbols{"EXX", "EZX", "EYY"}));
+  EXPECT_EQ(models[1].file, "alternative-1-1.toml");
+  EXPECT_EQ(symbols_of(models[1].model), (Symbols{"EXX", "EYX", "EYY"}));
+  EXPECT_EQ(models[2].file, "alternative-2-3.toml");
+  EXPECT_EQ(symbols_of(models[2].model), (Symbols{"EXX", "EZX", "EZZ"}));
 }
 
 }  // namespace

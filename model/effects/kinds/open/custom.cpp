@@ -139,6 +139,7 @@ std::unique_ptr<FormulaEffect> make_custom(const EffectTable& table) {
         return formula.values(view, shape);
       },
       [formula](const Campaign& campaign, const SourcePlace& /*place*/) { formula.check(campaign); });
+  effect->be_expression();
   for (const std::string& parameter : formula.parameters()) {
     effect->add_shape({.label = label + ": " + parameter,
                        .key = parameter,

@@ -1,6 +1,4 @@
-#include "volcal/identify/cli/options/named_effect.h"
-
-#include <fmt/format.h>
+#include "volcal/identify/criticism/catalogue/named_effect.h"
 
 #include <vector>
 
@@ -8,7 +6,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
 
-namespace volcal::cli {
+namespace volcal {
 namespace {
 
 std::vector<std::string> parts_of(const std::string& text) {
@@ -58,4 +56,4 @@ EffectSpec named_effect(const std::string& option, const std::string& text, cons
                    "choose one of " + names);
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal

@@ -1,15 +1,15 @@
 #pragma once
-/// Effects as the user names them on the command line.
+/// Effects as a user names them.
 
 #include <string>
 
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/model_spec.h"
 
-namespace volcal::cli {
+namespace volcal {
 
 /// KIND:TARGET, or more of KIND:TARGET:DRIVER:SHAPE where that is not one effect. Throws InputError, naming
 /// the option, when no effect or several effects that could act in the campaign are meant.
 EffectSpec named_effect(const std::string& option, const std::string& text, const Campaign& campaign);
 
-}  // namespace volcal::cli
+}  // namespace volcal

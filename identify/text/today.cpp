@@ -1,4 +1,4 @@
-#include "volcal/identify/cli/today.h"
+#include "volcal/identify/text/today.h"
 
 #include <fmt/chrono.h>
 
@@ -8,7 +8,7 @@
 
 #include "volcal/model/description/errors.h"
 
-namespace volcal::cli {
+namespace volcal {
 namespace {
 
 constexpr const char* kFixedTime = "SOURCE_DATE_EPOCH";
@@ -32,10 +32,12 @@ std::time_t present_time() {
   return fixed == nullptr ? std::time(nullptr) : fixed_time(fixed);
 }
 
+std::string present_time_text() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(present_time())); }
+
 std::string today() {
   const std::time_t now = present_time();
   const bool is_fixed = std::getenv(kFixedTime) != nullptr;
   return fmt::format("{:%Y-%m-%d}", is_fixed ? fmt::gmtime(now) : fmt::localtime(now));
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal

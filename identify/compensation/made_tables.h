@@ -1,0 +1,32 @@
+#pragma once
+/// Tables made, read back and judged: the whole job of `volcal tables`.
+
+#include <vector>
+
+#include "volcal/identify/compensation/table_format.h"
+#include "volcal/identify/compensation/volume_check.h"
+
+namespace volcal {
+
+/// How closely tables follow the ideal compensation unless the user says otherwise, m.
+inline constexpr double kDefaultTableTolerance = 0.2e-6;
+
+/// Tables that were made, and what they leave.
+struct MadeTables {
+  const TableFormat* format = nullptr;
+  TableFormatOptions options;  ///< with the step that was chosen
+  StepChoice step;
+  double tolerance = 0.0;  ///< m; 0 = the step was given or is the format's own
+  std::vector<TableFile> files;
+  CompensationTables read_back;
+  VolumeCheck check;
+  std::vector<Finding> effects_left_out;
+};
+
+/// `options.step` 0: the largest round step at which the tables follow the ideal compensation within
+/// `tolerance`, m, 0 = kDefaultTableTolerance; a format with positions of its own keeps those where no
+/// tolerance is given. Throws InputError.
+MadeTables make_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
+                       double tolerance = 0.0);
+
+}  // namespace volcal

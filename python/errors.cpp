@@ -1,0 +1,34 @@
+#include "volcal/model/description/errors.h"
+
+#include <exception>
+#include <filesystem>
+
+#include "volcal/python/arrays.h"
+#include "volcal/python/bindings.h"
+
+namespace volcal::python {
+namespace {
+
+/// volcal.InputError, which is defined in Python.
+void raise_input_error(const InputError& error) {
+  const py::object type = py::module_::import("volcal").attr("InputError");
+  const py::object value = type(text_of(error.problem()), text_of(error.remedy()),
+                                text_of(error.place().file), error.place().line, text_of(error.what()));
+  PyErr_SetObject(type.ptr(), value.ptr());
+}
+
+}  // namespace
+
+void define_errors(py::module_& /*module*/) {
+  py::register_local_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const InputError& error) {
+      raise_input_error(error);
+    } catch (const std::filesystem::filesystem_error& error) {
+      PyErr_SetObject(PyExc_OSError, text_of(error.what()).ptr());
+    }
+  });
+}
+
+}  // namespace volcal::python

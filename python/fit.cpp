@@ -1,0 +1,116 @@
+#include "volcal/identify/solve/fit.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "volcal/identify/criticism/screening.h"
+#include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/solve/fit_words.h"
+#include "volcal/python/arrays.h"
+#include "volcal/python/long_work.h"
+#include "volcal/python/model.h"
+#include "volcal/python/result.h"
+
+namespace volcal::python {
+namespace {
+
+/// The call again, options that are not the default in it.
+class CallText {
+ public:
+  explicit CallText(std::string begin) : text_(std::move(begin)) {}
+  void add(const std::string& name, const std::string& word, const std::string& otherwise) {
+    if (word != otherwise) text_ += fmt::format(", {}=\"{}\"", name, word);
+  }
+  void add(const std::string& name, bool flag, bool otherwise) {
+    if (flag != otherwise) text_ += fmt::format(", {}={}", name, flag ? "True" : "False");
+  }
+  std::string text() const { return text_ + ")"; }
+
+ private:
+  std::string text_;
+};
+
+Result fit_campaign(const std::shared_ptr<Campaign>& campaign, const Model* model,
+                    const std::string& outliers, const std::string& robust, const std::string& solver,
+                    const std::string& noise, int threads, bool keep_stated_sigma, bool first_order,
+                    bool screening, const py::object& progress) {
+  FitOptions options;
+  options.threads = threads;
+  options.outliers = outlier_policy(outliers);
+  options.loss = robust_loss(robust);
+  options.solver = solver_kind(solver);
+  options.noise = noise_policy(noise);
+  options.variance_components = !keep_stated_sigma;
+  options.exact_kinematics = !first_order;
+  options.progress = progress_to(progress);
+  CallText call(fmt::format("volcal.fit(volcal.read_campaign(\"{}\")", campaign->file));
+  if (model != nullptr)
+    call = CallText(fmt::format("volcal.fit(volcal.read_campaign(\"{}\"), model=\"{}\"", campaign->file,
+                                model->spec.file));
+  call.add("outliers", outliers, "list");
+  call.add("robust", robust, "none");
+  call.add("solver", solver, "compressed");
+  call.add("noise", noise, "auto");
+  call.add("keep_stated_sigma", keep_stated_sigma, false);
+  call.add("first_order", first_order, false);
+  call.add("screening", screening, true);
+  return without_lock([&] {
+    Result fitted{fit(*campaign, model != nullptr ? model->spec : ModelSpec{}, options), campaign};
+    if (screening) screen_fit(*campaign, options, fitted.result);
+    fitted.result.provenance = provenance_of(call.text());
+    return fitted;
+  });
+}
+
+py::dict validation_figures(const Campaign& campaign, const Result& result, int threads) {
+  const ValidationFigures figures =
+      without_lock([&] { return validate(campaign, result.result, threads).figures; });
+  py::dict dict;
+  dict["rms_before"] = figures.rms_before;
+  dict["rms_after"] = figures.rms_after;
+  dict["max_before"] = figures.max_before;
+  dict["max_after"] = figures.max_after;
+  dict["angle_rms_before"] = figures.angle_rms_before;
+  dict["angle_rms_after"] = figures.angle_rms_after;
+  dict["angle_max_before"] = figures.angle_max_before;
+  dict["angle_max_after"] = figures.angle_max_after;
+  dict["readings"] = figures.lengths;
+  dict["angle_readings"] = figures.angles;
+  dict["reduced_chi2"] = figures.reduced_chi2;
+  dict["coverage95"] = figures.coverage95;
+  return dict;
+}
+
+}  // namespace
+
+void define_fit(py::module_& module) {
+  module.def("fit", &fit_campaign, py::arg("campaign"), py::arg("model") = py::none(), py::kw_only(),
+             py::arg("outliers") = "list", py::arg("robust") = "none", py::arg("solver") = "compressed",
+             py::arg("noise") = "auto", py::arg("threads") = 0, py::arg("keep_stated_sigma") = false,
+             py::arg("first_order") = false, py::arg("screening") = true, py::arg("progress") = py::none(),
+             "Identifies the errors of a machine from a campaign, as `volcal fit` does: the same numbers to "
+             "the last bit.\n\n"
+             "model: None = all 21 errors, cubic B-splines, automatic knots.\n"
+             "outliers: \"list\" or \"remove\" readings that the w-test flags. robust: loss \"none\", "
+             "\"huber\", \"cauchy\". "
+             "solver: \"compressed\" or \"per-reading\". noise: \"auto\" or \"white\".\n"
+             "threads: 0 = all; results do not depend on it. keep_stated_sigma: no variance components, no "
+             "correlated noise. "
+             "first_order: first-order kinematics only. screening: end with the scans of the residuals.\n"
+             "progress: called with the stage and the share of the work that is done, 0 to 1; what it raises "
+             "ends the work, as "
+             "does Ctrl-C when the next stage begins. Raises InputError.");
+  module.def("validate", &validation_figures, py::arg("campaign"), py::arg("result"), py::kw_only(),
+             py::arg("threads") = 0,
+             "How well a result predicts a campaign, as `volcal validate`: stations and other parameters of "
+             "its setups "
+             "are estimated anew, errors are not. rms_before, max_before (nominal machine), rms_after, "
+             "max_after, m; "
+             "angle_..., rad; readings, angle_readings: counts; reduced_chi2; coverage95: share of readings "
+             "within the "
+             "95 % interval, 0 to 1. Raises InputError.");
+}
+
+}  // namespace volcal::python

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/report/text/compensation_text.h"
+#include "volcal/identify/text/atomic_folder.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/units.h"
+#include "volcal/python/arrays.h"
+#include "volcal/python/findings.h"
+#include "volcal/python/long_work.h"
+#include "volcal/python/result.h"
+
+namespace volcal::python {
+namespace {
+
+const TableFormat& format_named(const std::string& name) {
+  const TableFormat* format = find_table_format(name);
+  if (format != nullptr) return *format;
+  for (const RefusedFormat& refused : refused_table_formats()) {
+    if (refused.name == name)
+      throw InputError({}, fmt::format("{} is not written: {}", name, refused.reason),
+                       "choose another format");
+  }
+  throw InputError({}, name + " is no table format",
+                   fmt::format("there are {}", fmt::join(table_format_names(), ", ")));
+}
+
+MadeTables tables_of(const Result& result, const std::string& format_name, const std::string& type,
+                     const std::string& tool, double step_mm, double tolerance_um, const py::dict& settings,
+                     const py::dict& conditions, int positions, int grid, const std::string& zero,
+                     const std::string& run, const py::dict& record) {
+  if (zero != "mean" && zero != "plus")
+    throw InputError({}, "zero \"" + zero + "\" is not known", "choose \"mean\" or \"plus\"");
+  const TableFormat& format = format_named(format_name);
+  TableFormatOptions options;
+  options.functions.positions = positions;
+  options.functions.zero_plus = zero == "plus";
+  options.grid_per_axis = grid;
+  options.type = type.empty() ? format.supported : CompensationType::parse(type);
+  options.tool = tool;
+  options.step = step_mm * kMetrePerMillimetre;
+  options.settings = named_texts(settings);
+  options.conditions = stated_conditions(result.result, named_texts(conditions));
+  options.record = {run, named_texts(record)};
+  return without_lock(
+      [&] { return make_tables(format, result.result, options, tolerance_um * kMetrePerMicrometre); });
+}
+
+py::dict files_of(const MadeTables& made) {
+  py::dict files;
+  for (const TableFile& file : made.files) files[text_of(file.name)] = py::bytes(whole_content(file));
+  return files;
+}
+
+void write_tables_folder(const MadeTables& made, const std::filesystem::path& path) {
+  without_lock([&] {
+    AtomicFolder folder(path.string());
+    for (const TableFile& file : made.files) folder.write(file);
+    folder.commit();
+  });
+}
+
+py::dict format_summaries() {
+  py::dict formats;
+  for (const TableFormat* format : table_formats())
+    formats[py::str(std::string(format->name))] = py::str(std::string(format->summary));
+  return formats;
+}
+
+}  // namespace
+
+void define_tables(py::module_& module) {
+  py::class_<MadeTables>(module, "Tables", "Tables for a controller, and what they leave of the errors.")
+      .def_property_readonly("files", &files_of, "Content of every file by its name, bytes.")
+      .def_property_readonly(
+          "step_mm", [](const MadeTables& made) { return made.options.step / kMetrePerMillimetre; },
+          "Step between the positions of a table, mm; 0 where the format has positions of its own.")
+      .def_property_readonly(
+          "type", [](const MadeTables& made) { return made.options.type.name(); },
+          "What is compensated (ISO/TR 16907, 8.2): \"L-VOL\".")
+      .def_property_readonly(
+          "error_left",
+          [](const MadeTables& made) { return from_json(json_text(volume_check_json(made.check), -1)); },
+          "Errors in the volume before, with the ideal compensation and with the tables as the controller "
+          "reads them, "
+          "um.")
+      .def_property_readonly(
+          "verified", [](const MadeTables& made) { return text_of(std::string(made.format->verified)); },
+          "On what the format was verified.")
+      .def_property_readonly(
+          "effects_left_out", [](const MadeTables& made) { return findings_of(made.effects_left_out); },
+          "What was identified and is in no table.")
+      .def("write", &write_tables_folder, py::arg("path"),
+           "Writes the files into a folder. Raises InputError.")
+      .def("__repr__", [](const MadeTables& made) {
+        return text_of(fmt::format("<volcal.Tables {} {}, {} files>", made.format->name,
+                                   made.options.type.name(), made.files.size()));
+      });
+  module.def(
+      "tables", &tables_of, py::arg("result"), py::kw_only(), py::arg("format") = "csv", py::arg("type") = "",
+      py::arg("tool") = "", py::arg("step_mm") = 0.0, py::arg("tolerance_um") = 0.0,
+      py::arg("settings") = py::dict(), py::arg("conditions") = py::dict(), py::arg("positions") = 0,
+      py::arg("grid") = 5, py::arg("zero") = "mean", py::arg("run") = "", py::arg("record") = py::dict(),
+      "Tables of an identified machine for a controller, as `volcal tables`: the same bytes.\n\n"
+      "format: a name of table_formats(). type: \"L-POS\", \"L-STR\", \"L-SQU\", \"L-ANG\" joined by +, or "
+      "\"L-VOL\"; \"\" = all that the format can do. tool: \"\" = the machine's first. step_mm: 0 = chosen "
+      "so that "
+      "the tables follow the ideal compensation within tolerance_um (0 = 0.2). settings: of the format, by "
+      "name. "
+      "conditions: {\"T_air\": 23.3, \"time_s\": 3600}. positions, grid, zero, run (which identification) "
+      "and "
+      "record: of csv tables. Raises InputError.");
+  module.def("table_formats", &format_summaries, "Table formats with a summary each.");
+}
+
+}  // namespace volcal::python

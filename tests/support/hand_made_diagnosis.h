@@ -49,12 +49,14 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.effects = {reversal};
   diagnosis.one_of = {other};
   diagnosis.further_one_of = {{third, other}};
-  diagnosis.sets = {{.chosen = 0, .members = {{2e-6, 1e-6, 0.5e-6, 1.5e-6, 0.0, 0.0, {0.1, 0.2, 0.3}}}},
-                    {.chosen = 1,
-                     .members = {{2.5e-6, 1.25e-6, 1e-6, 1.5e-6, 4e-6, 0.5e-6, {0.25, 0.5, 0.125}},
-                                 {2e-6, 1e-6, 0.5e-6, 1.5e-6, 0.0, 0.0, {0.1, 0.2, 0.3}}},
-                     .farthest = 0,
-                     .matters = true}};
+  const MemberFinding chosen{2e-6, 1e-6, 0.5e-6, 1.5e-6, 0.0, 0.0, {0.1, 0.2, 0.3}};
+  diagnosis.sets.resize(2);
+  diagnosis.sets[0].chosen = 0;
+  diagnosis.sets[0].members = {chosen};
+  diagnosis.sets[1].chosen = 1;
+  diagnosis.sets[1].members = {{2.5e-6, 1.25e-6, 1e-6, 1.5e-6, 4e-6, 0.5e-6, {0.25, 0.5, 0.125}}, chosen};
+  diagnosis.sets[1].farthest = 0;
+  diagnosis.sets[1].matters = true;
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
   diagnosis.unknown = {{{"x", "time"}, {}, "Z", "EBX", 0.3e-6, -6.5},

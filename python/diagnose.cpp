@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/diagnosis.h"
@@ -15,6 +16,7 @@
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/python/arrays.h"
@@ -31,6 +33,7 @@ struct DiagnosisOf {
   Diagnosis diagnosis;
   std::shared_ptr<const Campaign> campaign;  ///< null where it was read from files
   ModelSpec model;
+  std::shared_ptr<const FitResult> fit = {};  ///< null where it was read from files
 
   const Campaign& given_campaign() const {
     if (campaign != nullptr) return *campaign;
@@ -53,7 +56,9 @@ DiagnosisOf diagnose_campaign(const std::shared_ptr<Campaign>& campaign, const M
   options.progress = progress_to(progress);
   return without_lock([&] {
     DiagnosisOf of{{}, campaign, model != nullptr ? model->spec : ModelSpec{}};
-    of.diagnosis = diagnose(*campaign, of.model, options);
+    DiagnosedModel diagnosed = diagnose_model(*campaign, of.model, options);
+    of.diagnosis = std::move(diagnosed.diagnosis);
+    of.fit = std::make_shared<const FitResult>(std::move(diagnosed.fit));
     return of;
   });
 }
@@ -62,9 +67,11 @@ void write_diagnosis(const DiagnosisOf& of, const std::filesystem::path& path, b
   const Campaign& campaign = of.given_campaign();
   without_lock([&] {
     std::map<std::string, std::string> more = {{"diagnosis.txt", diagnosis_text(of.diagnosis)}};
-    if (report && report_available())
-      more["report.html"] = report_html(of.diagnosis, campaign,
-                                        {.date = today(), .provenance = provenance_of("volcal.diagnose")});
+    if (report && report_available()) {
+      const VolumeCauses causes = volume_causes(*of.fit, accepted_effects(of.diagnosis));
+      more["report.html"] = report_html(
+          of.diagnosis, campaign, {.date = today(), .provenance = provenance_of("volcal.diagnose")}, &causes);
+    }
     write_diagnosis_folder(of.diagnosis, campaign.machine, offered_models(of.model, campaign, of.diagnosis),
                            path.string(), more);
   });

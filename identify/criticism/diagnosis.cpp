@@ -72,22 +72,25 @@ void compare_hypotheses(const ModelState& reached, const FitResult& result, cons
 
 }  // namespace
 
-Diagnosis diagnose(const Campaign& campaign, const ModelSpec& model, const DiagnoseOptions& options) {
+DiagnosedModel diagnose_model(const Campaign& campaign, const ModelSpec& model,
+                              const DiagnoseOptions& options) {
   constexpr double kShareOfFit = 0.3;
   FitOptions fit_options;
   fit_options.threads = options.threads;
   fit_options.outliers = OutlierPolicy::Remove;
   fit_options.noise = NoisePolicy::White;
-  if (!options.progress) return diagnose(campaign, fit(campaign, model, fit_options), options);
-  fit_options.progress = [&](const std::string& stage, double done) {
-    options.progress("fit: " + stage, kShareOfFit * done);
-  };
-  const FitResult result = fit(campaign, model, fit_options);
   DiagnoseOptions after = options;
-  after.progress = [&](const std::string& stage, double done) {
-    options.progress(stage, kShareOfFit + (1.0 - kShareOfFit) * done);
-  };
-  return diagnose(campaign, result, after);
+  if (options.progress) {
+    fit_options.progress = [&](const std::string& stage, double done) {
+      options.progress("fit: " + stage, kShareOfFit * done);
+    };
+    after.progress = [&](const std::string& stage, double done) {
+      options.progress(stage, kShareOfFit + (1.0 - kShareOfFit) * done);
+    };
+  }
+  DiagnosedModel diagnosed{fit(campaign, model, fit_options), {}};
+  diagnosed.diagnosis = diagnose(campaign, diagnosed.fit, after);
+  return diagnosed;
 }
 
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {

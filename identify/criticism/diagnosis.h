@@ -32,9 +32,16 @@ struct DiagnoseOptions {
   std::function<void(const std::string& stage, double done)> progress;
 };
 
+/// A diagnosis with the fit that it is of.
+struct DiagnosedModel {
+  FitResult fit;
+  Diagnosis diagnosis;
+};
+
 /// Adjusts the campaign by the model as a diagnosis wants it, outliers removed and readings independent,
 /// since the diagnosis estimates the noise at every step anew; then diagnoses that.
-Diagnosis diagnose(const Campaign& campaign, const ModelSpec& model, const DiagnoseOptions& options);
+DiagnosedModel diagnose_model(const Campaign& campaign, const ModelSpec& model,
+                              const DiagnoseOptions& options);
 
 /// `result` must come from fit() of this campaign.
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options);

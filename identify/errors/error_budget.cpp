@@ -22,7 +22,7 @@ std::string cause_of(const Contribution& part) {
     case ContributionKind::Expansion:
       return "expansion of scales";
     case ContributionKind::Effect:
-      return "effects beyond the rigid body";
+      return kCauseOfEffects;
     case ContributionKind::Tool:
       return "tool";
     case ContributionKind::Location: {

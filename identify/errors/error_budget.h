@@ -16,6 +16,9 @@
 
 namespace volcal {
 
+/// The cause that stands for all effects of a model together.
+inline constexpr const char* kCauseOfEffects = "effects beyond the rigid body";
+
 struct BudgetLine {
   std::string name;             ///< of the contribution, or of the cause
   std::string depends_on;       ///< of a contribution

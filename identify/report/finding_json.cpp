@@ -2,10 +2,10 @@
 
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/words/effect_meanings.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal::report {
-namespace {}  // namespace
-
 Json finding_json(const EffectFinding& effect) {
   Json amplitudes = Json::array();
   for (const AmplitudeFigure& each : effect.amplitudes) {
@@ -23,6 +23,13 @@ Json finding_json(const EffectFinding& effect) {
           {"visible_fraction", rounded(effect.visible_fraction, 3)},
           {"resolution", effect.resolution},
           {"amplitudes", std::move(amplitudes)}};
+}
+
+Json meaning_json(const EffectName& name) {
+  const EffectMeaning* meaning = find_meaning(name.kind);
+  if (meaning != nullptr) return {{"plain", meaning->plain}, {"usual_causes", meaning->usual_causes}};
+  const EffectKind* kind = find_effect(name.kind);
+  return {{"plain", kind == nullptr ? "" : kind->schema().summary}, {"usual_causes", ""}};
 }
 
 Json binned_json(const BinnedMean& means, double centre_factor, double value_factor) {

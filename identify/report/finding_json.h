@@ -7,6 +7,9 @@ namespace volcal::report {
 
 /// label, kind, shape, log10_p, visible_fraction, resolution; amplitudes with value, U95, mdb in `unit`.
 Json finding_json(const EffectFinding& effect);
+/// plain, usual_causes (effect_meanings.h); of a kind of the user's own its summary, of a change of the model
+/// nothing.
+Json meaning_json(const EffectName& name);
 /// label, target, factor, unit; axes with title, places and dots; value and U95 in `unit`, those of the last
 /// axis next to each other; largest with its U95 and place; what is free.
 Json surface_json(const SurfaceFinding& surface);

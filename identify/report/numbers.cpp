@@ -17,6 +17,11 @@ Json rounded(double value, int digits) {
   return std::strtod(text, nullptr);
 }
 
+Json rounded_micrometres(double metres, int digits) {
+  constexpr double kPicometre = 1e-12;
+  return std::abs(metres) < kPicometre ? Json(0) : rounded(metres * kPerMicro, digits);
+}
+
 Json rounded_array(const std::vector<double>& values, double factor, int digits) {
   Json array = Json::array();
   for (const double value : values) array.push_back(rounded(value * factor, digits));

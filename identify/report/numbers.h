@@ -11,6 +11,8 @@ namespace volcal::report {
 /// `value` with `digits` significant decimal digits; not-a-number and infinity become null.
 Json rounded(double value, int digits = 5);
 Json rounded_array(const std::vector<double>& values, double factor, int digits = 5);
+/// A length in m as um; what is below a picometre is rounding and becomes 0.
+Json rounded_micrometres(double metres, int digits = 4);
 /// Lower triangle row by row, with the diagonal or without.
 Json rounded_triangle(const Eigen::MatrixXd& symmetric, int digits, bool with_diagonal);
 Json rounded_vector(const Eigen::Vector3d& vector, double factor, int digits = 5);

@@ -1,7 +1,7 @@
 #pragma once
-/// Sections of the reports, of a result, a diagnosis, a Monte Carlo study and a plan. A new section is one
-/// file in pages/ with a builder, one line in pages.cpp, and a renderer of the same kind with one line in
-/// web/src/pages.js.
+/// Sections of the reports, of a result, a diagnosis, a comparison, a validation, a Monte Carlo study and a
+/// plan. A new section is one file in pages/ with a builder, one line in pages.cpp, and a renderer of the
+/// same kind with one line in web/src/pages.js.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -31,10 +31,10 @@ struct PageInput {
 
 template <class Input>
 struct PageOf {
-  std::string_view kind;   ///< name of the renderer
-  std::string_view title;  ///< heading and entry of the section list
-  Json (*build)(const Input& input);
-  bool of_readings = false;  ///< left out of an aligned result, which has none
+  std::string_view kind;              ///< name of the renderer
+  std::string_view title;             ///< heading and entry of the section list
+  Json (*build)(const Input& input);  ///< null: there is nothing to show, the section is left out
+  bool of_readings = false;           ///< left out of an aligned result, which has none
 };
 
 using Page = PageOf<PageInput>;
@@ -56,6 +56,7 @@ Json computation_page(const PageInput& input);
 struct DiagnosisInput {
   const Diagnosis& diagnosis;
   const Campaign& campaign;
+  const VolumeCauses* causes = nullptr;
 };
 
 /// What a section of a Monte Carlo study's report is made from.
@@ -81,10 +82,33 @@ Json plan_layout_page(const PlanPageInput& input);
 Json plan_errors_page(const PlanPageInput& input);
 Json plan_detectable_page(const PlanPageInput& input);
 
+/// What a section of a comparison's or a validation's report is made from.
+struct ComparisonInput {
+  std::span<const ComparedModel> models;
+  std::span<const HeldOutModel> heldout;
+  const ValidationView* validation = nullptr;  ///< of a validation
+  const Campaign& campaign;
+};
+
+using ComparisonPage = PageOf<ComparisonInput>;
+std::span<const ComparisonPage> comparison_pages();
+std::span<const ComparisonPage> validation_pages();
+
+Json comparison_page(const ComparisonInput& input);
+Json validation_page(const ComparisonInput& input);
+Json circles_page(const ComparisonInput& input);
+Json positioning_page(const ComparisonInput& input);
+Json diagonals_page(const ComparisonInput& input);
+Json setup_residuals_page(const ComparisonInput& input);
+
 using DiagnosisPage = PageOf<DiagnosisInput>;
 std::span<const DiagnosisPage> diagnosis_pages();
+/// The one section of a picture.
+std::span<const DiagnosisPage> picture_pages();
 
+Json picture_page(const DiagnosisInput& input);
 Json story_page(const DiagnosisInput& input);
+Json volume_causes_page(const DiagnosisInput& input);
 Json evidence_page(const DiagnosisInput& input);
 Json added_variable_page(const DiagnosisInput& input);
 Json residual_variables_page(const DiagnosisInput& input);

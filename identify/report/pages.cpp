@@ -23,6 +23,7 @@ constexpr std::array kPages = {
 
 constexpr std::array kDiagnosisPages = {
     DiagnosisPage{"story", "What was missing", story_page},
+    DiagnosisPage{"volume_causes", "What makes the error in the volume", volume_causes_page},
     DiagnosisPage{"evidence", "Ranked evidence", evidence_page},
     DiagnosisPage{"confounding", "What the readings separate, and what to measure", confounding_page},
     DiagnosisPage{"added_variable", "The leading effect", added_variable_page},
@@ -32,6 +33,24 @@ constexpr std::array kDiagnosisPages = {
     DiagnosisPage{"autocorrelation", "Autocorrelation of the residuals", autocorrelation_page},
     DiagnosisPage{"detectable", "Smallest detectable effects", detectable_page},
     DiagnosisPage{"noise_model", "Noise model", noise_model_page},
+};
+
+constexpr std::array kPicturePages = {DiagnosisPage{"picture", "What was found first", picture_page}};
+
+constexpr ComparisonPage kCircles{"circles", "Circles of the ball-bar, ISO 230-4", circles_page};
+constexpr ComparisonPage kPositioning{"positioning", "Positioning of the axes, ISO 230-2", positioning_page};
+constexpr ComparisonPage kDiagonals{"diagonals", "Diagonals, ISO 230-6", diagonals_page};
+constexpr ComparisonPage kSetupResiduals{"setup_residuals", "Residuals by setup", setup_residuals_page};
+constexpr ComparisonPage kComparison{"comparison", "Where it fails", comparison_page};
+
+constexpr std::array kComparisonPages = {kComparison, kCircles, kPositioning, kDiagonals, kSetupResiduals};
+constexpr std::array kValidationPages = {
+    ComparisonPage{"validation", "Before and after", validation_page},
+    kComparison,
+    kCircles,
+    kPositioning,
+    kDiagonals,
+    kSetupResiduals,
 };
 
 constexpr std::array kMonteCarloPages = {
@@ -49,6 +68,9 @@ constexpr std::array kPlanPages = {
 
 std::span<const Page> pages() { return kPages; }
 std::span<const DiagnosisPage> diagnosis_pages() { return kDiagnosisPages; }
+std::span<const DiagnosisPage> picture_pages() { return kPicturePages; }
+std::span<const ComparisonPage> comparison_pages() { return kComparisonPages; }
+std::span<const ComparisonPage> validation_pages() { return kValidationPages; }
 std::span<const MonteCarloPage> montecarlo_pages() { return kMonteCarloPages; }
 std::span<const PlanPage> plan_pages() { return kPlanPages; }
 

@@ -1,6 +1,7 @@
 #include "volcal/identify/report/report.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/template_data.h"
@@ -70,7 +71,9 @@ std::string document(const std::string& title, const std::string& subtitle, cons
   document["pages"] = report::Json::array();
   for (const report::PageOf<Input>& page : pages) {
     if (page.of_readings && !has_readings) continue;
-    document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", page.build(input)}});
+    report::Json data = page.build(input);
+    if (data.is_null()) continue;
+    document["pages"].push_back({{"kind", page.kind}, {"title", page.title}, {"data", std::move(data)}});
   }
   return json_text(document, -1);
 }
@@ -104,18 +107,59 @@ std::string report_json(const FitResult& result, const Campaign& campaign, const
                   report::PageInput(result, campaign, options), !is_aligned);
 }
 
-std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {
+std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options,
+                        const VolumeCauses* causes) {
   return document(campaign.machine.name, "Where the model fails, and which effect is missing", options,
-                  report::diagnosis_pages(), report::DiagnosisInput{diagnosis, campaign});
+                  report::diagnosis_pages(), report::DiagnosisInput{diagnosis, campaign, causes});
 }
 
 std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options) {
   return filled_page(result.machine.name + " \u2013 volcal report", report_json(result, campaign, options));
 }
 
-std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options) {
+std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign, const ReportOptions& options,
+                        const VolumeCauses* causes) {
   return filled_page(campaign.machine.name + " \u2013 volcal diagnosis",
-                     report_json(diagnosis, campaign, options));
+                     report_json(diagnosis, campaign, options, causes));
+}
+
+ReportPicture diagnosis_picture(const Diagnosis& diagnosis, const Campaign& campaign,
+                                const ReportOptions& options) {
+  constexpr int kWidth = 1240;
+  constexpr int kHeightOfMap = 860, kHeightOfCurve = 640, kHeightOfPlot = 760;
+  const std::string json =
+      document(campaign.machine.name, "What was found first", {.date = options.date, .provenance = {}},
+               report::picture_pages(), report::DiagnosisInput{diagnosis, campaign});
+  const int height = diagnosis.surfaces.empty()                       ? kHeightOfPlot
+                     : diagnosis.surfaces.front().drivers.size() == 1 ? kHeightOfCurve
+                                                                      : kHeightOfMap;
+  return {filled_page(campaign.machine.name, json), kWidth, height};
+}
+
+std::string report_json(const ComparisonView& comparison, const Campaign& campaign,
+                        const ReportOptions& options) {
+  return document(campaign.machine.name, "Where a model fails to explain the readings", options,
+                  report::comparison_pages(),
+                  report::ComparisonInput{comparison.models, comparison.heldout, nullptr, campaign});
+}
+
+std::string report_html(const ComparisonView& comparison, const Campaign& campaign,
+                        const ReportOptions& options) {
+  return filled_page(campaign.machine.name + " \u2013 volcal comparison",
+                     report_json(comparison, campaign, options));
+}
+
+std::string report_json(const ValidationView& validation, const Campaign& campaign,
+                        const ReportOptions& options) {
+  return document(campaign.machine.name, "An identified model on readings", options,
+                  report::validation_pages(),
+                  report::ComparisonInput{validation.models, {}, &validation, campaign});
+}
+
+std::string report_html(const ValidationView& validation, const Campaign& campaign,
+                        const ReportOptions& options) {
+  return filled_page(campaign.machine.name + " \u2013 volcal validation",
+                     report_json(validation, campaign, options));
 }
 
 std::string report_json(const MonteCarloResult& study, const Machine& machine, const ReportOptions& options) {

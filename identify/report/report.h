@@ -1,18 +1,23 @@
 #pragma once
-/// The reports of a result, of a diagnosis, of a Monte Carlo study and of a plan: each one self-contained
-/// HTML page with interactive plots, readable without a network.
+/// The reports of a result, of a diagnosis, of a comparison, of a validation, of a Monte Carlo study and of a
+/// plan: each one self-contained HTML page with interactive plots, readable without a network.
 ///
 /// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
 /// its data and one JavaScript renderer; page.h and web/src/pages.js are the two registration tables.
 
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
+#include "volcal/identify/report/values/compared_model.h"
+#include "volcal/identify/report/values/volume_causes.h"
+#include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/evaluate.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
@@ -34,9 +39,43 @@ std::string report_json(const FitResult& result, const Campaign& campaign, const
 /// The whole page. Throws std::runtime_error with how_to_get_report() when it is not available.
 std::string report_html(const FitResult& result, const Campaign& campaign, const ReportOptions& options = {});
 /// The same for a diagnosis that diagnose() made of the campaign (not one read back: files hold no figures).
+/// `causes`: what the error in the volume comes from; null = not shown.
 std::string report_json(const Diagnosis& diagnosis, const Campaign& campaign,
-                        const ReportOptions& options = {});
+                        const ReportOptions& options = {}, const VolumeCauses* causes = nullptr);
 std::string report_html(const Diagnosis& diagnosis, const Campaign& campaign,
+                        const ReportOptions& options = {}, const VolumeCauses* causes = nullptr);
+
+/// A page that is made to be pictured: no list of sections, no controls.
+struct ReportPicture {
+  std::string html;
+  int width = 0;  ///< px that it fills
+  int height = 0;
+};
+/// What a diagnosis found first: its surface or curve, else the added-variable plot of the leading effect.
+ReportPicture diagnosis_picture(const Diagnosis& diagnosis, const Campaign& campaign,
+                                const ReportOptions& options = {});
+
+/// One or two models on the readings of a campaign.
+struct ComparisonView {
+  std::span<const ComparedModel> models;
+  std::span<const HeldOutModel> heldout = {};
+};
+/// The same for a comparison.
+std::string report_json(const ComparisonView& comparison, const Campaign& campaign,
+                        const ReportOptions& options = {});
+std::string report_html(const ComparisonView& comparison, const Campaign& campaign,
+                        const ReportOptions& options = {});
+
+/// An identified model on readings that it may not have been made from; `models`: before and after.
+struct ValidationView {
+  const ValidationFigures& figures;
+  const FittedReadings& fitted;
+  std::span<const ComparedModel> models;
+};
+/// The same for a validation.
+std::string report_json(const ValidationView& validation, const Campaign& campaign,
+                        const ReportOptions& options = {});
+std::string report_html(const ValidationView& validation, const Campaign& campaign,
                         const ReportOptions& options = {});
 
 /// The same for a Monte Carlo study of the machine.

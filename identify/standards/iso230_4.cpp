@@ -100,6 +100,11 @@ std::optional<CircularPath> evaluate_path(const std::vector<CircleReading>& read
   return path;
 }
 
+/// A sense that was not run leaves nothing open.
+bool is_full(const std::optional<CircularPath>& path) {
+  return !path || path->centring == Centring::LeastSquares;
+}
+
 /// Value at 0 of the straight line through points; empty for fewer than two different abscissae.
 std::optional<double> line_at_zero(const std::vector<Eigen::Vector2d>& points) {
   if (points.size() < 2) return std::nullopt;
@@ -154,13 +159,23 @@ CircularFigures circular_figures(std::span<const CircleReading> readings, double
   figures.clockwise = evaluate_path(cw, nominal_radius, instrument_centre);
   add_reversals(ccw, +1, figures.reversals);
   add_reversals(cw, -1, figures.reversals);
-  if (!figures.counter_clockwise || !figures.clockwise) return figures;
   const std::optional<Circle> circle = fit_circle(both, nominal_radius);
-  if (!circle) return figures;
+  const bool full = circle && is_full(figures.counter_clockwise) && is_full(figures.clockwise);
+  figures.centring = full ? Centring::LeastSquares : Centring::Instrument;
+  figures.centre = full ? circle->centre : instrument_centre;
+  if (!circle || !figures.counter_clockwise || !figures.clockwise) return figures;
   const RadialRange range = radial_range(both, nominal_radius, *circle);
   figures.bidirectional = range.high - range.low;
   figures.mean_radial = circle->radius - nominal_radius;
   return figures;
+}
+
+std::vector<CircleReading> radial_deviations(std::span<const CircleReading> readings, double nominal_radius,
+                                             const Eigen::Vector2d& centre) {
+  std::vector<CircleReading> about(readings.begin(), readings.end());
+  for (CircleReading& reading : about)
+    reading.deviation += nominal_radius - distance({nominal_radius, centre}, reading.angle);
+  return about;
 }
 
 }  // namespace volcal

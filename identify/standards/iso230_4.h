@@ -54,6 +54,10 @@ struct CircularFigures {
   std::optional<double> bidirectional;  ///< G(b)
   std::optional<double> mean_radial;    ///< D
   std::vector<QuadrantReversal> reversals;
+  /// Centre about which both senses are drawn together: the least-squares centre of all readings where they
+  /// are full circles, else the instrument's.
+  Centring centring = Centring::Instrument;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
 };
 
 /// `instrument_centre`: offset of the instrument's centre from the commanded circle's as set up, m. A path
@@ -61,5 +65,9 @@ struct CircularFigures {
 /// 0 are not used.
 CircularFigures circular_figures(std::span<const CircleReading> readings, double nominal_radius,
                                  const Eigen::Vector2d& instrument_centre = Eigen::Vector2d::Zero());
+
+/// The readings with their radial deviations F about a centre, whatever the path's own would be.
+std::vector<CircleReading> radial_deviations(std::span<const CircleReading> readings, double nominal_radius,
+                                             const Eigen::Vector2d& centre);
 
 }  // namespace volcal

@@ -228,33 +228,71 @@ void summarise_diagonals(StandardFigures& result) {
   }
 }
 
-/// Circle of a ball-bar setup: distances to the bar's centre, in the plane of the circle.
-CircularFigures circle_figures(const CirclePath& path, const Vector3d& instrument_w,
-                               const SetupValues& values, const std::vector<double>& length) {
-  const Vector3d offset_w = instrument_w - path.centre_w;
-  const Eigen::Vector2d in_plane(offset_w.dot(path.first_w), offset_w.dot(path.second_w));
-  const double height = offset_w.dot(path.first_w.cross(path.second_w));
-  std::vector<CircleReading> readings;
-  for (std::size_t k = 0; k < path.rows.size(); ++k) {
-    const std::size_t row = path.rows[k];
-    if (!values.has(row) || length[row] <= std::abs(height)) continue;
-    const double radius = std::sqrt(length[row] * length[row] - height * height);
-    readings.push_back({path.angle[k], radius - path.commanded_radius[k], path.sense[k]});
+/// A bar's distances to its centre, as radii in the plane of the circle.
+class CircleEvaluation {
+ public:
+  CircleEvaluation(const CirclePath& path, const Vector3d& instrument_w) : path_(path) {
+    const Vector3d offset_w = instrument_w - path.centre_w;
+    centre_ = {offset_w.dot(path.first_w), offset_w.dot(path.second_w)};
+    height_ = offset_w.dot(path.first_w.cross(path.second_w));
   }
-  return circular_figures(readings, path.radius, in_plane);
+
+  const Eigen::Vector2d& instrument_centre() const { return centre_; }
+
+  /// Places of the path that readings and predictions have.
+  std::vector<std::size_t> places(const SetupValues& values) const {
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < path_.rows.size(); ++k) {
+      const std::size_t row = path_.rows[k];
+      if (values.has(row) && values.reading[0][row] > std::abs(height_) &&
+          values.predicted[0][row] > std::abs(height_))
+        places.push_back(k);
+    }
+    return places;
+  }
+
+  std::vector<CircleReading> readings(const std::vector<std::size_t>& places,
+                                      const std::vector<double>& length) const {
+    std::vector<CircleReading> readings;
+    for (const std::size_t k : places) {
+      const double bar = length[path_.rows[k]];
+      const double radius = std::sqrt(bar * bar - height_ * height_);
+      readings.push_back({path_.angle[k], radius - path_.commanded_radius[k], path_.sense[k]});
+    }
+    return readings;
+  }
+
+ private:
+  const CirclePath& path_;
+  Eigen::Vector2d centre_;
+  double height_ = 0.0;
+};
+
+CircleTest circle_test(const CirclePath& path, const Setup& setup, std::size_t setup_index,
+                       const SetupValues& values) {
+  CircleTest test{setup.name,    path.first, path.second,          path.radius,
+                  path.centre_w, {},         common_notes(values), setup_index};
+  const CircleEvaluation evaluation(path, setup.options.vector("centre").value_or(path.centre_w));
+  const std::vector<std::size_t> places = evaluation.places(values);
+  for (const std::size_t place : places) test.rows.push_back(path.rows[place]);
+  const auto readings = evaluation.readings(places, values.reading[0]);
+  const auto model = evaluation.readings(places, values.predicted[0]);
+  test.figures.readings = circular_figures(readings, path.radius, evaluation.instrument_centre());
+  test.figures.model = circular_figures(model, path.radius, evaluation.instrument_centre());
+  const Eigen::Vector2d& centre = test.figures.readings.centre;
+  test.radial = {radial_deviations(readings, path.radius, centre),
+                 radial_deviations(model, path.radius, centre)};
+  return test;
 }
 
-void evaluate_ball_bar(const Campaign& campaign, const Setup& setup, const SetupValues& values,
+void evaluate_ball_bar(const Campaign& campaign, std::size_t setup_index, const SetupValues& values,
                        StandardFigures& result) {
+  const Setup& setup = campaign.setups[setup_index];
   const FoundPaths<CirclePath> found = circle_paths(campaign, setup);
   result.not_recognised.insert(result.not_recognised.end(), found.not_recognised.begin(),
                                found.not_recognised.end());
   for (const CirclePath& path : found.paths) {
-    const Vector3d instrument_w = setup.options.vector("centre").value_or(path.centre_w);
-    CircleTest test{setup.name,    path.first, path.second,         path.radius,
-                    path.centre_w, {},         common_notes(values)};
-    test.figures.readings = circle_figures(path, instrument_w, values, values.reading[0]);
-    test.figures.model = circle_figures(path, instrument_w, values, values.predicted[0]);
+    CircleTest test = circle_test(path, setup, setup_index, values);
     if (setup.options.number("length_sigma").value_or(1.0) != 0.0) {
       test.notes.push_back({FindingCode::StandardsBarUncalibrated});
     }
@@ -302,7 +340,7 @@ StandardFigures standard_figures(const Campaign& campaign, std::span<const Resid
     const InstrumentTraits& traits = traits_of(setup);
     if (traits.laser_length == LaserLength::Displacement)
       evaluate_displacement(campaign, setup, values[i], result);
-    if (traits.has_bar) evaluate_ball_bar(campaign, setup, values[i], result);
+    if (traits.has_bar) evaluate_ball_bar(campaign, i, values[i], result);
     if (traits.reads_error_vectors) evaluate_points(campaign, setup, values[i], result);
   }
   summarise_diagonals(result);

@@ -54,6 +54,10 @@ struct CircleTest {
   Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
   SideBySide<CircularFigures> figures;
   std::vector<Finding> notes;
+  std::size_t setup_index = 0;         ///< in the campaign
+  std::vector<std::size_t> rows = {};  ///< of the setup, in the order of the file
+  /// Radial deviations at these rows, both about the readings' centre: their difference is the residual.
+  SideBySide<std::vector<CircleReading>> radial = {};
 };
 
 struct PointsTest {

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "tests/support/program.h"
+#include "volcal/identify/report/report.h"
 
 namespace volcal {
 namespace {
@@ -67,6 +68,34 @@ TEST(Compare, WritesEveryResidual) {
   EXPECT_EQ(std::count(residuals.begin(), residuals.end(), '\n'), 1 + 4712);
   EXPECT_TRUE(std::filesystem::exists(target / "comparison.txt"));
   EXPECT_TRUE(nlohmann::json::accept(content(target / "comparison.json")));
+  if (report_available()) {
+    const std::string report = content(target / "report.html");
+    for (const char* section : {"\"circles\"", "\"positioning\"", "\"diagonals\"", "\"setup_residuals\""})
+      EXPECT_THAT(report, HasSubstr(std::string("\"kind\":") + section));
+  }
+}
+
+/// The folder holds what is printed, and the report; without -o nothing is written.
+TEST(Validate, WritesFiguresResidualsAndTheReport) {
+  const ::volcal::testing::ScratchFolder folder;
+  const auto target = folder.path() / "validation";
+  const std::string model = (folder.path() / "stated.toml").string();
+  std::ofstream(model) << "format = \"volcal-model-1\"\nmachine = \"" << kExample
+                       << "machine.toml\"\n[locations]\nEC0Y_urad = 10\n";
+  const testing::ProgramRun outcome =
+      testing::run_program("validate " + model + " " + kExample + "campaign.toml -o " + target.string());
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("written: " + target.string()));
+  EXPECT_THAT(outcome.output, StartsWith(content(target / "validation.txt")));
+  const auto figures = nlohmann::json::parse(content(target / "validation.json"));
+  EXPECT_EQ(figures.at("readings").get<int>() + figures.at("angle_readings").get<int>(), 4712);
+  for (const char* file : {"residuals_before.csv", "residuals_after.csv"}) {
+    const std::string residuals = content(target / file);
+    EXPECT_EQ(std::count(residuals.begin(), residuals.end(), '\n'), 1 + 4712);
+  }
+  if (report_available()) {
+    EXPECT_THAT(content(target / "report.html"), HasSubstr("\"kind\":\"validation\""));
+  }
 }
 
 TEST(Compare, HeldOutLinesAreJudgedApart) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
+#include "volcal/identify/report/report.h"
 
 namespace volcal {
 namespace {
@@ -36,6 +38,24 @@ TEST(DiagnoseProgram, AsksForACampaign) {
   const auto run = run_program("diagnose");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.errors, HasSubstr("no campaign is given"));
+}
+
+/// Before anything is computed: the campaign need not even exist.
+TEST(DiagnoseProgram, APictureThatCannotBeDrawnIsRefusedFirst) {
+  if (!report_available()) GTEST_SKIP() << "built without Node.js";
+  const auto no_png = run_program("diagnose none.toml --picture found.svg");
+  EXPECT_EQ(no_png.exit_code, 2);
+  EXPECT_THAT(no_png.errors, HasSubstr("end it in .png"));
+  const auto no_folder = run_program("diagnose none.toml --picture no-such-folder/found.png");
+  EXPECT_EQ(no_folder.exit_code, 2);
+  EXPECT_THAT(no_folder.errors, HasSubstr("make no-such-folder first"));
+  const std::string path = std::getenv("PATH");
+  const ::volcal::testing::ScratchFolder empty;
+  ::setenv("PATH", empty.path().c_str(), 1);
+  const auto no_browser = run_program("diagnose none.toml --picture found.png");
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(no_browser.exit_code, 2);
+  EXPECT_THAT(no_browser.errors, HasSubstr("apt-get install chromium"));
 }
 
 TEST(DiagnoseProgram, ProposesAMeasurementForWhatIsAsked) {

@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/errors/alignment.h"
@@ -21,6 +22,7 @@
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/io/results/residual_writer.h"
 #include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/comparison_report.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -91,10 +93,10 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
   return model;
 }
 
-/// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json and comparison.txt.
+/// residuals.csv, or residuals_A.csv and residuals_B.csv; comparison.json, comparison.txt, report.html.
 void write_comparison(const std::string& target, const Campaign& campaign,
-                      const std::vector<ComparedModel>& models, const std::string& text,
-                      const std::string& json) {
+                      const std::vector<ComparedModel>& models, const std::vector<HeldOutModel>& heldout,
+                      const std::string& text, const std::string& json) {
   AtomicFolder folder(target);
   const bool one = models.size() == 1;
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -103,6 +105,8 @@ void write_comparison(const std::string& target, const Campaign& campaign,
   }
   folder.write("comparison.txt", text);
   folder.write("comparison.json", json);
+  if (report_available())
+    folder.write("report.html", report_html(ComparisonView{models, heldout}, campaign, report_options()));
   folder.commit();
 }
 
@@ -148,6 +152,10 @@ int run_compare(const CompareArguments& arguments) {
     if (model.result) screening = screen(readings, as_fitted(evaluation, *model.result), arguments.threads);
     models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
     models.back().screening = screening;
+    if (!arguments.output.empty() && report_available())
+      models.back().circle_causes =
+          circle_causes(readings, model.spec, evaluation.parameters, model.result ? &*model.result : nullptr,
+                        models.back().figures.circles);
   }
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
@@ -161,13 +169,16 @@ int run_compare(const CompareArguments& arguments) {
   }
   if (states_errors(named.back().spec) && fails(models.back()))
     text += fmt::format("\nnext: volcal diagnose {} --auto -o diagnosis\n", arguments.campaign);
-  if (!arguments.output.empty()) write_comparison(arguments.output, campaign, models, text, json);
+  if (!arguments.output.empty()) write_comparison(arguments.output, campaign, models, heldout, text, json);
   if (arguments.json) {
     fmt::print("{}", json);
     return kDone;
   }
   fmt::print("{}", text);
-  if (!arguments.output.empty()) fmt::print("\nwritten: {}\n", arguments.output);
+  if (!arguments.output.empty()) {
+    fmt::print("\nwritten: {}\n", arguments.output);
+    if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
+  }
   return kDone;
 }
 
@@ -180,10 +191,9 @@ std::function<int()> define_compare(CLI::App& app) {
          "(machine without errors); a model without coefficients is the nominal machine")
       ->required()
       ->expected(1, 2);
-  app.add_option(
-      "-o,--output", arguments->output,
-      "folder for residuals.csv (of two models residuals_A.csv and residuals_B.csv), comparison.txt and "
-      "comparison.json");
+  app.add_option("-o,--output", arguments->output,
+                 "folder for report.html, residuals.csv (of two models residuals_A.csv and residuals_B.csv), "
+                 "comparison.txt and comparison.json");
   app.add_option("--worst", arguments->worst, "readings listed")
       ->check(not_negative())
       ->capture_default_str();

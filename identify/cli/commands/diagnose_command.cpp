@@ -7,6 +7,7 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/effect_list.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/picture.h"
 #include "volcal/identify/cli/options/written_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
@@ -31,6 +32,7 @@ struct DiagnoseArguments {
   std::string model;
   std::string output;
   std::string shown;
+  std::string picture;
   int threads = 0;
   bool climb = false;
   bool list = false;
@@ -72,9 +74,13 @@ int show(const DiagnoseArguments& arguments) {
 }
 
 void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaign, const ModelSpec& model,
-                     const Diagnosis& diagnosis) {
+                     const DiagnosedModel& diagnosed) {
+  const Diagnosis& diagnosis = diagnosed.diagnosis;
   std::map<std::string, std::string> more = {{"diagnosis.txt", diagnosis_text(diagnosis)}};
-  if (report_available()) more["report.html"] = report_html(diagnosis, campaign, report_options());
+  if (report_available()) {
+    const VolumeCauses causes = volume_causes(diagnosed.fit, accepted_effects(diagnosis));
+    more["report.html"] = report_html(diagnosis, campaign, report_options(), &causes);
+  }
   write_diagnosis_folder(diagnosis, campaign.machine, offered_models(model, campaign, diagnosis),
                          arguments.output, more);
 }
@@ -89,6 +95,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   if (!arguments.output.empty()) {
     require_output_folder(arguments.output, {arguments.campaign, arguments.model});
   }
+  if (!arguments.picture.empty()) require_picture("--picture", arguments.picture);
   const Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model = given_model(arguments, campaign);
   DiagnoseOptions options;
@@ -102,9 +109,12 @@ int run_diagnose(const DiagnoseArguments& arguments) {
     options.own.push_back(written_effect("--try", text, arguments.parameters).spec);
   ProgressBar bar("diagnose");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const Diagnosis diagnosis = diagnose(campaign, model, options);
+  const DiagnosedModel diagnosed = diagnose_model(campaign, model, options);
+  const Diagnosis& diagnosis = diagnosed.diagnosis;
   bar.finish();
-  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosis);
+  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosed);
+  if (!arguments.picture.empty())
+    write_picture("--picture", diagnosis_picture(diagnosis, campaign, report_options()), arguments.picture);
   if (arguments.json) {
     fmt::print("{}", diagnosis_json(diagnosis));
   } else {
@@ -112,6 +122,7 @@ int run_diagnose(const DiagnoseArguments& arguments) {
     fmt::print("{}",
                kept && !arguments.verbose ? diagnosis_summary_text(diagnosis) : diagnosis_text(diagnosis));
     if (kept) fmt::print("written: {} (all of it: diagnosis.txt)\n", arguments.output);
+    if (!arguments.picture.empty()) fmt::print("drawn: {}\n", arguments.picture);
     if (kept && !report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
   return kDone;
@@ -138,6 +149,10 @@ std::function<int()> define_diagnose(CLI::App& app) {
   app.add_option("--readings", arguments->readings, "readings that a further measurement may take")
       ->check(CLI::Range(8, 10000))
       ->capture_default_str();
+  app.add_option(
+      "--picture", arguments->picture,
+      "PNG file for the surface or curve of what was found first, or for the added-variable plot of "
+      "the leading effect; drawn by Chromium, which must be installed");
   app.add_option("--show", arguments->shown,
                  "print the diagnosis kept in a folder (or diagnosis.json) again");
   app.add_flag(

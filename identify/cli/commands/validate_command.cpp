@@ -1,21 +1,23 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/errors/alignment.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/io/results/residual_writer.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/findings_text.h"
-#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/report/text/validation_text.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
+#include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
@@ -27,100 +29,43 @@ namespace {
 struct ValidateArguments {
   std::string result;
   std::string campaign;
+  std::string output;
   double max_rms_um = 0.0;
   int threads = 0;
   bool json = false;
 };
 
-nlohmann::ordered_json figures_json(const ValidationFigures& figures, const FittedReadings& fitted) {
-  nlohmann::ordered_json json = {{"rms_before_um", figures.rms_before * kPerMicro},
-                                 {"rms_after_um", figures.rms_after * kPerMicro},
-                                 {"max_before_um", figures.max_before * kPerMicro},
-                                 {"max_after_um", figures.max_after * kPerMicro},
-                                 {"reduced_chi2", figures.reduced_chi2},
-                                 {"coverage95", figures.coverage95},
-                                 {"readings", figures.lengths}};
-  if (fitted.is_known) {
-    json["fitted_readings"] = fitted.readings;
-  } else {
-    json["fitted_readings"] = nullptr;
-  }
-  if (figures.angles > 0) {
-    json["angle_rms_before_urad"] = figures.angle_rms_before * kPerMicro;
-    json["angle_rms_after_urad"] = figures.angle_rms_after * kPerMicro;
-    json["angle_max_before_urad"] = figures.angle_max_before * kPerMicro;
-    json["angle_max_after_urad"] = figures.angle_max_after * kPerMicro;
-    json["angle_readings"] = figures.angles;
-  }
-  return json;
+/// Before and after, as `compare` sees two models.
+std::vector<ComparedModel> compared(const Campaign& campaign, const FitResult& result,
+                                    const Validation& validation) {
+  std::vector<ComparedModel> models;
+  models.push_back(compared_model("nominal machine", campaign, validation.before.residuals));
+  models.push_back(compared_model("identified", campaign, validation.after.residuals));
+  models.back().circle_causes =
+      circle_causes(campaign, result.identified, validation.after.parameters,
+                    result.covariance.isZero(0.0) ? nullptr : &result, models.back().figures.circles);
+  return models;
 }
 
-/// Whose readings these are.
-std::string provenance(const FittedReadings& fitted) {
-  if (!fitted.is_known) return "Readings (which ones the fit was made from, the result does not say)";
-  if (fitted.readings == 0) return "Readings that the fit never saw";
-  return fitted.are_all() ? "Readings that the fit was made from"
-                          : "Readings, some of which the fit was made from";
-}
-
-std::string warning(const FittedReadings& fitted) {
-  if (fitted.readings == 0) return {};
-  const std::string remedy =
-      "give a campaign with other setups, or hold lines out: volcal compare --held-out";
-  if (fitted.are_all()) {
-    return "\n! this is the campaign that the fit was made from: a fit explains its own readings, and these "
-           "figures prove nothing; " +
-           remedy + "\n";
+void write_validation(const ValidateArguments& arguments, const Campaign& campaign, const FitResult& result,
+                      const Validation& validation, const FittedReadings& fitted, const std::string& text,
+                      const std::string& json) {
+  AtomicFolder folder(arguments.output);
+  write_residuals_csv(folder.path("residuals_before.csv"), validation.before.residuals, campaign);
+  write_residuals_csv(folder.path("residuals_after.csv"), validation.after.residuals, campaign);
+  folder.write("validation.txt", text);
+  folder.write("validation.json", json);
+  if (report_available()) {
+    const auto models = compared(campaign, result, validation);
+    folder.write("report.html",
+                 report_html(ValidationView{validation.figures, fitted, models}, campaign, report_options()));
   }
-  return fmt::format("\n! the fit was made from {} of {} readings, those of {}; {}\n",
-                     count_number(static_cast<long long>(fitted.readings)),
-                     count_number(static_cast<long long>(fitted.all)), fmt::join(fitted.setups, ", "),
-                     remedy);
-}
-
-std::string validation_text(const Validation& validation, const FittedReadings& fitted) {
-  const ValidationFigures& figures = validation.figures;
-  TextTable totals({{"", Align::Left},
-                    {"readings"},
-                    {"RMS before"},
-                    {"RMS after"},
-                    {"max before"},
-                    {"max after"},
-                    {"unit", Align::Left}},
-                   provenance(fitted) + "; before = nominal machine, after = identified");
-  const auto add = [&](const char* name, std::size_t count, double rms0, double rms1, double max0,
-                       double max1, const char* unit) {
-    if (count == 0) return;
-    totals.add_row({name, count_number(static_cast<long long>(count)), fixed_number(rms0 * kPerMicro, 3),
-                    fixed_number(rms1 * kPerMicro, 3), fixed_number(max0 * kPerMicro, 3),
-                    fixed_number(max1 * kPerMicro, 3), unit});
-  };
-  add("lengths and vectors", figures.lengths, figures.rms_before, figures.rms_after, figures.max_before,
-      figures.max_after, "um");
-  add("angles", figures.angles, figures.angle_rms_before, figures.angle_rms_after, figures.angle_max_before,
-      figures.angle_max_after, "urad");
-  TextTable setups({{"setup", Align::Left},
-                    {"instrument", Align::Left},
-                    {"tool", Align::Left},
-                    {"RMS before"},
-                    {"RMS after"},
-                    {"unit", Align::Left}},
-                   "Per setup (single components)");
-  for (std::size_t i = 0; i < validation.after.setups.size(); ++i) {
-    const SetupSummary& setup = validation.after.setups[i];
-    setups.add_row({setup.name, setup.instrument, setup.tool,
-                    fixed_number(validation.before.setups[i].rms_residual * kPerMicro, 3),
-                    fixed_number(setup.rms_residual * kPerMicro, 3), setup.reading_unit});
-  }
-  return totals.text() + "\n" + setups.text() +
-         fmt::format(
-             "\nreduced chi2 {:.3f} and {:.1f} % of readings inside {} sqrt(u_model^2 + sigma^2) (95 % "
-             "expected)\n",
-             figures.reduced_chi2, 100.0 * figures.coverage95, kCoverageFactor) +
-         warning(fitted);
+  folder.commit();
 }
 
 int run_validate(const ValidateArguments& arguments) {
+  if (!arguments.output.empty())
+    require_output_folder(arguments.output, {arguments.result, arguments.campaign});
   const FitResult result = read_known_errors(arguments.result);
   Campaign campaign = read_campaign(arguments.campaign);
   const FittedReadings fitted = fitted_readings(campaign, result);
@@ -131,13 +76,16 @@ int run_validate(const ValidateArguments& arguments) {
                      "validate on a campaign of the same machine");
   }
   const Validation validation = validate(campaign, result, arguments.threads);
-  if (arguments.json) {
-    auto json = figures_json(validation.figures, fitted);
-    add_notes(campaign.notes, json);
-    fmt::print("{}\n", json_text(json, 2));
-  } else {
-    fmt::print("{}", validation_text(validation, fitted));
-    fmt::print("{}", findings_text(campaign.notes));
+  auto figures = validation_json(validation.figures, fitted);
+  add_notes(campaign.notes, figures);
+  const std::string json = json_text(figures, 2) + '\n';
+  const std::string text = validation_text(validation, fitted) + findings_text(campaign.notes);
+  if (!arguments.output.empty())
+    write_validation(arguments, campaign, result, validation, fitted, text, json);
+  fmt::print("{}", arguments.json ? json : text);
+  if (!arguments.json && !arguments.output.empty()) {
+    fmt::print("written: {}\n", arguments.output);
+    if (!report_available()) fmt::print("no report.html: {}\n", how_to_get_report());
   }
   const bool exceeded =
       arguments.max_rms_um > 0.0 && validation.figures.rms_after * kPerMicro > arguments.max_rms_um;
@@ -152,6 +100,9 @@ std::function<int()> define_validate(CLI::App& app) {
       ->required();
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml with readings that the fit did not use")
       ->required();
+  app.add_option("-o,--output", arguments->output,
+                 "folder for report.html, residuals_before.csv, residuals_after.csv, validation.txt and "
+                 "validation.json");
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
       ->check(positive());
   app.add_option("--threads", arguments->threads, "0 = all")->check(number_of_threads());
@@ -164,6 +115,7 @@ std::function<int()> define_validate(CLI::App& app) {
 const Command& validate_command() {
   static const Command command = {"validate", "judge an identified model on readings it never saw",
                                   "  volcal validate result other-setups/campaign.toml\n"
+                                  "  volcal validate result other-setups/campaign.toml -o validation\n"
                                   "  volcal validate result truth/campaign.toml --json\n"
                                   "  volcal validate result acceptance/campaign.toml --max-rms-um 3\n",
                                   define_validate};

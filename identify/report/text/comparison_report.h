@@ -2,31 +2,13 @@
 /// What `compare` says: where a model fails, first in a sentence, then in tables, then as the standards' own
 /// figures of the readings and of the model. Edge units (um, urad, mm, deg).
 
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "volcal/identify/criticism/data/diagnosis_data.h"
-#include "volcal/identify/result/result.h"
-#include "volcal/identify/standards/comparison.h"
-#include "volcal/identify/standards/standard_figures.h"
+#include "volcal/identify/report/values/compared_model.h"
 #include "volcal/model/description/campaign.h"
 
 namespace volcal {
-
-/// A model on a campaign. `name` as the user knows it: "nominal machine", "result".
-struct ComparedModel {
-  std::string name;
-  std::vector<ResidualRecord> records;
-  Comparison comparison;
-  StandardFigures figures;
-  std::optional<Screening> screening;  ///< of an identified model: scans of its residuals
-};
-
-/// Breaks the residuals down and evaluates the standards' figures.
-ComparedModel compared_model(std::string name, const Campaign& campaign, std::vector<ResidualRecord> records,
-                             const ComparisonOptions& options = {});
 
 struct ComparisonTextOptions {
   bool all_cells = false;  ///< every cell; else the worst few of each breakdown
@@ -37,13 +19,6 @@ struct ComparisonTextOptions {
 std::string failure_sentence(const ComparedModel& model);
 /// Whether a diagnosis pays.
 bool fails(const ComparedModel& model);
-
-/// A model on lines that its fit has not seen.
-struct HeldOutModel {
-  std::string name;
-  bool fitted = true;  ///< anew, without these lines; false: nothing to fit, or its coefficients as they are
-  Comparison comparison;
-};
 
 /// One model, or two side by side with difference B - A and ratio B / A; the models are of the same campaign.
 std::string comparison_text(const Campaign& campaign, std::span<const ComparedModel> models,

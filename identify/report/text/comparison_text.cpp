@@ -292,18 +292,6 @@ std::string against_sentence(const Comparison& a, const Comparison& b, const std
   return text.empty() ? "" : "B against A, " + where + ": " + text + ".\n";
 }
 
-}  // namespace
-
-ComparedModel compared_model(std::string name, const Campaign& campaign, std::vector<ResidualRecord> records,
-                             const ComparisonOptions& options) {
-  ComparedModel model{std::move(name), std::move(records), {}, {}, {}};
-  model.comparison = compare(campaign, model.records, options);
-  model.figures = standard_figures(campaign, model.records);
-  return model;
-}
-
-namespace {
-
 std::string where_it_fails(const ComparedModel& model) {
   const Comparison& comparison = model.comparison;
   const ComparisonCell& total = comparison.total;

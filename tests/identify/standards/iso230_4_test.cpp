@@ -130,6 +130,37 @@ TEST(Iso230Part4, LostMotionIsAStepWhereTheAxisTurnsRound) {
   }
 }
 
+/// A perfect circle seen from 0.4 mm and -0.3 mm beside it: about that centre nothing deviates, and both ways
+/// round are drawn about it. About the nominal one the radius deviates by -0.4 cos a + 0.3 sin a mm to first
+/// order, at 0 degrees by hypot(100 - 0.4, 0.3) - 100 mm.
+TEST(Iso230Part4, BothWaysAreDrawnAboutTheCentreOfTheReadings) {
+  const Eigen::Vector2d centre(0.4e-3, -0.3e-3);
+  const auto seen = [&](double angle) {
+    return ((kRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle)) - centre).norm() - kRadius) / kMicro;
+  };
+  std::vector<CircleReading> readings;
+  add_path(readings, +1, 0, 355, 5, seen);
+  add_path(readings, -1, 355, 0, 5, seen);
+  const CircularFigures figures = circular_figures(readings, kRadius);
+  EXPECT_EQ(figures.centring, Centring::LeastSquares);
+  EXPECT_LT((figures.centre - centre).norm(), 1e-12);
+  for (const CircleReading& reading : radial_deviations(readings, kRadius, figures.centre))
+    EXPECT_NEAR(reading.deviation, 0.0, 1e-12);
+  const auto about_nominal = radial_deviations(readings, kRadius, Eigen::Vector2d::Zero());
+  EXPECT_NEAR(about_nominal[0].deviation, std::hypot(99.6e-3, 0.3e-3) - 100e-3, 1e-12);
+  EXPECT_EQ(about_nominal[0].sense, +1);
+}
+
+/// Half a circle does not say where its centre is.
+TEST(Iso230Part4, PartOfACircleIsDrawnAboutTheInstrumentsCentre) {
+  std::vector<CircleReading> readings;
+  add_path(readings, +1, 0, 180, 5, [](double) { return 1.0; });
+  const Eigen::Vector2d instrument(1e-6, 2e-6);
+  const CircularFigures figures = circular_figures(readings, kRadius, instrument);
+  EXPECT_EQ(figures.centring, Centring::Instrument);
+  EXPECT_EQ(figures.centre, instrument);
+}
+
 TEST(Iso230Part4, TooFewReadingsLeaveThePathEmpty) {
   const std::vector<CircleReading> readings = {{0.0, 0.0, +1}, {1.0, 0.0, +1}, {2.0, 0.0, +1}};
   const CircularFigures figures = circular_figures(readings, kRadius);

@@ -305,6 +305,16 @@ TEST(StandardFigures, BallBarCircleInZX) {
   EXPECT_NEAR(*readings.bidirectional, 19e-6, 1e-11);
   EXPECT_NEAR(*readings.mean_radial, 3.5e-6, 1e-11);
   EXPECT_NEAR(*circle.figures.model.bidirectional, 0.0, 1e-12);
+  // What is drawn: the deviations themselves, in the order of the file; the model predicts the circle.
+  EXPECT_EQ(circle.setup_index, 0U);
+  ASSERT_EQ(circle.radial.readings.size(), 144U);
+  EXPECT_EQ(circle.rows.at(73), 73U);
+  EXPECT_NEAR(circle.radial.readings[0].deviation, 14e-6, 1e-11);
+  EXPECT_NEAR(circle.radial.readings[73].deviation, (-3.0 + 2.0 * std::cos(10.0 * kRadianPerDegree)) * 1e-6,
+              1e-11);
+  EXPECT_NEAR(circle.radial.readings[73].angle, -5.0 * kRadianPerDegree, 1e-12);
+  EXPECT_EQ(circle.radial.readings[73].sense, -1);
+  EXPECT_NEAR(circle.radial.model[73].deviation, 0.0, 1e-11);
 }
 
 /// The bar's centre ball stands 80 mm below the circle: lengths sqrt(r^2 + h^2), 170 mm for 150 and 80.

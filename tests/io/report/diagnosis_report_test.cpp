@@ -75,7 +75,7 @@ class DiagnosisReport : public ::testing::Test {
     memory.expected = {0.5, 0.375};
     memory.whitened = {0.01, -0.02};
     figures.autocorrelation = {memory};
-    document_ = Json::parse(report_json(diagnosis_, campaign_, {.date = "2024-05-17"}));
+    document_ = Json::parse(report_json(diagnosis_, campaign_, {.date = "2024-05-17"}, &causes_));
   }
 
   Json page(const std::string& kind) const {
@@ -87,6 +87,11 @@ class DiagnosisReport : public ::testing::Test {
   }
 
   Diagnosis diagnosis_ = testing::hand_made_diagnosis();
+  VolumeCauses causes_ = {
+      "long",
+      5e-6,
+      {{"straightness", false, 4e-6, std::nullopt, 0.84}, {"reversal EXX", true, 2e-6, 0.05e-6, 0.16}},
+      {"dead path P1"}};
   Campaign campaign_;
   Json document_;
 };
@@ -104,6 +109,29 @@ TEST_F(DiagnosisReport, EverySectionIsInTheDocumentAndHasARenderer) {
   }
   EXPECT_EQ(document_.at("pages").size(), kinds.size());
   EXPECT_EQ(document_.at("title"), "VMC <1>");
+}
+
+TEST_F(DiagnosisReport, CausesOfTheVolumetricErrorAreRankedInMicrometresAndPercent) {
+  const Json causes = page("volume_causes");
+  EXPECT_EQ(causes.at("tool"), "long");
+  EXPECT_EQ(causes.at("total_um"), 5.0);
+  EXPECT_EQ(causes.at("rows").at(0).at("name"), "straightness");
+  EXPECT_TRUE(causes.at("rows").at(0).at("U95_um").is_null());
+  EXPECT_EQ(causes.at("rows").at(1).at("found"), true);
+  EXPECT_EQ(causes.at("rows").at(1).at("rms_um"), 2.0);
+  EXPECT_NEAR(causes.at("rows").at(1).at("U95_um").get<double>(), 0.098, 1e-9);
+  EXPECT_EQ(causes.at("rows").at(1).at("share"), 0.16);
+  EXPECT_EQ(causes.at("not_in_volume").at(0), "dead path P1");
+  const Json without = Json::parse(report_json(diagnosis_, campaign_));
+  for (const Json& section : without.at("pages")) EXPECT_NE(section.at("kind"), "volume_causes");
+}
+
+TEST_F(DiagnosisReport, ANamedEffectIsExplainedInPlainWords) {
+  const Json story = page("story");
+  const Json& missing = story.at("missing").at(0);
+  EXPECT_THAT(missing.at("plain").get<std::string>(), HasSubstr("stops at two different places"));
+  EXPECT_THAT(missing.at("usual_causes").get<std::string>(), HasSubstr("backlash"));
+  EXPECT_FALSE(story.at("one_of").at(0).at(0).at("plain").get<std::string>().empty());
 }
 
 TEST_F(DiagnosisReport, TheStoryTellsTheErrorBeforeAndAfter) {

@@ -16,6 +16,7 @@
 #include "volcal/identify/report/text/fit_summary.h"
 #include "volcal/identify/report/values/correlation.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/solve/adjustment.h"
 #include "volcal/model/functions/registry.h"
 
 namespace volcal {
@@ -203,6 +204,61 @@ TEST_F(ReportTest, HistogramHoldsEveryReading) {
   std::size_t sum = 0;
   for (const Json& count : histogram.at("count")) sum += count.get<std::size_t>();
   EXPECT_EQ(sum, fit_->result.residuals.size());
+}
+
+/// Direction of approach, temperature and length of the beam where they are recorded and change.
+TEST(ReportResiduals, AreDrawnAgainstWhateverWasRecorded) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  const auto axes = [&] {
+    std::vector<std::string> names;
+    const Json data = page_data(Json::parse(report_json(fit.result, fit.campaign)), "residuals");
+    for (const Json& plot : data.at("plots")) names.push_back(plot.at("axis"));
+    return names;
+  };
+  for (volcal::Setup& setup : fit.campaign.setups) {
+    for (auto& direction : setup.readings.direction) direction.clear();
+    setup.readings.temperature.clear();
+  }
+  const std::vector<std::string> before = axes();
+  EXPECT_THAT(before, ::testing::Contains("length"));
+  EXPECT_THAT(before, ::testing::Not(::testing::Contains("dir_X")));
+  Readings& readings = fit.campaign.setups[0].readings;
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    readings.direction[0].push_back(row % 2 == 0 ? 1 : -1);
+    readings.direction[1].push_back(1);
+    readings.temperature["column"].push_back(20.0 + 0.01 * static_cast<double>(row));
+    readings.temperature["air"].push_back(21.0);
+  }
+  const std::vector<std::string> after = axes();
+  EXPECT_THAT(after, ::testing::Contains("dir_X"));
+  EXPECT_THAT(after, ::testing::Contains("T_column"));
+  EXPECT_THAT(after, ::testing::Not(::testing::Contains("dir_Y")));  // always the same
+  EXPECT_THAT(after, ::testing::Not(::testing::Contains("T_air")));
+}
+
+/// Every reading of the first setup has twice the stated noise: its residuals are shown in the stated one,
+/// the rest as they are weighted.
+TEST(ReportResiduals, AreDividedByTheStatedNoiseWhereTheEstimatedOneIsLarger) {
+  test::SyntheticFit fit = test::synthetic_fit();
+  const Json plain = page_data(Json::parse(report_json(fit.result, fit.campaign)), "residuals");
+  EXPECT_EQ(plain.at("swallowed").at("readings"), 0);
+  EXPECT_FALSE(plain.at("setups").at(0).at("mean").contains("stated"));
+  auto adjustment = std::make_shared<Adjustment>();
+  std::size_t doubled = 0;
+  for (ResidualRecord& record : fit.result.residuals) {
+    adjustment->stated_sigma.push_back(record.setup == 0 ? 0.5 * record.sigma : record.sigma);
+    doubled += record.setup == 0 ? 1 : 0;
+  }
+  fit.result.adjustment = adjustment;
+  const Json data = page_data(Json::parse(report_json(fit.result, fit.campaign)), "residuals");
+  EXPECT_EQ(data.at("swallowed").at("readings"), doubled);
+  EXPECT_EQ(data.at("swallowed").at("groups").at(0).at("factor"), 2.0);
+  const Json& records = data.at("records");
+  for (std::size_t i = 0; i < records.at("setup").size(); ++i)
+    EXPECT_EQ(records.at("factor").at(i).get<double>(), records.at("setup").at(i) == 0 ? 2.0 : 1.0);
+  const Json& mean = data.at("setups").at(0).at("mean");
+  EXPECT_NEAR(mean.at("stated").at("mean").get<double>(), 2.0 * mean.at("w").at("mean").get<double>(),
+              0.01 * std::abs(mean.at("stated").at("mean").get<double>()) + 1e-6);
 }
 
 TEST_F(ReportTest, NuisanceParametersAreInTheirEdgeUnit) {

@@ -102,6 +102,7 @@ Json missing_json(const Diagnosis& diagnosis) {
     for (const EffectFinding& effect : effects) {
       Json one = finding_json(effect);
       one["how"] = how_known(effect, step_of(diagnosis, effect));
+      one.update(meaning_json(effect.name));
       json.push_back(std::move(one));
     }
   };
@@ -170,7 +171,10 @@ Json story_page(const DiagnosisInput& input) {
   Json one_of = Json::array();
   for (const auto* set : sets_of_alternatives(diagnosis)) {
     Json alternatives = Json::array();
-    for (const EffectFinding& effect : *set) alternatives.push_back(finding_json(effect));
+    for (const EffectFinding& effect : *set) {
+      alternatives.push_back(finding_json(effect));
+      alternatives.back().update(meaning_json(effect.name));
+    }
     one_of.push_back(std::move(alternatives));
   }
   return {{"verdict", to_string(diagnosis.verdict)},

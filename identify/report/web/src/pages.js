@@ -2,6 +2,8 @@
 import { renderAddedVariable } from './pages/added_variable.js';
 import { renderAutocorrelation } from './pages/autocorrelation.js';
 import { renderBudget } from './pages/budget.js';
+import { renderCircles } from './pages/circles.js';
+import { renderComparison } from './pages/comparison.js';
 import { renderComputation } from './pages/computation.js';
 import { renderConfounding } from './pages/confounding.js';
 import { renderDetectable } from './pages/detectable.js';
@@ -13,16 +15,21 @@ import { renderNoiseModel } from './pages/noise_model.js';
 import { renderNuisance } from './pages/nuisance.js';
 import { renderObservability } from './pages/observability.js';
 import { renderOutliers } from './pages/outliers.js';
+import { renderPicture } from './pages/picture.js';
 import { renderPlanErrors } from './pages/plan_errors.js';
 import { renderPlanLayout } from './pages/plan_layout.js';
+import { renderDiagonals, renderPositioning } from './pages/positioning.js';
 import { renderResidualVariables } from './pages/residual_variables.js';
 import { renderResidualVectors } from './pages/residual_vectors.js';
 import { renderResiduals } from './pages/residuals.js';
 import { renderResolution } from './pages/resolution.js';
+import { renderSetupResiduals } from './pages/setup_residuals.js';
 import { renderSetups } from './pages/setups.js';
 import { renderStory } from './pages/story.js';
 import { renderSummary } from './pages/summary.js';
 import { renderUncertainties } from './pages/uncertainties.js';
+import { renderValidation } from './pages/validation.js';
+import { renderVolumeCauses } from './pages/volume_causes.js';
 import { renderVolume } from './pages/volume.js';
 
 export const renderers = {
@@ -37,7 +44,9 @@ export const renderers = {
   resolution: renderResolution,
   nuisance: renderNuisance,
   computation: renderComputation,
+  picture: renderPicture,
   story: renderStory,
+  volume_causes: renderVolumeCauses,
   evidence: renderEvidence,
   confounding: renderConfounding,
   added_variable: renderAddedVariable,
@@ -47,6 +56,12 @@ export const renderers = {
   autocorrelation: renderAutocorrelation,
   detectable: renderDetectable,
   noise_model: renderNoiseModel,
+  comparison: renderComparison,
+  validation: renderValidation,
+  circles: renderCircles,
+  positioning: renderPositioning,
+  diagonals: renderDiagonals,
+  setup_residuals: renderSetupResiduals,
   uncertainties: renderUncertainties,
   budget: renderBudget,
   plan_layout: renderPlanLayout,

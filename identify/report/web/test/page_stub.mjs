@@ -2,7 +2,8 @@
 // mistake: texts with "undefined" or "NaN", numbers in plots that are not finite, markup in plots that is not
 // the report's own.
 
-const wrong = /undefined|NaN|\[object|Infinity/;
+// A figure of a standard may be undefined in words; a value never.
+const wrong = /(?<! are )undefined|NaN|\[object|Infinity/;
 const ownMarkup = /<\/?(b|br|extra)>/g;
 
 function checkText(text) {

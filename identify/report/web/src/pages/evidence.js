@@ -1,6 +1,7 @@
 import { bar, el, fixed, longTable, note, significant, table } from '../dom.js';
 import { addPlot, layout2d, plain } from '../plot.js';
-import { color, series, transparent } from '../theme.js';
+import { color } from '../theme.js';
+import { printed } from '../words.js';
 
 const rows = (effects) => effects.flatMap((effect) => (effect.amplitudes.length === 0
   ? [{ effect, amplitude: null, first: true }]
@@ -19,30 +20,50 @@ const columns = [
   { name: 'log10 p', cell: (row) => (row.first ? fixed(row.effect.log10_p, 1) : '') },
 ];
 
-/** Bars of −log10 p, strongest on top, with the threshold. The plot library's bundle has no bars of its own. */
+/** Large ratios stay on the page, small ones stay apart: asinh is linear about zero and logarithmic far out. */
+const place = Math.asinh;
+const kTicks = [0, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
+/** The amplitude that stands out most of an effect that has several. */
+function leading(effect) {
+  const usable = effect.amplitudes.filter((amplitude) => amplitude.mdb > 0 && amplitude.value !== null && amplitude.U95 !== null);
+  const ratio = (amplitude) => Math.abs(amplitude.value) / amplitude.mdb;
+  return usable.reduce((best, amplitude) => (best === null || ratio(amplitude) > ratio(best) ? amplitude : best), null);
+}
+
+function chance({ log10_p: log }) {
+  return log > -2.5 ? `p ${significant(10 ** log, 1)}` : printed(`p 10^${Math.round(log)}`);
+}
+
+/** Amplitudes ± U95 over the smallest that would be found, strongest evidence on top; p as text. */
 function evidencePlot(data, effects) {
-  const shown = effects.slice(0, 20).reverse();
+  const shown = effects.map((effect) => ({ effect, amplitude: leading(effect) })).filter(({ amplitude }) => amplitude).slice(0, 20).reverse();
   const y = shown.map((_, k) => k);
-  const threshold = -data.threshold;
   const [added, alternatives] = [data.added, data.alternatives.flat()].map((list) => new Set(list.map((effect) => effect.label)));
-  const most = Math.max(1.3 * threshold, ...shown.map((effect) => -effect.log10_p));
-  const shadeOf = (effect) => (added.has(effect.label) ? color('good') : alternatives.has(effect.label) ? color('warning') : effect.log10_p < data.threshold ? color('bad') : series(6));
+  const shadeOf = (effect) => (added.has(effect.label) ? color('good') : alternatives.has(effect.label) ? color('warning') : effect.log10_p < data.threshold ? color('bad') : color('muted'));
+  const parts = shown.map(({ effect, amplitude }) => ({ effect, amplitude, at: Math.abs(amplitude.value) / amplitude.mdb, half: amplitude.U95 / amplitude.mdb, shade: shadeOf(effect) }));
+  const far = Math.max(1.3, ...parts.map(({ at, half }) => at + half));
+  const near = Math.min(0, ...parts.map(({ at, half }) => at - half));
+  const line = (part, k) => ({ type: 'line', x0: place(part.at - part.half), x1: place(part.at + part.half), y0: k, y1: k, line: { color: part.shade, width: 2.4 } });
   return {
     data: [{
-      x: shown.map((effect) => -effect.log10_p), y, type: 'scatter', mode: 'markers', marker: { size: 14, color: transparent(color('text'), 0) },
-      text: shown.map((effect) => `${plain(effect.label)} (${effect.kind})<br>log10 p ${fixed(effect.log10_p, 1)}, visible fraction ${fixed(effect.visible_fraction, 2)}`),
+      x: parts.map(({ at }) => place(at)), y, type: 'scatter', mode: 'markers', marker: { size: 9, color: parts.map(({ shade }) => shade) },
+      text: parts.map(({ effect, amplitude, at }) => `${plain(effect.label)} (${effect.kind})<br>${plain(amplitude.label)} ${significant(amplitude.value)} ± ${significant(amplitude.U95, 2)} ${plain(amplitude.unit)}, ${significant(at, 2)} times the smallest that would be found<br>log10 p ${fixed(effect.log10_p, 1)}, visible fraction ${fixed(effect.visible_fraction, 2)}`),
       hovertemplate: '%{text}<extra></extra>',
     }],
     paperHeight: 0.85,
     layout: layout2d({
-      height: 76 + 20 * shown.length, margin: { l: 10, t: 26 }, hovermode: 'closest',
-      x: { title: '−log10 p, family-wise', range: [0, 1.05 * most], zeroline: false },
-      y: { title: '', tickvals: y, ticktext: shown.map((effect) => plain(effect.label)), showgrid: false, zeroline: false, range: [-0.7, shown.length - 0.3] },
+      height: 92 + 21 * shown.length, margin: { l: 10, r: 62, t: 26 }, hovermode: 'closest',
+      x: { title: '|amplitude| ± U95, over the smallest that would be found (MDB)', range: [place(near) - 0.05, place(far) + 0.15], zeroline: true, tickvals: kTicks.map(place), ticktext: kTicks.map(String) },
+      y: { title: '', tickvals: y, ticktext: parts.map(({ effect }) => plain(effect.label)), showgrid: false, zeroline: false, range: [-0.7, shown.length - 0.3] },
       shapes: [
-        ...shown.map((effect, k) => ({ type: 'rect', x0: 0, x1: -effect.log10_p, y0: k - 0.3, y1: k + 0.3, fillcolor: shadeOf(effect), line: { width: 0 }, layer: 'between' })),
-        { type: 'line', x0: threshold, x1: threshold, yref: 'paper', y0: 0, y1: 1, line: { color: color('bad'), width: 1.2, dash: 'dash' } },
+        ...parts.map(line),
+        { type: 'line', x0: place(1), x1: place(1), yref: 'paper', y0: 0, y1: 1, line: { color: color('bad'), width: 1.2, dash: 'dash' } },
       ],
-      annotations: [{ x: threshold, yref: 'paper', y: 1, yanchor: 'bottom', xanchor: 'left', showarrow: false, text: 'threshold 0.5 %', font: { size: 11, color: color('bad') } }],
+      annotations: [
+        { x: place(1), yref: 'paper', y: 1, yanchor: 'bottom', xanchor: 'left', showarrow: false, text: 'found in four campaigns of five', font: { size: 11, color: color('bad') } },
+        ...parts.map(({ effect }, k) => ({ xref: 'paper', x: 1, xanchor: 'left', xshift: 6, y: k, showarrow: false, text: chance(effect), font: { size: 11, color: color('muted') } })),
+      ],
     }),
   };
 }
@@ -59,7 +80,7 @@ export function renderEvidence(body, data) {
   const first = unique([...data.added, ...data.alternatives.flat()]);
   const known = new Set(first.map((effect) => effect.label));
   const others = data.ranking.filter((effect) => !known.has(effect.label));
-  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below the threshold an effect is above the noise. Visible fraction: share of its signal that no parameter of the model imitates. MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from every other effect, the worst of which is the rival.`));
+  body.append(note(`Score test of each of ${data.families} effects, after projection off everything the model can already do. p counts all effects tested; below 0.5 % an effect is above the noise. Drawn: the amplitude it would have if it were added, with its 95 % interval, in units of the smallest amplitude that these readings would show; the strongest of so many leave zero by chance alone, which p counts. Visible fraction: share of its signal that no parameter of the model imitates. MDB: smallest amplitude that is found with 80 % power; MIB: smallest that is also separated from every other effect, the worst of which is the rival.`));
   const node = el('div', { class: 'plot' });
   body.append(el('figure', {}, [el('figcaption', {}, caption(data)), node]));
   addPlot(node, () => evidencePlot(data, [...first, ...others]));

@@ -2,11 +2,7 @@ import { decimalsFor, el, fixed, longTable, note, significant, table } from '../
 import { addPlot, layout2d, legendAbove, plain } from '../plot.js';
 import { renderSurface } from '../lenses/surface.js';
 import { color, series, transparent } from '../theme.js';
-
-const kRaised = '⁰¹²³⁴⁵⁶⁷⁸⁹';
-/** Plain text of the program as it is printed: "10^-12", "+- 3 um". */
-const printed = (text) => text.replaceAll('+-', '±').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/log10 p -/g, 'log10 p −')
-  .replace(/10\^(-?)(\d+)/g, (_, sign, digits) => `10${sign ? '⁻' : ''}${[...digits].map((digit) => kRaised[digit]).join('')}`);
+import { printed } from '../words.js';
 
 const stepName = (step) => (step.added === '' ? 'as given' : `+ ${step.added}`);
 
@@ -81,6 +77,8 @@ const amplitudeText = (effect, amplitude) => `${partOf(effect, amplitude)}${fixe
 const missingItem = (effect) => el('div', { class: 'found' }, [
   el('strong', {}, effect.resolution ? `${effect.label}: the function needs more knots` : effect.label),
   effect.amplitudes.length > 0 ? el('span', { class: 'amount' }, effect.amplitudes.map((amplitude) => amplitudeText(effect, amplitude)).join('; ')) : null,
+  effect.plain ? el('p', { class: 'plain' }, effect.plain) : null,
+  effect.usual_causes ? el('p', { class: 'plain' }, [el('strong', {}, 'Usual causes: '), `${effect.usual_causes}.`]) : null,
   el('div', { class: 'muted' }, `${effect.kind}, ${effect.shape} in ${effect.driver}; ${printed(effect.how)}.`),
 ]);
 

@@ -1,0 +1,109 @@
+#include "volcal/identify/report/values/volume_causes.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/stated_errors.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr int kPositionsPerAxis = 5;
+constexpr double kDoesNotMove = 1e-12;  // m
+
+/// Parameters of functions and blocks that both layouts have, theirs and ours.
+std::vector<std::pair<int, int>> shared(const ParameterLayout& theirs, const ParameterLayout& ours) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const FunctionGroup& group : ours.groups) {
+    for (int slot = 0; slot < group.count(); ++slot) {
+      const auto place = theirs.find(group.symbols[static_cast<std::size_t>(slot)]);
+      if (!place) continue;
+      const FunctionGroup& source = theirs.groups[static_cast<std::size_t>(place->group)];
+      for (int j = 0; j < std::min(group.basis->size(), source.basis->size()); ++j)
+        pairs.emplace_back(source.index(j, place->slot), group.index(j, slot));
+    }
+  }
+  for (const ParameterBlock& block : ours.blocks) {
+    const ParameterBlock* source = theirs.find_block(block.name);
+    if (source == nullptr) continue;
+    for (int k = 0; k < std::min(block.size(), source->size()); ++k)
+      pairs.emplace_back(source->offset + k, block.offset + k);
+  }
+  return pairs;
+}
+
+/// The given result with the effects in it.
+FitResult extended_result(const FitResult& given, std::span<const EffectFinding> added) {
+  ModelSpec model = given.identified;
+  for (const EffectFinding& effect : added) {
+    if (find_effect(effect.spec.kind) != nullptr) model.effects.push_back(effect.spec);
+  }
+  FitResult result = stated_result(given.machine, model);
+  result.functions = given.functions;
+  result.conditions = given.conditions;
+  result.reference_temperature_degC = given.reference_temperature_degC;
+  result.temperature_is_campaign_mean = given.temperature_is_campaign_mean;
+  const auto pairs = shared(given.layout, result.layout);
+  for (const auto& [from, to] : pairs) {
+    for (const auto& [from2, to2] : pairs) result.covariance(to, to2) = given.covariance(from, from2);
+  }
+  for (const EffectFinding& effect : added) {
+    for (const AmplitudeFigure& amplitude : effect.amplitudes) {
+      const ParameterBlock* block = result.layout.find_block(amplitude.label);
+      if (block != nullptr) result.covariance(block->offset, block->offset) = amplitude.u * amplitude.u;
+    }
+  }
+  return result;
+}
+
+/// The error field knows an effect by its label, or by that of an amplitude.
+bool is_named(const EffectFinding& effect, const std::string& contribution) {
+  return effect.label == contribution ||
+         std::ranges::find(effect.amplitudes, contribution, &AmplitudeFigure::label) !=
+             effect.amplitudes.end();
+}
+
+bool is_effect_of(const ModelSpec& model, const std::string& contribution) {
+  return std::ranges::any_of(model.effects, [&](const EffectSpec& spec) {
+    const EffectKind* kind = find_effect(spec.kind);
+    return kind != nullptr && effect_label(*kind->make(spec, model.file)) == contribution;
+  });
+}
+
+VolumeCause cause_of_line(const BudgetLine& line, bool found) {
+  return {line.name, found, line.rms, line.u_rms > 0.0 ? std::optional(line.u_rms) : std::nullopt,
+          line.share};
+}
+
+}  // namespace
+
+VolumeCauses volume_causes(const FitResult& given, std::span<const EffectFinding> added) {
+  VolumeCauses result;
+  const FitResult extended = extended_result(given, added);
+  const Tool& tool = extended.machine.tools.front();
+  const ErrorBudget budget = error_budget(extended, tool, default_conditions(extended), kPositionsPerAxis);
+  result.tool = tool.name;
+  result.total_rms = budget.total.rms;
+  for (const BudgetLine& line : budget.contributions) {
+    const bool found =
+        std::ranges::any_of(added, [&](const EffectFinding& effect) { return is_named(effect, line.name); });
+    if (line.rms >= kDoesNotMove && (found || is_effect_of(extended.identified, line.name)))
+      result.causes.push_back(cause_of_line(line, found));
+  }
+  for (const EffectFinding& effect : added) {
+    const bool moves = std::ranges::any_of(
+        result.causes, [&](const VolumeCause& cause) { return is_named(effect, cause.name); });
+    if (!moves && find_effect(effect.spec.kind) != nullptr) result.not_in_volume.push_back(effect.label);
+  }
+  for (const BudgetLine& line : budget.causes) {
+    if (line.name != kCauseOfEffects && line.rms >= kDoesNotMove)
+      result.causes.push_back(cause_of_line(line, false));
+  }
+  std::ranges::stable_sort(result.causes, std::greater<>(), &VolumeCause::rms);
+  return result;
+}
+
+}  // namespace volcal

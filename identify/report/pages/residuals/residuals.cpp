@@ -166,7 +166,7 @@ void add_environment(const PageInput& input, std::vector<Abscissa>& list) {
            return found == all.end() || found->second.empty() ? nan() : found->second[record.row];
          }});
   }
-  list.push_back({"length", "Length of the beam", "mm", [&input](const ResidualRecord& record) {
+  list.push_back({"length", "Measured length", "mm", [&input](const ResidualRecord& record) {
                     const Setup& setup = input.campaign.setups[record.setup];
                     return traits_of(setup).laser_length == LaserLength::Distance
                                ? setup.readings.value[0][record.row] * kPerMilli

@@ -172,7 +172,7 @@ function swallowedText(data) {
 const headings = (plot) => {
   if (plot.axis.startsWith('dir_')) return el('span', { class: `axis-${plot.axis.at(-1)}` }, `Against the direction of approach of ${plot.axis.at(-1)}`);
   if (plot.axis.startsWith('T_')) return `Against temperature ${plot.axis.slice(2)}`;
-  if (plot.axis === 'length') return 'Against the length of the beam';
+  if (plot.axis === 'length') return 'Against the measured length of the beam';
   if (plot.axis === 'time') return 'Against time';
   return el('span', { class: `axis-${plot.axis}` }, `Against ${plot.axis}`);
 };

@@ -13,7 +13,7 @@
 #include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/search/ladder.h"
-#include "volcal/identify/criticism/search/search.h"
+#include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
 
@@ -55,7 +55,7 @@ class SessionOfTwo : public ::testing::Test {
   }
 };
 
-/// As a diagnosis ranks the given model.
+/// As the search of a diagnosis does before its first step.
 TEST_F(SessionOfTwo, RanksAsADiagnosisToTheBit) {
   FitOptions fit_options;
   fit_options.threads = 1;
@@ -63,11 +63,10 @@ TEST_F(SessionOfTwo, RanksAsADiagnosisToTheBit) {
   fit_options.noise = NoisePolicy::White;
   const FitResult result = fit(campaign(), ModelSpec{}, fit_options);
   const LinearModel model(campaign(), result);
-  SearchOptions options;
-  options.most = 0;
-  Search search(model, heldout_lines(model, SessionOptions{}.heldout_share), options);
-  search.run();
-  const ModelState& given = search.given();
+  const ModelState given = ModelState(model, std::make_shared<SearchSetting>(
+                                                 model, heldout_lines(model, SessionOptions{}.heldout_share),
+                                                 std::vector<std::string>{}, 1))
+                               .tested();
   std::map<EffectName, EffectFinding> found;
   for (const FamilyTest& test : given.tests().families) {
     EffectFinding each = finding(given.setting(), test);

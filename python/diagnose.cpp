@@ -80,7 +80,7 @@ void write_diagnosis(const DiagnosisOf& of, const std::filesystem::path& path, b
 Model model_with_found(const DiagnosisOf& of) {
   const Campaign& campaign = of.given_campaign();
   return without_lock([&] {
-    return Model{extended_model(of.model, campaign, accepted_effects(of.diagnosis)), campaign.machine};
+    return Model{offered_models(of.model, campaign, of.diagnosis).front().model, campaign.machine};
   });
 }
 

@@ -9,6 +9,7 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
+#include "tests/support/random_results.h"
 #include "volcal/identify/errors/error_tables.h"
 
 namespace volcal {
@@ -17,47 +18,11 @@ namespace {
 using Eigen::Vector3d;
 using testing_support::machine_of;
 using testing_support::random_machine;
+using testing_support::random_result;
 using testing_support::random_vector;
 using testing_support::uniform;
 
 constexpr double kSameAsPlain = 1e-12;  // of the largest
-
-void add_tool_block(FitResult& result, const std::string& tool, std::mt19937_64& random) {
-  ParameterBlock block;
-  block.kind = ParameterKind::ToolOffset;
-  block.name = "tool " + tool;
-  block.offset = result.layout.size;
-  block.guess = Vector3d::Zero();
-  result.layout.blocks.push_back(block);
-  result.layout.size += 3;
-  result.parameters.conservativeResize(result.layout.size);
-  result.parameters.tail<3>() = random_vector(random, 1e-5);
-}
-
-/// All error motions and locations at random, a dense covariance, one tool whose offset was estimated.
-FitResult random_result(Machine machine, std::mt19937_64& random) {
-  machine.tools = {{"stated", random_vector(random, 0.3), 3e-6},
-                   {"estimated", random_vector(random, 0.3), 3e-6}};
-  testing::GivenErrors given;
-  for (const Axis& axis : machine.axes) {
-    for (const Component component : kAllComponents) {
-      const double phase = uniform(random, 3.0);
-      given.functions[ErrorSymbol{component, axis.name}.name()] = [phase](double q) {
-        return 1e-5 * std::sin(4.0 * q + phase);
-      };
-      if (!is_rotary(axis.name)) continue;
-      given.locations[LocationSymbol{component, axis.name}.name()] = uniform(random, 1e-5);
-    }
-  }
-  for (const LocationSymbol symbol : machine.datum.squareness()) {
-    if (machine.has_axis(symbol.axis)) given.locations[symbol.name()] = uniform(random, 1e-5);
-  }
-  FitResult result = testing::result_with(machine, given, 5);
-  add_tool_block(result, "estimated", random);
-  const Eigen::MatrixXd root = 1e-6 * test::random_matrix(random, result.layout.size, result.layout.size);
-  result.covariance = root * root.transpose();
-  return result;
-}
 
 void expect_same_as_plain(const FitResult& result, int per_axis) {
   const std::vector<VolumetricError> grid = volumetric_grid(result, per_axis, {});

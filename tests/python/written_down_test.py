@@ -94,7 +94,7 @@ class Pages(Case):
         diagnosis = names["diagnosis"]
         self.assertEqual(diagnosis.verdict, "NAMED")
         self.assertEqual([effect.name for effect in diagnosis.effects],
-                         ["thermal-play:EXX:dir_x T_air:thermal_play"])
+                         ["worn-screw:EXX:dir_x x:worn_screw"])
         self.assertLess(names["better"].sigma0, 1.05)
         for cell in cells:
             if cell["cell_type"] == "code":

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -141,12 +142,13 @@ class SetJudge {
                 {volume_of(reached.model().campaign(), poses_)}),
         rows_(volume_.rows(0)) {}
 
-  SetFinding judge(std::size_t added) const {
+  SetFinding judge(std::size_t added) {
     std::vector<FamilyTest> members{reached_.added()[added].test};
     const auto& rivals = reached_.added()[added].rivals;
     members.insert(members.end(), rivals.begin(), rivals.end());
     SetFinding set;
     set.chosen = simplest(members);
+    if (set.chosen) chosen_.insert(members[*set.chosen].family);
     for (const FamilyTest& member : members) {
       const LadderStep step = ladder_step_with(reached_, added, member);
       set.members.push_back({.rms_heldout = step.rms_heldout,
@@ -176,7 +178,7 @@ class SetJudge {
 
   const Family& family(const FamilyTest& test) const { return reached_.setting().families[test.family]; }
 
-  /// Of the fewest parameters; nothing where none can stand in a model file.
+  /// Of the fewest parameters, and no other set's choice; nothing where none can stand in a model file.
   std::optional<std::size_t> simplest(const std::vector<FamilyTest>& members) const {
     const auto parameters = [this](const FamilyTest& test) {
       const Family& own = family(test);
@@ -184,7 +186,7 @@ class SetJudge {
     };
     std::optional<std::size_t> best;
     for (std::size_t i = 0; i < members.size(); ++i) {
-      if (!family(members[i]).effect) continue;
+      if (!family(members[i]).effect || chosen_.contains(members[i].family)) continue;
       if (!best || parameters(members[i]) < parameters(members[*best])) best = i;
     }
     return best;
@@ -274,6 +276,7 @@ class SetJudge {
   std::vector<AxisPosition> poses_;
   HypotheticalCampaign volume_;
   HypotheticalRows rows_;
+  std::set<std::size_t> chosen_;  ///< families
 };
 
 }  // namespace

@@ -67,7 +67,13 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
 
 namespace {
 
-/// `instead`: of a set, by its place, the member in the place of the chosen one.
+void add_new(const EffectFinding& effect, std::vector<EffectFinding>& accepted) {
+  if (std::ranges::find(accepted, effect.name, &EffectFinding::name) == accepted.end())
+    accepted.push_back(effect);
+}
+
+/// `instead`: of a set, by its place, the member in the place of the chosen one. What is in two sets enters
+/// once.
 std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
                                          const std::map<std::size_t, std::size_t>& instead) {
   std::vector<EffectFinding> accepted = diagnosis.effects;
@@ -75,9 +81,9 @@ std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
   for (std::size_t i = 0; i < std::min(sets.size(), diagnosis.sets.size()); ++i) {
     const auto other = instead.find(i);
     if (other != instead.end()) {
-      accepted.push_back((*sets[i])[other->second]);
+      add_new((*sets[i])[other->second], accepted);
     } else if (const auto chosen = diagnosis.sets[i].chosen) {
-      accepted.push_back((*sets[i])[*chosen]);
+      add_new((*sets[i])[*chosen], accepted);
     }
   }
   for (const SurfaceFinding& surface : diagnosis.surfaces) {

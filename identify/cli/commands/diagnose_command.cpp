@@ -171,10 +171,10 @@ const Command& diagnose_command() {
   static const Command command = {"diagnose",
                                   "show where the model fails, and name the effect that is missing",
                                   "  volcal diagnose campaign.toml -o diagnosis\n"
-                                  "  volcal diagnose campaign.toml --model model.toml --auto -o diagnosis\n"
+                                  "  volcal diagnose campaign.toml --model model.toml --auto --try \"EXX += "
+                                  "dir_x * (T_air - 20)\" -o diagnosis\n"
                                   "  volcal diagnose campaign.toml --separate station-drift:\"station "
                                   "P1\",dead-path:\"readings of P1_short\"\n"
-                                  "  volcal diagnose campaign.toml --try \"EXX += dir_x * (T_air - 20)\"\n"
                                   "  volcal diagnose --show diagnosis\n"
                                   "  volcal diagnose --list\n"
                                   "  volcal diagnose campaign.toml --list\n",

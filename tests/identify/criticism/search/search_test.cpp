@@ -144,8 +144,7 @@ TEST(Search, NamesWhatTheUserThinksOf) {
   const FittedStudy study(hiding({bump_in_xy()}, kGrid));
   DiagnoseOptions options;
   options.climb = true;
-  options.figures = false;
-  options.planning.readings = 16;
+  options.figures = options.compare = false;
   const auto own = [](const char* expression) {
     return effect_spec("custom", {{"target", std::string("EZX")}, {"expression", std::string(expression)}});
   };

@@ -106,6 +106,7 @@ Setup points_of_volume(const Campaign& campaign, const std::vector<AxisPosition>
 
 ExtraMeasurement volume_of(const Campaign& campaign, const std::vector<AxisPosition>& poses) {
   ExtraMeasurement volume;
+  volume.is_path = false;
   std::vector<std::size_t> tools;
   for (const Setup& setup : campaign.setups) {
     if (std::ranges::find(tools, setup.tool) == tools.end()) tools.push_back(setup.tool);

@@ -146,6 +146,17 @@ void add_reversals(const std::vector<CircleReading>& readings, int sense,
 
 }  // namespace
 
+std::optional<double> CircularFigures::mean_reversal(int axis) const {
+  double sum = 0.0;
+  int count = 0;
+  for (const QuadrantReversal& reversal : reversals) {
+    if (reversal.axis != axis) continue;
+    sum += reversal.value;
+    ++count;
+  }
+  return count == 0 ? std::nullopt : std::optional(sum / count);
+}
+
 CircularFigures circular_figures(std::span<const CircleReading> readings, double nominal_radius,
                                  const Eigen::Vector2d& instrument_centre) {
   std::vector<CircleReading> ccw, cw, both;

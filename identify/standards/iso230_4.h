@@ -49,6 +49,9 @@ struct QuadrantReversal {
 };
 
 struct CircularFigures {
+  /// Of one axis of the circle, 0 or 1, mean over both ends and senses; none: not read.
+  std::optional<double> mean_reversal(int axis) const;
+
   std::optional<CircularPath> counter_clockwise;
   std::optional<CircularPath> clockwise;
   std::optional<double> bidirectional;  ///< G(b)

@@ -19,7 +19,7 @@ constexpr std::size_t kEffectsInWords = 4;
 /// "EXX reversal from EYX reversal"
 std::string both_effects(const Finding& finding) {
   const std::vector<std::string> effects = finding.texts("effects");
-  if (effects.size() != 2) throw std::invalid_argument("not two effects to be told apart");
+  if (effects.size() != 2) throw std::invalid_argument("not two effects to be separated");
   return effects[0] + " from " + effects[1];
 }
 

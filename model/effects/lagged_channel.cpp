@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "volcal/model/description/units.h"
 
@@ -70,6 +71,73 @@ Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel,
     excess[static_cast<Eigen::Index>(row)] = at->temperature - kReferenceTemperature_degC;
   }
   return excess;
+}
+
+namespace {
+
+FormulaEffect::Formula formula_of(const ChannelHistory& history, const std::string& channel,
+                                  Eigen::Index amplitudes) {
+  return [values = history.values, channel, amplitudes](const SetupView& view,
+                                                        const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
+    return values(view, channel, shape[0]).replicate(1, amplitudes);
+  };
+}
+
+FormulaEffect::Count without_history(const std::string& channel) {
+  return [channel](const SetupView& view) {
+    return has_time_and_channel(view.setup, channel) ? 0 : view.rows();
+  };
+}
+
+std::string channel_of(const EffectTable& table) {
+  return table.text("temperature", "add temperature = \"CHANNEL\"");
+}
+
+}  // namespace
+
+std::unique_ptr<FormulaEffect> motion_by_history(const EffectTable& table, const ChannelHistory& history) {
+  const ErrorSymbol symbol = table.symbol();
+  const std::string channel = channel_of(table), label = symbol.name() + " " + history.label;
+  auto effect = std::make_unique<FormulaEffect>(
+      EffectName{table.spec.kind, symbol.name(), history.driver, history.shape},
+      std::vector{motion_amplitude(table, label, symbol, "per_K")}, formula_of(history, channel, 1),
+      [symbol, channel, label](const Campaign& campaign, const SourcePlace& place) {
+        check_axis(campaign, symbol.axis, label, place);
+        check_time_and_channel(campaign, channel, label, place);
+      });
+  effect->count_unrecorded(without_history(channel));
+  return effect;
+}
+
+std::unique_ptr<FormulaEffect> tool_by_history(const EffectTable& table, const ChannelHistory& history) {
+  const std::string channel = channel_of(table), label = "tool " + history.label;
+  auto effect = std::make_unique<FormulaEffect>(
+      EffectName{table.spec.kind, "tool", history.driver, history.shape},
+      vector_amplitudes(table, label, TargetKind::ToolOffset, "um_per_K"), formula_of(history, channel, 3),
+      [channel, label](const Campaign& campaign, const SourcePlace& place) {
+        check_time_and_channel(campaign, channel, label, place);
+      });
+  effect->count_unrecorded(without_history(channel));
+  return effect;
+}
+
+std::vector<EffectSpec> rotations_by_history(const Campaign& campaign, const std::string& kind) {
+  std::vector<EffectSpec> specs;
+  if (!has_time(campaign)) return specs;
+  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+    if (!is_rotation(symbol.component)) continue;
+    for (const std::string& channel : temperature_channels(campaign))
+      specs.push_back(effect_spec(kind, {{"symbol", symbol.name()}, {"temperature", channel}}));
+  }
+  return specs;
+}
+
+std::vector<EffectSpec> tools_by_history(const Campaign& campaign, const std::string& kind) {
+  std::vector<EffectSpec> specs;
+  if (!has_time(campaign)) return specs;
+  for (const std::string& channel : temperature_channels(campaign))
+    specs.push_back(effect_spec(kind, {{"temperature", channel}}));
+  return specs;
 }
 
 }  // namespace volcal

@@ -2,9 +2,11 @@
 /// A temperature channel behind a lumped thermal mass: what follows it late.
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
+#include <vector>
 
-#include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/formula_effect.h"
 
 namespace volcal {
 
@@ -17,5 +19,21 @@ void check_time_and_channel(const Campaign& campaign, const std::string& channel
 /// of the campaign's channel on, T linear between readings; 0 where time or channel were not recorded. `lag`:
 /// s.
 Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel, double lag);
+
+/// How an effect depends on what a channel was before; its shape is the time constant, added by the kind.
+struct ChannelHistory {
+  std::string label;   ///< "late by air", behind what is moved
+  std::string driver;  ///< "T_air"
+  std::string shape;   ///< "lag"
+  Eigen::VectorXd (*values)(const SetupView& view, const std::string& channel, double time_constant);
+};
+/// Of the error motion, or the tool, that a table with key `temperature` is about.
+std::unique_ptr<FormulaEffect> motion_by_history(const EffectTable& table, const ChannelHistory& history);
+std::unique_ptr<FormulaEffect> tool_by_history(const EffectTable& table, const ChannelHistory& history);
+
+/// Candidates where times are recorded: rotations, since displacements are scale, straightness or the tool's,
+/// by every channel; the tool by every channel.
+std::vector<EffectSpec> rotations_by_history(const Campaign& campaign, const std::string& kind);
+std::vector<EffectSpec> tools_by_history(const Campaign& campaign, const std::string& kind);
 
 }  // namespace volcal

@@ -40,6 +40,10 @@ HypotheticalCampaign::HypotheticalCampaign(const Campaign& campaign, const FitRe
   map_parameters(campaign, result);
   model_.expand_effects(parameters_);
   views_ = setup_views(campaign_, model_.binding(), model_.chain());
+  for (std::size_t i = 0; i < measurements_.size(); ++i) {
+    for (std::size_t setup = 0; setup < stretches_[i].count; ++setup)
+      views_[stretches_[i].first + setup].is_path = measurements_[i].is_path;
+  }
 }
 
 Campaign HypotheticalCampaign::extended(const Campaign& campaign) {

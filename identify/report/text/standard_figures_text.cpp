@@ -119,21 +119,9 @@ std::string diagonal_groups_text(std::span<const NamedFigures> models) {
   return table.text();
 }
 
-/// Mean over both ends and senses of the reversal of one axis of the circle.
-std::optional<double> mean_reversal(const CircularFigures& figures, int axis) {
-  double sum = 0.0;
-  int count = 0;
-  for (const QuadrantReversal& reversal : figures.reversals) {
-    if (reversal.axis != axis) continue;
-    sum += reversal.value;
-    ++count;
-  }
-  return count == 0 ? std::nullopt : std::optional(sum / count);
-}
-
 std::string circle_reversal(const CircleTest& test, const CircularFigures& figures, AxisName axis) {
-  if (axis == test.first) return micrometres_or_dash(mean_reversal(figures, 0));
-  if (axis == test.second) return micrometres_or_dash(mean_reversal(figures, 1));
+  if (axis == test.first) return micrometres_or_dash(figures.mean_reversal(0));
+  if (axis == test.second) return micrometres_or_dash(figures.mean_reversal(1));
   return "-";
 }
 

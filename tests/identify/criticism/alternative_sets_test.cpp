@@ -11,6 +11,7 @@
 #include "tests/support/effect_campaign.h"
 #include "tests/support/hidden_studies.h"
 #include "tests/support/search_states.h"
+#include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/solve/fit.h"
@@ -79,34 +80,40 @@ FitResult refitted(const FittedStudy& study, const EffectSpec& effect) {
   return fit(study.simulated.campaign, model, options);
 }
 
+/// A rival that acts at every pose, and one that fades with the travel since a turn, which a pose does not
+/// have.
 TEST(AlternativeSets, DifferAsRefitsWithEachDo) {
   const FittedStudy study(hiding({reversal("EYY", 1.0e-6)}, {5, 4, 4}));
   const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
   const FamilyTest own = test_of(given, {"reversal", "EYY", "", ""});
-  const FamilyTest rival = test_of(given, {"position-reversal", "EYY", "", ""});
-  ModelState reached = given.with(own);
-  std::vector<AddedEffect> added = reached.added();
-  added.front().rivals = {rival};
-  reached = reached.with_comparisons(std::move(added));
-
-  const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
-  ASSERT_EQ(sets.size(), 1U);
-  ASSERT_EQ(sets[0].members.size(), 2U);
-  EXPECT_EQ(sets[0].chosen, 0U) << "both have one amplitude";
-  EXPECT_EQ(sets[0].farthest, 1U);
-  const MemberFinding& member = sets[0].members[1];
-
   const auto places = places_of(study.simulated.campaign);
   const Tool& tool = study.simulated.campaign.machine.tools[0];
-  const auto spec = [&](const FamilyTest& test) { return given.setting().families[test.family].spec; };
-  const Eigen::Matrix3Xd difference = predicted(refitted(study, spec(rival)), tool, places) -
-                                      predicted(refitted(study, spec(own)), tool, places);
-  const double largest = difference.colwise().norm().maxCoeff();
-  EXPECT_GT(largest, 0.3e-6);
-  EXPECT_NEAR(member.difference, largest, 0.15 * largest);
-  EXPECT_GT(member.difference_u, 0.0);
-  EXPECT_TRUE(sets[0].matters);
-  EXPECT_EQ(member.at.size(), 3U);
+  const auto spec = [&](const FamilyTest& test) {
+    EffectSpec found = finding(given.setting(), test).spec;
+    found.options.set("amplitude", 0.0);
+    return found;
+  };
+  const Eigen::Matrix3Xd chosen = predicted(refitted(study, spec(own)), tool, places);
+  for (const char* kind : {"position-reversal", "pre-travel"}) {
+    const FamilyTest rival = test_of(given, {kind, "EYY", "", ""});
+    ModelState reached = given.with(own);
+    std::vector<AddedEffect> added = reached.added();
+    added.front().rivals = {rival};
+    reached = reached.with_comparisons(std::move(added));
+    const std::vector<SetFinding> sets = alternative_sets(reached, study.result);
+    ASSERT_EQ(sets.size(), 1U);
+    ASSERT_EQ(sets[0].members.size(), 2U);
+    EXPECT_EQ(sets[0].chosen, 0U) << "no member has fewer parameters";
+    EXPECT_EQ(sets[0].farthest, 1U);
+    const MemberFinding& member = sets[0].members[1];
+    const Eigen::Matrix3Xd difference = predicted(refitted(study, spec(rival)), tool, places) - chosen;
+    const double largest = difference.colwise().norm().maxCoeff();
+    EXPECT_GT(largest, 0.3e-6) << kind;
+    EXPECT_NEAR(member.difference, largest, 0.15 * largest) << kind;
+    EXPECT_GT(member.difference_u, 0.0);
+    EXPECT_TRUE(sets[0].matters);
+    EXPECT_EQ(member.at.size(), 3U);
+  }
 }
 
 EffectFinding reversal_of(const std::string& symbol) {

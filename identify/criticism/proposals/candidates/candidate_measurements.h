@@ -20,6 +20,7 @@ struct ExtraMeasurement {
   std::string words;          ///< "measure P1 again with tool short after 3 h"
   std::vector<Setup> setups;  ///< names that the campaign does not have
   std::vector<Tool> tools;    ///< new ones; setups refer to them from Machine::tools.size() on
+  bool is_path = true;        ///< readings follow one another; false: poses that have no order
 
   std::size_t readings() const;
 };

@@ -55,22 +55,13 @@ Json path_figures(const std::optional<CircularPath>& path) {
           {"F_min", rounded_micrometres(path->radial_min)}};
 }
 
-/// Mean over both ends and senses.
-Json reversal_json(const CircularFigures& figures, int axis) {
-  double sum = 0.0;
-  int count = 0;
-  for (const QuadrantReversal& reversal : figures.reversals) {
-    if (reversal.axis != axis) continue;
-    sum += reversal.value;
-    ++count;
-  }
-  return count == 0 ? Json() : rounded_micrometres(sum / count);
-}
-
 Json circular_figures_json(const CircularFigures& figures) {
-  return {{"ccw", path_figures(figures.counter_clockwise)}, {"cw", path_figures(figures.clockwise)},
-          {"G_both", optional_json(figures.bidirectional)}, {"D", optional_json(figures.mean_radial)},
-          {"B_first", reversal_json(figures, 0)},           {"B_second", reversal_json(figures, 1)}};
+  return {{"ccw", path_figures(figures.counter_clockwise)},
+          {"cw", path_figures(figures.clockwise)},
+          {"G_both", optional_json(figures.bidirectional)},
+          {"D", optional_json(figures.mean_radial)},
+          {"B_first", optional_json(figures.mean_reversal(0))},
+          {"B_second", optional_json(figures.mean_reversal(1))}};
 }
 
 /// Root mean square of readings less predictions.

@@ -4,6 +4,7 @@ import { begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
 import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
+import { openOn, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
 import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble } from './store.js';
 
@@ -34,6 +35,9 @@ function forgetReadings() {
   ranking.value = null;
 }
 
+/** Variables of the first suspect, and of what has no name. */
+const standsOutMost = ({ effects = [], unknown = [] }) => [...variablesIn(effects[0]?.name ?? '').slice(0, 1), ...(unknown[0]?.variables ?? [])];
+
 const askRank = latest();
 
 export async function rank() {
@@ -44,6 +48,7 @@ export async function rank() {
     const answer = await askRank('rank', {});
     if (!answer) return;
     ranking.value = { ...answer, model, standing };
+    openOn(standsOutMost(answer));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
   } catch (error) {

@@ -46,7 +46,7 @@ function dropOld() {
 /** Asks for what is not there yet; all that is asked for at once goes in one request. */
 export function ensure(names) {
   const waits = [];
-  for (const name of names) {
+  for (const name of names.filter(Boolean)) {
     const key = stamp(name);
     if (kept.has(key)) continue;
     if (!asked.has(key)) {

@@ -9,6 +9,7 @@ export const kMostPictures = 4;
 
 const storageKey = () => `volcal:pictures:${campaign.value?.file}`;
 let next = 0;
+let untouched = false;
 const withKey = (config) => ({ of: 'reading', perSigma: false, ...config, key: (next += 1) });
 
 const positions = () => variables.value.filter(({ kind, name }) => kind === 'position' || ['x', 'y', 'z'].includes(name));
@@ -27,6 +28,9 @@ function opening() {
   ].map(withKey);
 }
 
+/** Variables for a lens that has none yet. */
+const sides = () => ({ x: positions()[0]?.name ?? 'row', y: positions().at(-1)?.name ?? 'row' });
+
 const valid = (config) => (!config.x || has(config.x)) && (!config.y || has(config.y));
 
 /** Opens the lenses of this campaign as they were left in this tab. */
@@ -39,6 +43,18 @@ export function openPictures() {
     }
   } catch { /* what was kept is of no use */ }
   pictures.value = opening();
+  untouched = true;
+}
+
+/** What stands out most is looked at first, while nobody has chosen anything. */
+export function openOn(names) {
+  if (!untouched) return;
+  const [first, ...others] = names;
+  lookAlong(first === undefined ? others : [first]);
+  if (others.length > 1) {
+    const map = pictures.value.find(({ kind }) => kind === 'heat');
+    if (map) change(map.key, { x: others[0], y: others[1] });
+  }
 }
 
 effect(() => {
@@ -46,17 +62,19 @@ effect(() => {
   if (list.length > 0 && campaign.peek()) sessionStorage.setItem(storageKey(), JSON.stringify(list));
 });
 
-export const change = (key, values) => { pictures.value = pictures.value.map((each) => (each.key === key ? { ...each, ...values } : each)); };
-export const close = (key) => { pictures.value = pictures.value.filter((each) => each.key !== key); };
+export function change(key, values) {
+  untouched = false;
+  pictures.value = pictures.value.map((each) => (each.key === key ? { ...sides(), ...each, ...values } : each));
+}
+export const close = (key) => { untouched = false; pictures.value = pictures.value.filter((each) => each.key !== key); };
 
 export function open(kind) {
-  const first = positions()[0]?.name ?? 'row';
-  if (pictures.value.length >= kMostPictures) return;
-  pictures.value = [...pictures.value, withKey({ kind, x: first, y: positions().at(-1)?.name ?? 'row' })];
+  if (pictures.value.length < kMostPictures) pictures.value = [...pictures.value, withKey({ kind, ...sides() })];
 }
 
 /** Sets lenses to the variables in which something stands out: residuals against the first, a map of the first two. */
 export function lookAlong(names) {
+  untouched = false;
   const usable = names.filter(has);
   if (usable.length === 0) return;
   const wanted = [{ kind: 'scatter', x: usable[0] }];

@@ -1,9 +1,8 @@
 // Variables that the readings were recorded with.
 import { distinct } from './statistics.js';
 
-const kUnits = { um: 'µm', urad: 'µrad', degC: '°C', 'um/m': 'µm/m' };
-
-export const unitText = (unit) => kUnits[unit] ?? unit ?? '';
+/** Unit of the program's files as it is printed. */
+export const unitText = (unit) => String(unit ?? '').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/\bdegC\b/g, '°C').replace(/\bdeg\b/g, '°');
 export const titleOf = (variable) => (variable.unit ? `${variable.label} [${unitText(variable.unit)}]` : variable.label);
 
 const isTime = (column) => column.kind === 'time' || /^time(_s)?$/.test(column.name);

@@ -4,7 +4,7 @@ import { call } from '../api/call.js';
 import { report } from '../app/actions.js';
 import { ensure } from '../app/columns.js';
 import { change, close } from '../app/pictures.js';
-import { campaign, currentModel, state, variables } from '../app/store.js';
+import { beforeModel, campaign, currentModel, state, variables } from '../app/store.js';
 import { directionsOf } from '../data/variables.js';
 import { begin } from '../draw/timing.js';
 import { Picture } from './picture.js';
@@ -12,10 +12,10 @@ import { circlesOf } from './polar.js';
 import { lenses } from './registry.js';
 import { kOf } from './values.js';
 
-function Menu({ label, value, options, onChoose }) {
+function Menu({ label, name, value, options, onChoose }) {
   return (
-    <label class="menu"><span>{label}</span>
-      <select value={value} onChange={(event) => { begin('variable'); onChoose(event.currentTarget.value); }}>
+    <label class="menu">{label && <span>{label}</span>}
+      <select value={value} aria-label={name} onChange={(event) => { begin('variable'); onChoose(event.currentTarget.value); }}>
         {options.map(([name, words]) => <option key={name} value={name}>{words}</option>)}
       </select>
     </label>
@@ -29,10 +29,10 @@ const controls = {
   x: ({ config, set, lens }) => <Menu label={config.kind === 'heat' ? 'across' : 'against'} value={config.x} options={variableOptions(lens.positionsOnly ? positions() : variables.value)} onChoose={(x) => set({ x, period: 0 })} />,
   y: ({ config, set }) => <Menu label="up" value={config.y} options={variableOptions(variables.value)} onChoose={(y) => set({ y })} />,
   of: ({ config, set }) => <Menu label="of" value={config.of} options={kOf} onChoose={(of) => set({ of })} />,
-  when: ({ config, set }) => <Menu label="model" value={config.when ?? 'now'} options={[['now', 'now'], ['before', 'before']]} onChoose={(when) => set({ when })} />,
+  when: ({ config, set }) => beforeModel.value && <Menu label="model" value={config.when ?? 'now'} options={[['now', 'now'], ['before', 'before']]} onChoose={(when) => set({ when })} />,
   split: ({ config, set }) => <Menu label="split by" value={config.split ?? ''} options={[['', 'nothing'], ...variableOptions(directionsOf(variables.value))]} onChoose={(split) => set({ split })} />,
   what: ({ config, set }) => <Menu label="of" value={config.what ?? 'residual'} options={[['residual', 'what remains'], ['readings', 'measured and predicted']]} onChoose={(what) => set({ what })} />,
-  circle: ({ config, set }) => <Menu label="circle" value={config.circle ?? ''} options={circlesOf(campaign.value.setups).map(({ index, name }) => [index, name])} onChoose={(circle) => set({ circle })} />,
+  circle: ({ config, set }) => <Menu label="circle" value={config.circle ?? circlesOf(campaign.value.setups)[0]?.index} options={circlesOf(campaign.value.setups).map(({ index, name }) => [index, name])} onChoose={(circle) => set({ circle })} />,
   perSigma: ({ config, set }) => (
     <label class="menu"><input type="checkbox" checked={config.perSigma} onChange={(event) => { begin('variable'); set({ perSigma: event.currentTarget.checked }); }} /><span title="The uncertainty that the campaign states, not the estimated noise: what the noise has swallowed stays visible">÷ stated σ</span></label>
   ),
@@ -115,7 +115,7 @@ export function Card({ config }) {
   return (
     <article class={`lens lens-${config.kind}`} aria-label={`Lens: ${lens.title}`}>
       <div class="lens-menus">
-        <Menu label="show" value={config.kind} options={kinds} onChoose={(kind) => set({ kind })} />
+        <Menu label="" name="Kind of lens" value={config.kind} options={kinds} onChoose={(kind) => set({ kind })} />
         {lens.controls.map((name) => { const Control = controls[name]; return <Control key={name} config={whole} set={set} lens={lens} />; })}
         <button type="button" class="close" aria-label={`Close the lens: ${lens.title}`} onClick={() => close(config.key)}>×</button>
       </div>

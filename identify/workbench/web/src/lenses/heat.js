@@ -88,8 +88,14 @@ function drawBar(ctx, { box, limit, view, config }) {
   text(ctx, unitOf(view, config), left, box.bottom + 15);
 }
 
+/** Places without readings are not zero. */
+function empty(ctx, { box }) {
+  ctx.fillStyle = hex('grid');
+  ctx.fillRect(box.left, box.top, box.right - box.left, box.bottom - box.top);
+}
+
 function drawBase(ctx, scene) {
-  drawCells(ctx, scene, scene.now);
+  empty(ctx, scene);
   axisBelow(ctx, scene.box, scene.sx, titleOf(scene.x.variable), { steps: scene.x.steps });
   axisLeft(ctx, scene.box, scene.sy, titleOf(scene.y.variable));
   drawCells(ctx, scene, scene.now);
@@ -101,8 +107,7 @@ function drawBase(ctx, scene) {
 function drawOverlay(ctx, scene, { selection, preview }) {
   const { box, view } = scene;
   if (preview && preview.residual.length === view.length) {
-    ctx.fillStyle = hex('page');
-    ctx.fillRect(box.left, box.top, box.right - box.left, box.bottom - box.top);
+    empty(ctx, scene);
     drawCells(ctx, scene, scene.means(preview.residual));
     frame(ctx, box);
     text(ctx, '~ with it in the model', box.left + 6, box.top + 14, { name: 'warning' });

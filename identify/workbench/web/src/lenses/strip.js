@@ -13,13 +13,13 @@ export function meansOf(view, config, residual, axis, mask = view.shown) {
   return meansInBins(axis.index, axis.bins, values, view.lines, { mask, weight });
 }
 
-/** Range that holds zero, all means and the bars of those of many readings. */
-export function meanRange(...lists) {
+/** Range that holds zero, all means and, as far as they are of a size with these or `whole`, their bars. */
+export function meanRange(lists, whole) {
   let [low, high] = [0, 0];
   for (const means of lists.filter(Boolean)) {
     for (let k = 0; k < means.mean.length; k += 1) {
       if (!(means.count[k] >= 3)) continue;
-      const [mean, u] = [means.mean[k], Math.min(kSigmas * means.u[k], 2 * Math.abs(means.mean[k]) + 1e-12)];
+      const [mean, u] = [means.mean[k], whole ? kSigmas * means.u[k] : Math.min(kSigmas * means.u[k], 2 * Math.abs(means.mean[k]) + 1e-12)];
       if (mean - u < low) low = mean - u;
       if (mean + u > high) high = mean + u;
     }
@@ -54,7 +54,7 @@ function drawMeans(ctx, strip, means, name, { aside = 0, banded = true, dash = [
 export function makeStrip(view, config, box, axis, sx, title) {
   const now = meansOf(view, config, view.now, axis);
   const before = view.before ? meansOf(view, config, view.before, axis) : null;
-  const [low, high] = meanRange(now, before);
+  const [low, high] = meanRange([now, before], axis.steps !== null);
   return { box, axis, sx, now, before, sy: linear(low, high, box.bottom, box.top), title };
 }
 

@@ -24,8 +24,8 @@ function useFormula(text, parameters) {
       setResult({ answer: null, error: null, of: '' });
       return undefined;
     }
-    begin('formula');
     const timer = setTimeout(async () => {
+      begin('formula');
       try {
         const list = parameters.split(/[;,]/).map((each) => each.trim()).filter(Boolean);
         const answer = await askFormula('formula', { text, parameters: list });

@@ -25,7 +25,7 @@ export function AmplitudeBar({ amplitude, preview = false }) {
   const u = amplitude.u95 / amplitude.mdb;
   const x = (value) => 200 * Math.min(1, Math.max(0, value / kScale));
   return (
-    <svg class={`amplitude ${preview ? 'is-preview' : ''}`} viewBox="0 0 204 16" width="204" height="16" aria-hidden="true">
+    <svg class={`amplitude ${preview ? 'is-preview' : ''}`} viewBox="0 0 204 16" width="140" height="11" aria-hidden="true">
       <rect class="track" x="0" y="4" width="200" height="8" />
       <rect class={times >= 1 ? 'fill' : 'fill small'} x="0" y="4" width={x(times)} height="8" />
       <line class="limit" x1={x(1)} x2={x(1)} y1="0" y2="16" />

@@ -19,7 +19,7 @@ function Amplitudes({ effect, sign = '' }) {
   const times = timesDetectable(main);
   return (
     <span class="amplitudes">
-      <span>{effect.amplitudes.map((each) => `${partOf(effect, each)} ${sign}${amplitudeText(each)}`.trim()).join('; ')}</span>
+      <span class="values">{effect.amplitudes.map((each) => `${partOf(effect, each)} ${sign && `${sign}\u2009`}${amplitudeText(each)}`.trim()).join('; ')}</span>
       <AmplitudeBar amplitude={main} preview={sign === '~'} />
       {times !== null && <span class="muted small">{significant(times, 2)} × the smallest detectable, {significant(main.mdb, 2)} {unitText(main.unit)}</span>}
     </span>
@@ -34,12 +34,13 @@ function Fall({ fall }) {
 function Suspect({ effect }) {
   const hovered = preview.value?.name === effect.name;
   const usable = effect.visible !== false;
+  const may = mayAct.value && usable;
   const along = variablesIn(effect.name);
   const look_ = () => look(effect.name, effect.label);
   const away = () => lookAway(effect.name);
   return (
     <li class={`suspect ${hovered ? 'looked-at' : ''} ${usable ? '' : 'unseen'}`}>
-      <button type="button" class="row" aria-label={`Add ${effect.label}`} aria-describedby={`about-${effect.name}`} aria-disabled={!mayAct.value || !usable} onMouseEnter={look_} onMouseLeave={away} onFocus={look_} onBlur={away} onClick={() => mayAct.value && usable && add(effect.name)}>
+      <div class="row" onMouseEnter={look_} onMouseLeave={away} onClick={() => may && add(effect.name)}>
         <Sketch points={effect.sketch} label={effect.label} />
         <span class="body" id={`about-${effect.name}`}>
           <span class="title"><b>{effect.label}</b>{effect.shape ? <span class="muted">, {words(effect.shape)}</span> : ''}<span class="p muted" title="Probability of so much by chance">p {chance(effect.log10_p)}</span></span>
@@ -49,8 +50,8 @@ function Suspect({ effect }) {
           {effect.rivals?.length > 0 && <span class="rivals">These readings hardly tell it from {effect.rivals.map((rival) => rival.label ?? rival).join(', ')}.</span>}
           {!usable && effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}
         </span>
-        <span class="add" aria-hidden="true">+ add</span>
-      </button>
+        <button type="button" class="add" aria-label={`add ${effect.label}`} aria-describedby={`about-${effect.name}`} aria-disabled={!may} onFocus={look_} onBlur={away} onClick={(event) => { event.stopPropagation(); if (may) add(effect.name); }}>add</button>
+      </div>
       {along.length > 0 && <button type="button" class="along" onClick={() => lookAlong(along)}>Look along {along.join(', ')}</button>}
     </li>
   );

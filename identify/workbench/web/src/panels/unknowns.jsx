@@ -23,7 +23,7 @@ function Formula({ formula }) {
     <li class="formula">
       <code>{formula.text}</code>
       <span>{significant(formula.amplitude, 3)} ± {significant(formula.u95, 2)} {unitText(formula.unit)}, log evidence {significant(formula.log_evidence, 3)}</span>
-      <button type="button" disabled={!mayAct.value} aria-label={`Add the formula ${formula.text}`} onClick={() => add(formula.name ?? formula.text)}>Add</button>
+      <button type="button" disabled={!mayAct.value} aria-label={`Add ${formula.text}`} onClick={() => add(formula.name ?? formula.text)}>Add</button>
     </li>
   );
 }

@@ -94,7 +94,7 @@ function Chip({ model, depth, row, parentRow, most }) {
         <Whisker figures={figures} most={most} />
         <span class="muted small">χ²/dof {fixed(figures.reduced_chi2, 2)}, floor {significant(figures.noise_floor_um, 2)} µm</span>
       </button>
-      {!current && <button type="button" class="compare" aria-pressed={grey} aria-label={`Compare with ${modelName(model)}`} onClick={() => compareWith(grey && chosenBefore.value !== null ? null : model.number)}>{grey ? 'in grey' : 'compare'}</button>}
+      {!current && <button type="button" class="compare" aria-pressed={grey} aria-label={`${grey ? 'in grey' : 'compare'}: ${modelName(model)}`} onClick={() => compareWith(grey && chosenBefore.value !== null ? null : model.number)}>{grey ? 'in grey' : 'compare'}</button>}
       {current && <span class="compare here">in colour</span>}
     </li>
   );

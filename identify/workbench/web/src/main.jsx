@@ -12,7 +12,7 @@ import { lenses } from './lenses/registry.js';
 import { FormulaBox } from './panels/formula.jsx';
 import { Marked } from './panels/marked.jsx';
 import { Suspects } from './panels/suspects.jsx';
-import { Header, Notes } from './strips/header.jsx';
+import { Header } from './strips/header.jsx';
 import { Ladder } from './strips/ladder.jsx';
 import { Exports, Meaning } from './strips/meaning.jsx';
 import { BadInput, Line, Progress, ReadOnly, Trouble } from './strips/status.jsx';
@@ -61,7 +61,6 @@ function Page() {
       {now ? <Header /> : <header class="head"><h1><strong>volcal</strong> workbench</h1></header>}
       <main>
         <Line retry={retry} /><ReadOnly /><Trouble />
-        {now && <Notes />}
         {now?.phase === 'bad-input' && <BadInput />}
         {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : <>{now && <Progress />}{loading()}</>}
       </main>

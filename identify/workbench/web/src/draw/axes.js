@@ -26,15 +26,29 @@ export function text(ctx, words, x, y, { align = 'left', base = 'alphabetic', na
 }
 
 /** Grid and numbers at the left of a box; a line at zero. */
-export function axisLeft(ctx, box, scale, title, most = 5) {
+export function axisLeft(ctx, box, scale, title, most = 5, steps = null) {
+  if (steps) namesLeft(ctx, box, scale, steps);
+  else numbersLeft(ctx, box, scale, most);
+  if (title) text(ctx, title, 11, (box.top + box.bottom) / 2, { align: 'center', base: 'middle', turn: -Math.PI / 2 });
+  frame(ctx, box);
+}
+
+function namesLeft(ctx, box, scale, steps) {
+  const every = Math.max(1, Math.ceil((14 * steps.at.length) / Math.max(1, box.bottom - box.top)));
+  steps.at.forEach((value, k) => {
+    if (k % every !== 0) return;
+    const word = String(steps.text[k]);
+    text(ctx, word.length > 8 ? `${word.slice(0, 7)}…` : word, box.left - 5, scale(value), { align: 'right', base: 'middle', font: '10px system-ui, sans-serif' });
+  });
+}
+
+function numbersLeft(ctx, box, scale, most) {
   const { at, decimals } = niceTicks(scale.low, scale.high, most);
   for (const value of at) {
     const y = crisp(scale(value));
     line(ctx, box.left, y, box.right, y, Math.abs(value) < 1e-12 ? 'zero' : 'grid');
     text(ctx, fixed(value, decimals), box.left - 6, y, { align: 'right', base: 'middle' });
   }
-  if (title) text(ctx, title, 11, (box.top + box.bottom) / 2, { align: 'center', base: 'middle', turn: -Math.PI / 2 });
-  frame(ctx, box);
 }
 
 export function frame(ctx, box) {

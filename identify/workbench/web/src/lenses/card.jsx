@@ -26,13 +26,13 @@ const positions = () => variables.value.filter(({ kind, name }) => kind === 'pos
 const variableOptions = (list) => list.map(({ name, label }) => [name, label]);
 
 const controls = {
-  x: ({ config, set, lens }) => <Menu label={config.kind === 'heat' ? 'across' : 'against'} value={config.x} options={variableOptions(lens.positionsOnly ? positions() : variables.value)} onChoose={(x) => set({ x, period: 0 })} />,
-  y: ({ config, set }) => <Menu label="up" value={config.y} options={variableOptions(variables.value)} onChoose={(y) => set({ y })} />,
+  x: ({ config, set, lens }) => <Menu name="Variable" label="" value={config.x} options={variableOptions(lens.positionsOnly ? positions() : variables.value)} onChoose={(x) => set({ x, period: 0 })} />,
+  y: ({ config, set }) => <Menu label="and" value={config.y} options={variableOptions(variables.value)} onChoose={(y) => set({ y })} />,
   of: ({ config, set }) => <Menu label="of" value={config.of} options={kOf} onChoose={(of) => set({ of })} />,
-  when: ({ config, set }) => beforeModel.value && <Menu label="model" value={config.when ?? 'now'} options={[['now', 'now'], ['before', 'before']]} onChoose={(when) => set({ when })} />,
+  when: ({ config, set }) => beforeModel.value && <Menu label="" name="Model" value={config.when ?? 'now'} options={[['now', 'now'], ['before', 'before']]} onChoose={(when) => set({ when })} />,
   split: ({ config, set }) => <Menu label="split by" value={config.split ?? ''} options={[['', 'nothing'], ...variableOptions(directionsOf(variables.value))]} onChoose={(split) => set({ split })} />,
   what: ({ config, set }) => <Menu label="of" value={config.what ?? 'residual'} options={[['residual', 'what remains'], ['readings', 'measured and predicted']]} onChoose={(what) => set({ what })} />,
-  circle: ({ config, set }) => <Menu label="circle" value={config.circle ?? circlesOf(campaign.value.setups)[0]?.index} options={circlesOf(campaign.value.setups).map(({ index, name }) => [index, name])} onChoose={(circle) => set({ circle })} />,
+  circle: ({ config, set }) => <Menu label="" name="Circle" value={config.circle ?? circlesOf(campaign.value.setups)[0]?.index} options={circlesOf(campaign.value.setups).map(({ index, name }) => [index, name])} onChoose={(circle) => set({ circle })} />,
   perSigma: ({ config, set }) => (
     <label class="menu"><input type="checkbox" checked={config.perSigma} onChange={(event) => { begin('variable'); set({ perSigma: event.currentTarget.checked }); }} /><span title="The uncertainty that the campaign states, not the estimated noise: what the noise has swallowed stays visible">÷ stated σ</span></label>
   ),

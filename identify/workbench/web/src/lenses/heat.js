@@ -97,7 +97,7 @@ function empty(ctx, { box }) {
 function drawBase(ctx, scene) {
   empty(ctx, scene);
   axisBelow(ctx, scene.box, scene.sx, titleOf(scene.x.variable), { steps: scene.x.steps });
-  axisLeft(ctx, scene.box, scene.sy, titleOf(scene.y.variable));
+  axisLeft(ctx, scene.box, scene.sy, titleOf(scene.y.variable), 5, scene.y.steps);
   drawCells(ctx, scene, scene.now);
   frame(ctx, scene.box);
   drawBar(ctx, scene);
@@ -146,6 +146,6 @@ function readout({ x, y, sx, sy, now, view, config }, px, py) {
 }
 
 export const heat = {
-  kind: 'heat', title: 'map over two variables', controls: ['x', 'y', 'of', 'perSigma', 'when'], needs: (config) => [config.x, config.y, ...namesOf(config)],
+  kind: 'heat', title: 'map over', controls: ['x', 'y', 'of', 'perSigma', 'when'], needs: (config) => [config.x, config.y, ...namesOf(config)],
   prepare, drawBase, drawOverlay, brush, readout, brushBox: ({ box }) => box,
 };

@@ -66,6 +66,6 @@ function readout({ sx, now, before, view, config }, x) {
 }
 
 export const histogramLens = {
-  kind: 'histogram', title: 'histogram, before and now', controls: ['of', 'perSigma'], needs: namesOf,
+  kind: 'histogram', title: 'histogram', controls: ['of', 'perSigma'], needs: namesOf,
   prepare, drawBase, drawOverlay, brush, readout, brushBox: ({ box }) => box,
 };

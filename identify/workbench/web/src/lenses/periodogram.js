@@ -117,6 +117,6 @@ function readout({ power, spectrum, box, strip, view, config, empty, sx, variabl
 }
 
 export const periodogram = {
-  kind: 'periodogram', title: 'periods, and the folded wave', controls: ['x', 'period', 'of'], positionsOnly: true, asks: 'periodogram',
+  kind: 'periodogram', title: 'periods in', controls: ['x', 'period', 'of'], positionsOnly: true, asks: 'periodogram',
   needs: (config) => [config.x, ...namesOf(config)], prepare, drawBase, drawOverlay, brush, click, readout, brushBox: (scene) => scene.box && ({ ...scene.box, top: scene.second.top, bottom: scene.strip.box.bottom }),
 };

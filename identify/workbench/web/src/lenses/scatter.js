@@ -117,12 +117,12 @@ function readout(scene, x, y) {
 const lens = { prepare, drawBase, drawOverlay, brush, readout, brushBox: (scene) => ({ ...scene.box, bottom: (scene.temperatures ?? scene.strip).box.bottom }) };
 
 export const scatter = {
-  ...lens, kind: 'scatter', title: 'residual against a variable', controls: ['x', 'of', 'perSigma'],
+  ...lens, kind: 'scatter', title: 'residuals against', controls: ['x', 'of', 'perSigma'],
   needs: (config) => [config.x, ...namesOf(config)],
 };
 
 export const timeLine = {
-  ...lens, kind: 'time', title: 'over time, with temperatures', controls: ['of', 'perSigma'],
+  ...lens, kind: 'time', title: 'over time', controls: ['of', 'perSigma'],
   adjust: (config, variables) => ({ ...config, x: timeOf(variables)?.name ?? 'row' }),
   needs: (config, variables) => [config.x, ...namesOf(config), ...temperaturesOf(variables).map(({ name }) => name)],
 };

@@ -41,7 +41,7 @@ function clipped(ctx, box, draw) {
 }
 
 function drawMeans(ctx, strip, means, name, { aside = 0, banded = true, dash = [] } = {}) {
-  const xs = strip.axis.centres.map((value) => strip.sx(value) + aside);
+  const xs = strip.axis.centres.map((value) => strip.sx(value) + (strip.axis.steps ? aside : 0));
   const [ys, lows, highs] = [means.mean, ends(means, -1), ends(means, 1)].map((values) => pixels(values, strip.sy));
   if (strip.axis.steps) {
     bars(ctx, xs, ys, lows, highs, name);

@@ -1,7 +1,7 @@
 // What a lens draws of the residuals: the readings, or the displacement of the functional point that they ask for.
 const kLeast = 0.35; // of a displacement: a reading that feels less of it says little on it
 
-export const kOf = [['reading', 'readings'], ['x', 'displacement along X'], ['y', 'displacement along Y'], ['z', 'displacement along Z']];
+export const kOf = [['reading', 'readings'], ['x', 'shift along X'], ['y', 'shift along Y'], ['z', 'shift along Z']];
 
 const made = new WeakMap();
 

@@ -131,7 +131,7 @@ function readout(scene, x, y) {
 }
 
 export const vectors = {
-  kind: 'vectors', title: 'vectors in the volume', controls: ['split', 'turn'], turns: true,
+  kind: 'vectors', title: 'vectors in space', controls: ['split', 'turn'], turns: true,
   needs: (config, variables) => ['point_x', 'point_y', 'point_z', 'along_x', 'along_y', 'along_z', ...(directionsOf(variables).some(({ name }) => name === config.split) ? [config.split] : [])],
   prepare, drawBase, drawOverlay, brush, readout, brushBox: ({ box }) => box,
 };

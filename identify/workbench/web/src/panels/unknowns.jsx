@@ -5,7 +5,7 @@ import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
 import { act, add } from '../app/actions.js';
 import { lookAlong } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
-import { busy, mayAct, state, surfaces } from '../app/store.js';
+import { busy, mayAct, state, surfaces, variables } from '../app/store.js';
 import { surfaceData } from '../data/surface.js';
 import { unitText } from '../data/variables.js';
 import { Drawing, words } from './parts.jsx';
@@ -30,7 +30,7 @@ function Formula({ formula }) {
 
 export function Surface({ surface }) {
   const [figures, setFigures] = useState([]);
-  useEffect(() => setFigures(surfaceFigures(surfaceData(surface))), [surface]);
+  useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
   return (
     <div class="surface-drawn">
       {figures.map((figure) => <Figure key={figure.caption} figure={figure} />)}

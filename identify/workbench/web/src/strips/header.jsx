@@ -37,6 +37,7 @@ export function Header() {
     <header class="head">
       <h1><strong>volcal</strong> workbench <span class="of">{campaign?.machine ?? campaign?.file ?? ''}</span></h1>
       {campaign && <p class="muted">{[campaign.file, campaign.structure, `${count(campaign.observations)} readings in ${campaign.setups.length} set-ups`].filter(Boolean).join(', ')}</p>}
+      <Notes />
       {now.phase === 'ready' && (
         <div class="buttons">
           <Shown campaign={campaign} />
@@ -52,7 +53,7 @@ export function Header() {
   );
 }
 
-export function Notes() {
+function Notes() {
   const { notes = [], left_out: leftOut = [] } = state.value;
   if (notes.length + leftOut.length === 0) return null;
   return (

@@ -5,13 +5,16 @@ const root = document.documentElement;
 const system = matchMedia('(prefers-color-scheme: dark)');
 const listeners = [];
 
-/** `listener` is called after the colours have changed. */
-export const onThemeChange = (listener) => listeners.push(listener);
+/** `listener` is called after the colours have changed, until the function returned is called. */
+export function onThemeChange(listener) {
+  listeners.push(listener);
+  return () => { listeners.splice(listeners.indexOf(listener), 1); };
+}
 
 function setTheme(theme) {
   if (root.dataset.theme === theme) return;
   root.dataset.theme = theme;
-  listeners.forEach((listener) => listener());
+  [...listeners].forEach((listener) => listener());
 }
 
 const systemTheme = () => (system.matches ? 'dark' : 'light');
@@ -42,11 +45,14 @@ export function transparent(hex, alpha) {
 /** Colours for things that are neither axes nor verdicts: instruments, tools, sources. */
 export const series = (index) => color(`series-${index % kSeries}`);
 
+const otherTheme = () => (root.dataset.theme === 'dark' ? 'light' : 'dark');
+
+export const toggleTheme = () => setTheme(otherTheme());
+
 /** Button that switches between light and dark. */
 export function themeSwitch() {
-  const other = () => (root.dataset.theme === 'dark' ? 'light' : 'dark');
-  const button = el('button', { type: 'button', onclick: () => setTheme(other()) });
-  const label = () => { button.textContent = `${other()} background`; };
+  const button = el('button', { type: 'button', onclick: toggleTheme });
+  const label = () => { button.textContent = `${otherTheme()} background`; };
   onThemeChange(label);
   label();
   return button;

@@ -1,5 +1,5 @@
 // A circle of the ball-bar: radial deviations over the angle, both ways round, about a base circle.
-// data: { first, second, angle: degrees, sense: ±1, traces: [{ name, values: µm, dash, width, opacity }] }.
+// data: { first, second, angle: degrees, sense: ±1, traces: [{ name, values: µm, dash, width, opacity, shade }] }.
 import { addPlot, layout2d, plain } from '../plot.js';
 import { el, significant } from '../dom.js';
 import { color, series } from '../theme.js';
@@ -9,6 +9,7 @@ const kReach = 0.62; // of the largest deviation
 const kMostRings = 3; // each way
 const kEdge = 1.12; // of the reach: where the axes end
 const kGapDegrees = 25; // wider: nothing was read in between
+const kLimit = 1.13 * (kBase + kEdge * kReach); // of the axes of the plot
 
 const kSenses = [[1, 'counter-clockwise', () => series(0), 'series-0'], [-1, 'clockwise', () => color('warning'), 'warning']];
 
@@ -79,29 +80,41 @@ function axes(data) {
   };
 }
 
-function figure(data, height) {
+/** Where a deviation lies in the plot: { limit: half its width, place(angle, value): [x, y] }. */
+export function polarGeometry(traces) {
+  const { step, count } = ringsOf(traces);
+  const scale = count * step;
+  return {
+    limit: kLimit,
+    place: (angle, value) => {
+      const radius = kBase + kReach * (value / scale);
+      return [radius * Math.cos(radians(angle)), radius * Math.sin(radians(angle))];
+    },
+  };
+}
+
+export function polarFigure(data, height) {
   const { step, count } = ringsOf(data.traces);
   const scale = count * step;
   const [ring, axis] = [rings(scale, step, count), axes(data)];
   const senses = kSenses.filter(([sense]) => data.sense.includes(sense));
-  const limit = 1.13 * (kBase + kEdge * kReach);
   return {
     paperHeight: 0.8,
     data: senses.flatMap(([sense, words, shade]) => data.traces.map((trace) => ({
       ...path(data, trace.values, sense, scale), type: 'scatter', mode: 'lines', connectgaps: false, name: `${plain(trace.name)}, ${words}`,
-      line: { color: shade(), width: trace.width ?? 1.5, dash: trace.dash ?? 'solid' }, opacity: trace.opacity ?? 1,
+      line: { color: trace.shade ? color(trace.shade) : shade(), width: trace.width ?? 1.5, dash: trace.dash ?? 'solid' }, opacity: trace.opacity ?? 1,
       hovertemplate: `${plain(trace.name)}, ${words}<br>%{customdata[0]:.1f}°: %{customdata[1]:.2f} µm<extra></extra>`,
     }))),
     layout: layout2d({
       height, margin: { l: 4, r: 4, t: 4, b: 4 }, hovermode: 'closest',
-      x: { title: '', visible: false, range: [-limit, limit], fixedrange: true }, y: { title: '', visible: false, range: [-limit, limit], scaleanchor: 'x', fixedrange: true },
+      x: { title: '', visible: false, range: [-kLimit, kLimit], fixedrange: true }, y: { title: '', visible: false, range: [-kLimit, kLimit], scaleanchor: 'x', fixedrange: true },
       shapes: [...axis.shapes, ...ring.shapes], annotations: [...ring.annotations, ...axis.annotations],
     }),
   };
 }
 
 /** Draws `make()` into `node`; the ring distance follows from the largest deviation. Returns a function that draws it again. */
-export const addPolar = (node, make) => addPlot(node, () => figure(make(), Math.round(Math.min(430, Math.max(280, node.clientWidth)))));
+export const addPolar = (node, make) => addPlot(node, () => polarFigure(make(), Math.round(Math.min(430, Math.max(280, node.clientWidth)))));
 
 /** What a ring stands for, for the caption. */
 export const ringStep = (traces) => ringsOf(traces).step;

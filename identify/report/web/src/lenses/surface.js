@@ -120,7 +120,15 @@ function curve(data) {
   };
 }
 
-function plotOf(make, caption) {
+/** The pictures of a surface or curve, largest first: [{ caption, make }]. */
+export function surfaceFigures(data) {
+  const where = data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : '';
+  const whole = { caption: `What has no name, as the readings show it${where}`, make: () => (data.axes.length === 1 ? curve(data) : heatMap(data)) };
+  const others = data.axes.length === 1 ? [] : [0, 1].map((along) => ({ caption: `Cuts along ${data.axes[along].name}, 95 % bands`, make: () => cuts(data, along) }));
+  return [whole, ...others];
+}
+
+function plotOf({ make, caption }) {
   const node = el('div', { class: 'plot' });
   addPlot(node, make);
   return el('figure', {}, [el('figcaption', {}, caption), node]);
@@ -134,14 +142,8 @@ export function renderSurface(body, data) {
   body.append(el('p', { class: 'surface' }, [
     el('strong', {}, data.label), `: ${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${data.unit} (95 %) at ${place(data)}${times}; RMS over the readings ${significant(data.rms, 2)} ${data.unit}.`,
   ]));
-  if (data.axes.length === 1) {
-    body.append(plotOf(() => curve(data), 'What has no name, as the readings show it'));
-  } else {
-    body.append(el('div', { class: 'pair' }, [
-      plotOf(() => heatMap(data), `What has no name, as the readings show it${data.third ? `, at ${data.third} = ${significant(data.third_at, 3)}` : ''}`),
-      el('div', { class: 'cuts' }, [plotOf(() => cuts(data, 0), `Cuts along ${data.axes[0].name}, 95 % bands`), plotOf(() => cuts(data, 1), `Cuts along ${data.axes[1].name}, 95 % bands`)]),
-    ]));
-  }
+  const [whole, ...cutsAlong] = surfaceFigures(data).map(plotOf);
+  body.append(cutsAlong.length === 0 ? whole : el('div', { class: 'pair' }, [whole, el('div', { class: 'cuts' }, cutsAlong)]));
   for (const [k, formula] of data.formulas.entries()) {
     body.append(el('p', {}, [k === 0 ? 'A law that explains as much: ' : 'Or: ', el('strong', {}, formula.label), formula.shape === '' ? '' : `, ${formula.shape}`, `: ${significant(formula.amplitude, 4)} ± ${significant(formula.U95, 2)} ${formula.unit}.`]));
   }

@@ -1,0 +1,59 @@
+// Server-sent events read with fetch, since EventSource sends no header.
+import { headers } from './call.js';
+
+/** Splits a stream of text into events: feed(text) calls onEvent(name, data) for every whole one. */
+export function eventParser(onEvent) {
+  let rest = '';
+  return (text) => {
+    rest = (rest + text).replaceAll('\r\n', '\n');
+    for (let end = rest.indexOf('\n\n'); end >= 0; end = rest.indexOf('\n\n')) {
+      const lines = rest.slice(0, end).split('\n');
+      rest = rest.slice(end + 2);
+      const field = (name) => lines.filter((line) => line.startsWith(`${name}:`)).map((line) => line.slice(name.length + 1).trimStart()).join('\n');
+      if (field('data') !== '') onEvent(field('event') || 'message', JSON.parse(field('data')));
+    }
+  };
+}
+
+/** Reads events until the line breaks: resolves with 'refused' or 'broken'. */
+async function follow(onOpen, onEvent) {
+  let response;
+  try {
+    response = await fetch('/api/events', { headers: { ...headers(), Accept: 'text/event-stream' }, cache: 'no-store' });
+  } catch {
+    return 'broken';
+  }
+  if (!response.ok) return response.status === 403 ? 'refused' : 'broken';
+  onOpen();
+  const feed = eventParser(onEvent);
+  const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
+  try {
+    for (;;) {
+      const { done, value } = await reader.read();
+      if (done) return 'broken';
+      feed(value);
+    }
+  } catch {
+    return 'broken';
+  }
+}
+
+const kWaits = [300, 600, 1200, 2500, 5000];
+
+/** Keeps a line to the program: onState('open' | 'gone' | 'refused'). Returns a function that tries again at once. */
+export function keepLine(onLine, onEvent) {
+  let failures = 0;
+  let timer = null;
+  let connected = false;
+  const attempt = async () => {
+    clearTimeout(timer);
+    if (connected) return;
+    connected = true;
+    const end = await follow(() => { failures = 0; onLine('open'); }, onEvent);
+    connected = false;
+    onLine(end === 'refused' ? 'refused' : 'gone');
+    if (end !== 'refused') timer = setTimeout(attempt, kWaits[Math.min(failures++, kWaits.length - 1)]);
+  };
+  attempt();
+  return attempt;
+}

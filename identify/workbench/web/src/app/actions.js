@@ -1,0 +1,167 @@
+// What a click does.
+import { call, latest, NoAnswer, Refusal } from '../api/call.js';
+import { begin, painted } from '../draw/timing.js';
+import { whenDrawn } from '../draw/schedule.js';
+import { emptySelection, indices } from '../data/selection.js';
+import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
+import { openOn, variablesIn } from './pictures.js';
+import { fallSentence } from './sentences.js';
+import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble } from './store.js';
+
+export function report(what, error) {
+  if (error instanceof NoAnswer) line.value = 'gone';
+  else trouble.value = { what, error: error.message, remedy: error.remedy ?? null };
+}
+
+/** Takes over a state that the program sent. */
+export async function takeState(next) {
+  const former = state.value;
+  if (former && next.revision !== undefined && next.revision < former.revision) return;
+  const sentence = former ? fallSentence(former, next) : null;
+  state.value = next;
+  busy.value = next.busy ?? null;
+  if (next.campaign?.file !== former?.campaign?.file || next.campaign?.observations !== former?.campaign?.observations) forgetReadings();
+  if (next.phase !== 'ready') return;
+  if (sentence) said.value = sentence;
+  if (former?.current !== next.current) preview.value = null;
+  await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value)]).catch((error) => report('columns', error));
+  if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) rank();
+}
+
+function forgetReadings() {
+  clearColumns();
+  selection.value = emptySelection;
+  shown.value = { unit: null, setup: -1, alone: null };
+  ranking.value = null;
+}
+
+/** Variables of the first suspect, and of what has no name. */
+const standsOutMost = ({ effects = [], unknown = [] }) => [...variablesIn(effects[0]?.name ?? '').slice(0, 1), ...(unknown[0]?.variables ?? [])];
+
+const askRank = latest();
+
+export async function rank() {
+  const [model, standing] = [state.value.current, currentModel.value?.standing];
+  rankingBusy.value = true;
+  begin('rank');
+  try {
+    const answer = await askRank('rank', {});
+    if (!answer) return;
+    ranking.value = { ...answer, model, standing };
+    openOn(standsOutMost(answer));
+    whenDrawn(() => painted('rank'));
+    rankingBusy.value = false;
+  } catch (error) {
+    rankingBusy.value = false;
+    if (!(error instanceof Refusal && error.status === 409)) report('rank', error);
+  }
+}
+
+/** An action that answers with the new state. */
+export async function act(name, body = {}) {
+  try {
+    const next = await call(name, body);
+    if (next?.models) await takeState(next);
+    else if (next?.busy) busy.value = next.busy;
+    return true;
+  } catch (error) {
+    report(name, error);
+    return false;
+  }
+}
+
+export async function add(effect) {
+  begin('add');
+  const done = await act('add', { effect });
+  if (done) whenDrawn(() => painted('add'));
+}
+
+export const go = (model) => act('go', { model });
+export const undo = () => state.value?.can_undo && act('undo');
+export const redo = () => state.value?.can_redo && act('redo');
+export const compareWith = (number) => {
+  chosenBefore.value = number;
+  ensure(residualNames(beforeModel.value)).catch((error) => report('columns', error));
+};
+
+const askPreview = latest();
+const looked = new Map();
+let wanted = null;
+
+const previewKey = (effect) => `${state.value.current} ${currentModel.value?.standing} ${effect}`;
+
+function showPreview(key, answer, label) {
+  if (looked.size > 60) looked.delete(looked.keys().next().value);
+  looked.set(key, answer);
+  const { head, columns } = answer;
+  preview.value = { name: wanted, label, residual: columns.residual, ...head };
+  whenDrawn(() => painted('hover'));
+}
+
+/** Looks at an effect before it is added; a later wish replaces the one that is not answered yet. */
+export async function look(effect, label) {
+  if (wanted === effect) return;
+  wanted = effect;
+  begin('hover');
+  const key = previewKey(effect);
+  try {
+    const answer = looked.get(key) ?? await askPreview('preview', { effect });
+    if (answer && wanted === effect) showPreview(key, answer, label);
+  } catch (error) {
+    if (wanted === effect && error instanceof NoAnswer) report('preview', error);
+  }
+}
+
+export function lookAway(effect) {
+  if (wanted !== effect) return;
+  wanted = null;
+  askPreview.cancel();
+  preview.value = null;
+}
+
+/** What a formula would do is looked at like an effect. */
+export function showFormula(answer, text) {
+  wanted = `formula:${text}`;
+  preview.value = answer ? { name: wanted, label: text, residual: answer.columns.residual, ...answer.head } : null;
+}
+
+export function leaveOut(reason) {
+  const observations = indices(selection.value.mask);
+  selection.value = emptySelection;
+  shown.value = { ...shown.value, alone: null };
+  return act('leave-out', { observations, reason });
+}
+
+/** Events of the program. */
+export function onEvent(name, data) {
+  if (name === 'state') takeState(data);
+  else if (name === 'progress') busy.value = data.busy === undefined ? data : data.busy;
+  else if (name === 'surface') takeSurface(data);
+  else if (name === 'exported') takeExported(data);
+  else if (name === 'failed') trouble.value = data;
+  else if (name === 'bye') line.value = 'ended';
+}
+
+function takeSurface(surface) {
+  const model = state.value.current;
+  surfaces.value = [...surfaces.value.filter((each) => each.label !== surface.label || each.model !== model), { ...surface, model }];
+  said.value = `${surface.label} is drawn.`;
+}
+
+function takeExported(done) {
+  exported.value = [...exported.value, done];
+  said.value = `${done.what} is written: ${done.files.join(', ')}.`;
+}
+
+export async function onLine(status) {
+  if (line.value === 'ended') return;
+  line.value = status;
+  if (status !== 'open') return;
+  try {
+    await takeState(await call('state', {}));
+  } catch (error) {
+    report('state', error);
+  }
+}
+
+export { column };

@@ -1,0 +1,46 @@
+// All that the page knows, as signals.
+import { computed, signal } from '@preact/signals';
+import { emptySelection } from '../data/selection.js';
+import { variablesOf } from '../data/variables.js';
+
+/** What the program said last. */
+export const state = signal(null);
+/** 'connecting', 'open', 'gone' (does not answer), 'refused' (wrong address), 'ended'. */
+export const line = signal('connecting');
+export const busy = signal(null);
+/** Something that went wrong: { what, error, remedy }, until it is closed. */
+export const trouble = signal(null);
+/** Sentence for those who hear the page. */
+export const said = signal('');
+
+/** Model that is compared with the current one, as chosen; null: the model before. */
+export const chosenBefore = signal(null);
+export const selection = signal(emptySelection);
+/** What the lenses show of the readings: lengths or angles, one set-up or all, and those that are marked alone. */
+export const shown = signal({ unit: null, setup: -1, alone: null });
+/** A change that is only looked at: { name, label, residual, figures, effect, rivals }. */
+export const preview = signal(null);
+/** Answer to `rank`, with the model it belongs to. */
+export const ranking = signal(null);
+export const rankingBusy = signal(false);
+export const surfaces = signal([]);
+export const exported = signal([]);
+
+export const currentModel = computed(() => modelOf(state.value?.current));
+export const campaign = computed(() => state.value?.campaign ?? null);
+export const variables = computed(() => (campaign.value ? variablesOf(campaign.value) : []));
+export const mayWrite = computed(() => Boolean(state.value) && line.value === 'open' && state.value.writer !== false && !state.value.read_only);
+export const mayAct = computed(() => mayWrite.value && state.value.phase === 'ready' && busy.value === null);
+
+export function modelOf(number) {
+  return state.value?.models?.find((model) => model.number === number) ?? null;
+}
+
+/** The model in grey: the one chosen, else the one that the current model was made from. */
+export const beforeModel = computed(() => {
+  const chosen = modelOf(chosenBefore.value);
+  if (chosen && chosen.number !== state.value.current) return chosen;
+  return modelOf(currentModel.value?.parent ?? null);
+});
+
+export const modelName = (model) => (model.change === '' || model.change === null || model.change === undefined ? 'as given' : model.change);

@@ -1,0 +1,9 @@
+// Every lens, by its kind.
+import { heat } from './heat.js';
+import { histogramLens } from './histogram.js';
+import { periodogram } from './periodogram.js';
+import { polar } from './polar.js';
+import { scatter, timeLine } from './scatter.js';
+import { vectors } from './vectors.js';
+
+export const lenses = Object.fromEntries([scatter, heat, vectors, polar, periodogram, timeLine, histogramLens].map((lens) => [lens.kind, lens]));

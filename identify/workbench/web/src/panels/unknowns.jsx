@@ -1,0 +1,64 @@
+// What stands out without a name: first named by its variables, then drawn, then added as a surface or a formula.
+import { useEffect, useState } from 'preact/hooks';
+import { significant } from '../../../../report/web/src/dom.js';
+import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
+import { act, add } from '../app/actions.js';
+import { lookAlong } from '../app/pictures.js';
+import { chance } from '../app/sentences.js';
+import { busy, mayAct, state, surfaces, variables } from '../app/store.js';
+import { surfaceData } from '../data/surface.js';
+import { unitText } from '../data/variables.js';
+import { Drawing, words } from './parts.jsx';
+
+function Figure({ figure }) {
+  const [make] = useState(() => () => {
+    const { data, layout } = figure.make();
+    return { data, layout: { ...layout, height: Math.min(layout.height, 300), margin: { ...layout.margin, r: Math.min(layout.margin?.r ?? 10, 70) } } };
+  });
+  return <figure><figcaption>{figure.caption}</figcaption><Drawing make={make} label={figure.caption} /></figure>;
+}
+
+function Formula({ formula }) {
+  return (
+    <li class="formula">
+      <code>{formula.text}</code>
+      <span>{significant(formula.amplitude, 3)} ± {significant(formula.u95, 2)} {unitText(formula.unit)}, log evidence {significant(formula.log_evidence, 3)}</span>
+      <button type="button" disabled={!mayAct.value} aria-label={`Add ${formula.text}`} onClick={() => add(formula.name ?? formula.text)}>Add</button>
+    </li>
+  );
+}
+
+export function Surface({ surface }) {
+  const [figures, setFigures] = useState([]);
+  useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
+  return (
+    <div class="surface-drawn">
+      {figures.map((figure) => <Figure key={figure.caption} figure={figure} />)}
+      {surface.free?.length > 0 && <p class="muted">These readings leave open {surface.free.map(words).join('; ')}.</p>}
+      <button type="button" class="primary" disabled={!mayAct.value} onClick={() => add(surface.name)}>Add the {surface.drivers.length > 1 ? 'surface' : 'curve'}</button>
+      {surface.formulas?.length > 0 && <><p>Laws that may stand behind it:</p><ul class="formulas">{surface.formulas.map((formula) => <Formula key={formula.text} formula={formula} />)}</ul></>}
+    </div>
+  );
+}
+
+function Unknown({ unknown }) {
+  const drawn = surfaces.value.find((each) => each.model === state.value.current && (each.unknown === unknown.number || each.label === unknown.label));
+  const drawing = busy.value?.what === 'draw';
+  const thing = unknown.variables.length > 1 ? 'surface' : 'curve';
+  return (
+    <li class="unknown">
+      <p class="title"><b>{words(unknown.label)}</b> <span class="p muted">p {chance(unknown.log10_p ?? Math.log10(Number(unknown.p)))}</span></p>
+      <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
+      <p class="buttons">
+        {!drawn && <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>}
+        <button type="button" onClick={() => lookAlong(unknown.variables)}>Look along {unknown.variables.join(', ')}</button>
+      </p>
+      {drawn && <Surface surface={drawn} />}
+    </li>
+  );
+}
+
+export function Unknowns({ list }) {
+  if (list.length === 0) return null;
+  return <ul class="unknowns" aria-label="Without a name">{list.map((unknown) => <Unknown key={unknown.number} unknown={unknown} />)}</ul>;
+}

@@ -1,0 +1,102 @@
+// What the model means in the working volume, and what leaves the workbench.
+import { useEffect, useState } from 'preact/hooks';
+import { fixed, significant } from '../../../../report/web/src/dom.js';
+import { latest, NoAnswer, Refusal } from '../api/call.js';
+import { act, report } from '../app/actions.js';
+import { busy, currentModel, exported, mayAct, modelName, state } from '../app/store.js';
+import { unitText } from '../data/variables.js';
+import { words } from '../panels/parts.jsx';
+
+const ask = latest();
+
+function useMeaning() {
+  const [got, setGot] = useState(null);
+  const model = currentModel.value;
+  const key = `${model?.number} ${model?.standing}`;
+  useEffect(() => {
+    if (!model || busy.value) return;
+    ask('meaning', {}).then((answer) => { if (answer) setGot({ ...answer, key }); }).catch((error) => {
+      if (error instanceof NoAnswer) report('meaning', error);
+      else if (!(error instanceof Refusal && error.status === 409)) setGot({ key, problem: error.message });
+    });
+  }, [key, busy.value === null]);
+  return { got, stale: got?.key !== key };
+}
+
+function Share({ row, most }) {
+  return (
+    <tr><th scope="row">{words(row.label)}</th><td>{significant(row.um, 3)}{Number.isFinite(row.u95_um) ? ` ± ${significant(row.u95_um, 2)}` : ''}</td><td>{fixed(row.percent, 0)}</td><td aria-hidden="true"><span class="share" style={{ width: `${Math.max(0, Math.min(100, (100 * row.um) / most))}%` }} /></td></tr>
+  );
+}
+
+function Volume({ got }) {
+  const most = Math.max(...(got.share ?? []).map(({ um }) => um), 1e-9);
+  return (
+    <div>
+      <h3>Error in the working volume, by cause</h3>
+      <p>RMS <b>{significant(got.rms_um, 3)} µm</b>{got.left_um ? <>; tables of this model would leave <b>{significant(got.left_um.tables, 3)} µm</b>, all that the model knows <b>{significant(got.left_um.all, 3)} µm</b></> : ''}.</p>
+      <div class="table-frame"><table><caption class="hidden">Error in the working volume by cause</caption><thead><tr><th scope="col">Cause</th><th scope="col">µm</th><th scope="col">%</th><td /></tr></thead>
+        <tbody>{(got.share ?? []).map((row) => <Share key={row.label} row={row} most={most} />)}</tbody></table></div>
+    </div>
+  );
+}
+
+function Detectable({ effects }) {
+  return (
+    <div>
+      <h3>Smallest detectable effects</h3>
+      <p class="muted">Anything smaller may be there: these readings find an effect of this size in four campaigns of five.</p>
+      <ul class="plain-list">{effects.slice(0, 10).map((effect) => <li key={effect.name}>{effect.label}{effect.amplitudes?.[0] ? `: ${significant(effect.amplitudes[0].mdb, 2)} ${unitText(effect.amplitudes[0].unit)}` : ''}</li>)}</ul>
+    </div>
+  );
+}
+
+export function Meaning() {
+  const { got, stale } = useMeaning();
+  const model = currentModel.value;
+  return (
+    <section class="meaning" aria-labelledby="meaning-title" aria-busy={stale}>
+      <h2 id="meaning-title">What it means, with the model “{modelName(model)}”</h2>
+      {!got && <p class="muted">The program computes the error in the volume.</p>}
+      {got?.problem && <p>{words(got.problem)}</p>}
+      {got && !got.problem && (
+        <div class={`three ${stale ? 'is-stale' : ''}`}>
+          <Volume got={got} />
+          <Detectable effects={got.detectable ?? []} />
+          <div><h3>What to measure next</h3><ul class="plain-list">{(got.next ?? []).map((sentence) => <li key={sentence}>{words(sentence)}</li>)}</ul>{(got.next ?? []).length === 0 && <p class="muted">No further measurement is called for.</p>}</div>
+        </div>
+      )}
+    </section>
+  );
+}
+
+const kExports = [['model', 'model file'], ['result', 'result'], ['diagnosis', 'diagnosis folder'], ['report', 'report'], ['commands', 'commands as a script']];
+
+function CopyButton({ text }) {
+  const [done, setDone] = useState('');
+  const copy = () => navigator.clipboard.writeText(text).then(() => setDone('Copied.'), () => setDone('The browser does not let the page copy: mark the text and copy it.'));
+  return <><button type="button" onClick={copy}>Copy</button> <span role="status">{done}</span></>;
+}
+
+export function Exports() {
+  const { commands = [], output, campaign } = state.value;
+  const text = commands.join('\n');
+  return (
+    <section class="exports" aria-labelledby="exports-title">
+      <h2 id="exports-title">Take along</h2>
+      <div class="two">
+        <div>
+          <p class="buttons">{kExports.map(([what, label]) => <button key={what} type="button" disabled={!mayAct.value} onClick={() => act('export', { what })}>Write the {label}</button>)}</p>
+          <p class="muted">Into <code>{output}</code></p>
+          {exported.value.length > 0 && <ul class="plain-list">{exported.value.flatMap(({ what, files }, n) => files.map((file) => <li key={`${n} ${file}`}>{what}: <code>{file}</code></li>))}</ul>}
+        </div>
+        <div>
+          <h3>This session as commands</h3>
+          <p class="muted">The same on the command line, for <code>{campaign.file}</code>:</p>
+          <pre class="commands" tabindex="0" aria-label="Commands of this session">{text || 'nothing yet'}</pre>
+          <CopyButton text={text} />
+        </div>
+      </div>
+    </section>
+  );
+}

@@ -1,10 +1,9 @@
 // The page of volcal workbench.
 import { effect } from '@preact/signals';
 import { render } from 'preact';
-import { useEffect } from 'preact/hooks';
 import { keepLine } from './api/events.js';
 import { onEvent, onLine } from './app/actions.js';
-import { kMostPictures, open, openPictures, pictures } from './app/pictures.js';
+import { kMostPictures, open, pictures } from './app/pictures.js';
 import { listenToKeys } from './app/shortcuts.js';
 import { campaign, currentModel, line, preview, said, state } from './app/store.js';
 import { Card } from './lenses/card.jsx';
@@ -40,7 +39,6 @@ function WhereItFails() {
 }
 
 function Ready() {
-  useEffect(() => openPictures(), [campaign.value?.file]);
   return (
     <>
       <div class="top"><Progress /><Ladder /></div>

@@ -4,9 +4,9 @@ import { begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
 import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
-import { openOn, variablesIn } from './pictures.js';
+import { columnsOfPictures, openOn, openPictures, pictures, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
-import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble } from './store.js';
+import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, variables } from './store.js';
 
 export function report(what, error) {
   if (error instanceof NoAnswer) line.value = 'gone';
@@ -22,9 +22,10 @@ export async function takeState(next) {
   busy.value = next.busy ?? null;
   if (next.campaign?.file !== former?.campaign?.file || next.campaign?.observations !== former?.campaign?.observations) forgetReadings();
   if (next.phase !== 'ready') return;
+  if (pictures.value.length === 0) openPictures();
   if (sentence) said.value = sentence;
   if (former?.current !== next.current) preview.value = null;
-  await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value)]).catch((error) => report('columns', error));
+  await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
   if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) rank();
 }
 
@@ -33,6 +34,7 @@ function forgetReadings() {
   selection.value = emptySelection;
   shown.value = { unit: null, setup: -1, alone: null };
   ranking.value = null;
+  pictures.value = [];
 }
 
 /** Variables of the first suspect, and of what has no name. */
@@ -51,6 +53,8 @@ export async function rank() {
     openOn(standsOutMost(answer));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
+    // What a menu may ask for next is here before it does.
+    ensure(variables.value.map(({ name }) => name)).catch(() => {});
   } catch (error) {
     rankingBusy.value = false;
     if (!(error instanceof Refusal && error.status === 409)) report('rank', error);

@@ -95,6 +95,8 @@ std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
   return accepted;
 }
 
+}  // namespace
+
 ModelSpec extended_model(ModelSpec model, const Campaign& campaign,
                          const std::vector<EffectFinding>& effects) {
   for (const EffectFinding& effect : effects) {
@@ -105,8 +107,6 @@ ModelSpec extended_model(ModelSpec model, const Campaign& campaign,
   }
   return model;
 }
-
-}  // namespace
 
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis) {
   return accepted_with(diagnosis, {});

@@ -38,6 +38,10 @@ struct ExtensionWords {
 std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const EffectSpec& spec,
                                      const ExtensionWords& words);
 
+/// A model with effects that were found in a campaign. Throws InputError as extend_model() does.
+ModelSpec extended_model(ModelSpec model, const Campaign& campaign,
+                         const std::vector<EffectFinding>& effects);
+
 /// What a diagnosis adds to a model: its effects, of every set of alternatives the chosen one, and for every
 /// surface the leading law or the surface itself.
 std::vector<EffectFinding> accepted_effects(const Diagnosis& diagnosis);

@@ -12,11 +12,11 @@
 ///   session.rank();                                   // effects of the catalogue, best first
 ///   session.add({"reversal", "EXX", "dir_x", "step"});
 ///   session.current().figures.systematic;             // on lines that did not choose, m
-///   session.confirm();
+///   session.take(session.confirmation());
 ///   session.model();                                  // for a model file
 ///
 /// Numbers are those of diagnose() to the bit: both stand on identify/criticism. SI. Not for several threads
-/// at once; results do not depend on the number that work inside.
+/// at once, but for SessionWork; results do not depend on the number of threads that work inside.
 
 #include <cstddef>
 #include <functional>
@@ -46,10 +46,29 @@ struct SessionOptions {
   SessionProgress progress;
 };
 
+class Session;
+struct SessionModel;
+
+/// What work that takes long has found, put into the session that it is of.
+using SessionChange = std::function<void(Session&)>;
+/// Work apart from the session: it may run in another thread while the session is used. Throws
+/// SessionStopped, InputError.
+using SessionWork = std::function<SessionChange(const SessionProgress&)>;
+
 enum class ModelStanding {
   Fitted,       ///< by a full fit
   Preview,      ///< linear, at the noise of the last full fit
   Contradicted  ///< by a full fit, which differs from the preview by more than U95/4
+};
+
+/// How far an amplitude of a preview was off.
+struct Contradiction {
+  std::string label;
+  double previewed = 0.0;  ///< SI
+  double fitted = 0.0;
+  double u = 0.0;  ///< of the full fit
+  std::string unit;
+  double si_per_unit = 1.0;
 };
 
 /// One model of the tree.
@@ -58,14 +77,22 @@ struct SessionModel {
   std::optional<std::size_t> parent;  ///< none: as given
   std::string change;                 ///< "+ reversal EXX", "- ECX by z"; empty for the first
   ModelStanding standing = ModelStanding::Fitted;
-  LadderStep figures;                  ///< on fitted and on held-out readings
-  std::vector<EffectFinding> effects;  ///< added to the given model, with their amplitudes in this one
+  std::optional<Contradiction> contradiction = {};
+  LadderStep figures = {};                  ///< on fitted and on held-out readings
+  std::vector<EffectFinding> effects = {};  ///< added to the given model, with their amplitudes in this one
 };
 
 /// What an effect would be if it were added to the current model.
 struct EffectPreview {
   EffectFinding effect;      ///< amplitude, U, MDB, p with all tests counted
   Eigen::VectorXd residual;  ///< then, of all observations, m or rad; the rest of the model adjusted to it
+  double rms_heldout = 0.0;  ///< then, SI; NaN without held-out readings
+};
+
+/// The leading effects beside each other.
+struct Rivalry {
+  std::vector<EffectName> names;
+  Eigen::MatrixXd cosine;  ///< of what they explain, projected off the model; 0..1
 };
 
 /// Residuals of some readings at the current model.
@@ -84,30 +111,76 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
+  /// Of the current model: with the readings that were left out.
   const Campaign& campaign() const;
   /// All models, in the order in which they were made.
   const std::vector<SessionModel>& models() const;
   const SessionModel& current() const;
-  /// Reading minus prediction of the current model; setup, row, channel order, m or rad.
-  Eigen::VectorXd residual() const;
+  bool can_undo() const { return current().parent.has_value(); }
+  bool can_redo() const { return !undone_.empty(); }
+  /// Observations of the linear model: setup, row, channel order.
+  const LinearModel& linear() const;
+  /// Observations that judge and never choose.
+  const std::vector<bool>& heldout() const;
+  /// Effects that the user thought of so far.
+  std::size_t tried() const { return own_.size(); }
+  /// Reading minus prediction of a model, m or rad. Throws std::out_of_range.
+  const Eigen::VectorXd& residual(std::size_t model) const;
+  const Eigen::VectorXd& residual() const { return residual(current_); }
+  /// Standard uncertainty of every reading by the noise of a model, m or rad; infinite: left out.
+  Eigen::VectorXd sigma(std::size_t model) const;
+  /// The full fit that the current model stands on.
+  const FitResult& fitted_result() const;
 
   /// Effects that are not in the current model, best first; with more of an error function, which cannot be
   /// added here.
   std::vector<EffectFinding> rank();
+  /// Effects of which nothing shows.
+  std::vector<EffectFinding> not_visible();
+  /// Of the first of the ranking, at most `most`.
+  Rivalry rivals(std::size_t most);
+  /// What moves the residuals of the current model without a name, leading first.
+  const std::vector<UnknownFinding>& unknown();
+  /// Something without a name explains the residuals better than the leading effect.
+  bool unknown_leads();
   EffectPreview preview(const EffectName& effect);
+  /// What an effect would move the readings by per unit of its amplitude, added up over its amplitudes.
+  Eigen::VectorXd driver(const EffectName& effect);
   /// An effect of the kind `custom` as the user writes it, tested beside the catalogue; from here on it can
   /// be added by its name. Throws InputError where it cannot be read or cannot act.
   EffectPreview formula(const EffectSpec& custom);
   /// Marked observations.
   SelectionSummary summary(const std::vector<bool>& selected) const;
 
-  /// A linear preview with a further effect, or without one that was added, becomes the current model.
-  /// Throws std::invalid_argument where there is no such effect.
+  /// A linear preview with a further effect becomes the current model. Throws std::invalid_argument where
+  /// there is no such effect.
   const SessionModel& add(const EffectName& effect);
-  /// Where the effect is part of a full fit, by another one.
-  const SessionModel& remove(const EffectName& effect, const SessionProgress& progress = {});
-  /// The current model by a full fit, noise and smoothing anew. Throws SessionStopped.
-  const SessionModel& confirm(const SessionProgress& progress = {});
+  /// Whether an effect was added since the last full fit: it can be removed at once.
+  bool is_preview(const EffectName& effect) const;
+  /// A linear preview without it. Throws std::invalid_argument where it is_preview() not.
+  const SessionModel& remove_preview(const EffectName& effect);
+
+  /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
+  SessionWork removal(const EffectName& effect) const;
+  /// A model of the tree by a full fit, noise and smoothing anew; nothing changes where it is one already.
+  /// Throws std::out_of_range.
+  SessionWork confirmation(std::size_t model) const;
+  SessionWork confirmation() const { return confirmation(current_); }
+  /// A surface or curve for an unknown finding of the current model, kept in drawn(). Throws
+  /// std::out_of_range.
+  SessionWork drawing(std::size_t unknown);
+  /// What was drawn for the current model.
+  const std::vector<SurfaceFinding>& drawn() const;
+  /// A full fit with a surface that was drawn. Throws std::invalid_argument where there is no such surface.
+  SessionWork surface(const EffectName& name) const;
+  /// A full fit without these observations: another campaign. Throws std::invalid_argument where none are
+  /// marked.
+  SessionWork leaving_out(const std::vector<bool>& selected, const std::string& reason) const;
+  /// The search of a diagnosis from the current model to its end; every effect is a further model by a full
+  /// fit.
+  SessionWork climb() const;
+  /// Runs the work here and takes what it found.
+  const SessionModel& take(const SessionWork& work, const SessionProgress& progress = {});
 
   /// To the model before, and back. False: there is none.
   bool undo();
@@ -121,16 +194,23 @@ class Session {
  private:
   struct Fitted;
   struct Node;
+  struct Fitting;
 
-  std::shared_ptr<const Fitted> fitted(const ModelSpec& model, const SessionProgress& progress) const;
-  Node& node() const;
+  Fitting fitting() const;
+  Node& node() const { return *nodes_[current_]; }
+  void renew_setting();
   const std::vector<FamilyTest>& tests();
+  const ModelState& scanned();
+  std::vector<const FamilyTest*> ranked();
   const FamilyTest& test_of(const EffectName& effect);
-  const SessionModel& append(Node made, std::string change, ModelStanding standing);
+  const SessionModel& append(std::size_t parent, Node made, std::string change, ModelStanding standing);
+  SessionWork fit_of(const std::shared_ptr<const Campaign>& campaign,
+                     const std::vector<EffectFinding>& effects, const std::string& change) const;
+  static SessionChange appending(std::size_t parent, Node made, std::string change);
   void describe(const Node& made, SessionModel& shown) const;
+  std::size_t place_of(const EffectName& effect) const;
 
   SessionOptions options_;
-  Campaign campaign_;
   ModelSpec given_;
   std::vector<EffectSpec> own_;
   std::vector<std::unique_ptr<Node>> nodes_;

@@ -9,7 +9,8 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
-#include "volcal/identify/cli/options/written_effect.h"
+#include "volcal/identify/cli/options/parameter_option.h"
+#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/heldout_comparison.h"

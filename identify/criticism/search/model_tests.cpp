@@ -130,9 +130,13 @@ std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const Linear
 }
 
 ModelTests tests_of(const ModelState& state) {
+  return tests_of(state, refined_tests(state.setting(), state.model(), state.projector()));
+}
+
+ModelTests tests_of(const ModelState& state, std::vector<FamilyTest> families) {
   const SearchSetting& setting = state.setting();
   ModelTests tests;
-  tests.families = refined_tests(setting, state.model(), state.projector());
+  tests.families = std::move(families);
   tests.scans = generic_scan(state.model(), setting.variables, state.projector(), setting.threads);
   std::ranges::move(wave_tests(state.model(), state.projector(), setting.threads),
                     std::back_inserter(tests.scans));

@@ -54,6 +54,8 @@ struct ModelTests {
 };
 
 ModelTests tests_of(const ModelState& state);
+/// With tests of the families that were made of the state before.
+ModelTests tests_of(const ModelState& state, std::vector<FamilyTest> families);
 
 /// Tests of the families alone, shapes refined where they could matter.
 std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,

@@ -43,6 +43,8 @@ bool scan_does_better(const GenericTest& scan, double log10_p, const Evidence& n
          log10_p < (1.0 + probability_margin) * names.log10_p - 1.0;
 }
 
+}  // namespace
+
 bool any_scan_does_better(const ModelState& state, const FamilyTest& name) {
   const SearchSetting& setting = state.setting();
   const double margin = setting.families[name.family].independent_components()
@@ -54,8 +56,6 @@ bool any_scan_does_better(const ModelState& state, const FamilyTest& name) {
                             margin);
   });
 }
-
-}  // namespace
 
 Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions options)
     : options_(std::move(options)),

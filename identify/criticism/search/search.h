@@ -42,6 +42,9 @@ struct SearchOptions {
   std::function<void(const std::string& stage, double done)> progress;
 };
 
+/// Something without a name explains the residuals of a tested state better than an effect of the catalogue.
+bool any_scan_does_better(const ModelState& state, const FamilyTest& name);
+
 class Search {
  public:
   /// `heldout`: observations that judge and never choose.

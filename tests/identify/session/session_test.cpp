@@ -123,7 +123,7 @@ TEST_F(SessionOfTwo, MovesBetweenModelsAndLosesNone) {
   EXPECT_TRUE(session().redo());
   EXPECT_FALSE(session().redo());
   EXPECT_EQ(session().residual(), both);
-  const SessionModel& branch = session().remove(kReversal);
+  const SessionModel& branch = session().remove_preview(kReversal);
   EXPECT_EQ(branch.change, "- reversal EYY");
   ASSERT_EQ(branch.effects.size(), 1U);
   EXPECT_EQ(branch.effects[0].name, kOther);
@@ -132,7 +132,7 @@ TEST_F(SessionOfTwo, MovesBetweenModelsAndLosesNone) {
   EXPECT_FALSE(session().redo()) << "another way was taken";
   EXPECT_THROW(session().go_to(1000), std::out_of_range);
   EXPECT_THROW(session().add(kReversal), std::invalid_argument);
-  EXPECT_THROW(session().remove(kOther), std::invalid_argument);
+  EXPECT_THROW(session().remove_preview(kOther), std::invalid_argument);
 }
 
 /// The full fit agrees with the preview, and takes the effect out again.
@@ -142,7 +142,7 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   own->add(kOther);
   const double previewed = own->current().effects[0].amplitudes[0].value;
   const double residual = rms(own->residual());
-  const SessionModel& confirmed = own->confirm();
+  const SessionModel& confirmed = own->take(own->confirmation());
   EXPECT_EQ(confirmed.standing, ModelStanding::Fitted);
   EXPECT_EQ(confirmed.number, 2U);
   ASSERT_EQ(confirmed.effects.size(), 2U);
@@ -155,7 +155,9 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   own->add({"reversal", "EZZ", "dir_z", "step"});
   EXPECT_EQ(own->current().effects.size(), 3U);
   EXPECT_EQ(own->current().effects[0].amplitudes[0].value, figure.value) << "held by the fit";
-  const SessionModel& without = own->remove(kReversal);
+  EXPECT_FALSE(own->is_preview(kReversal));
+  EXPECT_THROW(own->remove_preview(kReversal), std::invalid_argument);
+  const SessionModel& without = own->take(own->removal(kReversal));
   EXPECT_EQ(without.standing, ModelStanding::Fitted) << "taken out of a full fit by another one";
   EXPECT_EQ(without.effects.size(), 2U);
 }
@@ -197,7 +199,7 @@ TEST_F(SessionOfTwo, IsLeftAsItWasByAStepThatIsStopped) {
   const SessionModel before = session().current();
   const Eigen::VectorXd residual = session().residual();
   const auto stop = [](const std::string& /*stage*/, double done) { return done < 0.3; };
-  EXPECT_THROW(session().confirm(stop), SessionStopped);
+  EXPECT_THROW(session().take(session().confirmation(), stop), SessionStopped);
   EXPECT_EQ(session().current().number, before.number);
   EXPECT_EQ(session().current().standing, ModelStanding::Preview);
   EXPECT_EQ(session().residual(), residual);

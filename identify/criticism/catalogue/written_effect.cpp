@@ -1,4 +1,4 @@
-#include "volcal/identify/cli/options/written_effect.h"
+#include "volcal/identify/criticism/catalogue/written_effect.h"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "volcal/model/description/errors.h"
 #include "volcal/model/effects/kinds/open/custom.h"
 #include "volcal/model/effects/registry.h"
 
-namespace volcal::cli {
+namespace volcal {
 namespace {
 
 const std::string kForm =
@@ -18,7 +17,7 @@ const std::string kForm =
 
 [[noreturn]] void refuse_effect(const std::string& option, const std::string& text, std::size_t column,
                                 const std::string& problem, const std::string& remedy) {
-  throw InputError({}, fmt::format("{} \"{}\", column {}: {}", option, text, column, problem), remedy);
+  throw WrittenEffectError(option, text, column, problem, remedy);
 }
 
 /// Text between two indices with the spaces at its ends taken off; `at`: where it begins.
@@ -110,12 +109,11 @@ void set_parameters(const std::string& option, const std::string& text, const Pi
 
 }  // namespace
 
-void add_parameter_option(CLI::App& app, std::vector<std::string>& parameters) {
-  app.add_option("--parameter", parameters,
-                 "p or q of the expression: p=250 is held, p=250+-50 estimated; may be given several times")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
+WrittenEffectError::WrittenEffectError(const std::string& option, const std::string& text, std::size_t column,
+                                       const std::string& problem, const std::string& remedy)
+    : InputError({}, fmt::format("{} \"{}\", column {}: {}", option, text, column, problem), remedy),
+      column_(column),
+      told_(problem) {}
 
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters) {
@@ -140,4 +138,4 @@ WrittenEffect written_effect(const std::string& option, const std::string& text,
   return effect;
 }
 
-}  // namespace volcal::cli
+}  // namespace volcal

@@ -1,0 +1,40 @@
+#pragma once
+/// Effects as the user writes them: a target and an expression.
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/model/description/errors.h"
+#include "volcal/model/effects/effect.h"
+
+namespace volcal {
+
+struct WrittenEffect {
+  EffectSpec spec;
+  std::unique_ptr<Effect> made;
+};
+
+/// Wrong at a place of the text. `what()` names the option, the text and the column; told() is the problem
+/// alone.
+class WrittenEffectError : public InputError {
+ public:
+  WrittenEffectError(const std::string& option, const std::string& text, std::size_t column,
+                     const std::string& problem, const std::string& remedy);
+
+  std::size_t column() const { return column_; }  ///< from 1
+  const std::string& told() const { return told_; }
+
+ private:
+  std::size_t column_;
+  std::string told_;
+};
+
+/// "EZX: abs(x) / 400 * dir_x" or "EXX += dir_x * (T_column - 20)" as an effect of kind custom; `parameters`:
+/// "p=250" (held) or "p=250+-50" (estimated). Throws InputError that names `option`, WrittenEffectError where
+/// the text is wrong.
+WrittenEffect written_effect(const std::string& option, const std::string& text,
+                             const std::vector<std::string>& parameters);
+
+}  // namespace volcal

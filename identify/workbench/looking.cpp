@@ -1,0 +1,402 @@
+#include "volcal/identify/workbench/looking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "volcal/identify/criticism/catalogue/written_effect.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/report/values/volume_causes.h"
+#include "volcal/identify/session/session_command.h"
+#include "volcal/identify/standards/standard_figures.h"
+#include "volcal/identify/workbench/columns.h"
+#include "volcal/identify/workbench/session_json.h"
+#include "volcal/model/description/units.h"
+#include "volcal/model/effects/expression.h"
+#include "volcal/model/effects/recorded_variable.h"
+
+namespace volcal::workbench {
+namespace {
+
+constexpr std::size_t kCompared = 12;  // suspects whose fall and rivals are told
+constexpr std::size_t kListed = 80;    // suspects
+constexpr std::size_t kHidden = 60;    // effects of which nothing shows
+constexpr double kRival = 0.7;         // cosine
+constexpr std::size_t kFrequencies = 1200;
+constexpr double kWavesPerRange = 300.0;  // finest of the periodogram
+constexpr double kPeriodogramRisk = 0.01;
+
+Json fall_json(const Session& session, double rms) {
+  return {{"from_um", number(session.current().figures.rms_heldout * kPerMicro)},
+          {"to_um", number(rms * kPerMicro)}};
+}
+
+Json rivals_json(const Rivalry& rivalry, const std::map<EffectName, std::string>& labels,
+                 const EffectName& effect) {
+  Json rivals = Json::array();
+  const auto own = std::ranges::find(rivalry.names, effect);
+  if (own == rivalry.names.end()) return rivals;
+  const auto row = own - rivalry.names.begin();
+  for (std::size_t k = 0; k < rivalry.names.size(); ++k) {
+    const double cosine = rivalry.cosine(row, static_cast<Eigen::Index>(k));
+    if (static_cast<std::ptrdiff_t>(k) == row || cosine < kRival) continue;
+    rivals.push_back({{"name", full_name(rivalry.names[k])},
+                      {"label", labels.at(rivalry.names[k])},
+                      {"cosine", number(cosine)}});
+  }
+  return rivals;
+}
+
+std::map<EffectName, std::string> labels_of(const std::vector<EffectFinding>& effects) {
+  std::map<EffectName, std::string> labels;
+  for (const EffectFinding& effect : effects) labels[effect.name] = effect.label;
+  return labels;
+}
+
+Json suspects_json(Session& session, const std::vector<EffectFinding>& ranking) {
+  const Rivalry rivalry = session.rivals(kCompared);
+  const std::map<EffectName, std::string> labels = labels_of(ranking);
+  Json suspects = Json::array();
+  for (const EffectFinding& effect : ranking) {
+    if (suspects.size() == kListed) break;
+    Json suspect = effect_json(effect);
+    suspect["rivals"] = rivals_json(rivalry, labels, effect.name);
+    suspect["fall"] = nullptr;
+    if (!effect.resolution && suspects.size() < kCompared)
+      suspect["fall"] = fall_json(session, session.preview(effect.name).rms_heldout);
+    suspects.push_back(std::move(suspect));
+  }
+  return suspects;
+}
+
+/// Cosines to the leading effects.
+Json all_cosines_json(Session& session, const EffectPreview& preview, const Eigen::VectorXd& before) {
+  Json rivals = Json::array();
+  const Eigen::VectorXd sigma = session.sigma(session.current().number);
+  const auto weighed = [&](const Eigen::VectorXd& change) -> Eigen::VectorXd {
+    return (sigma.array().isFinite()).select(change.array() / sigma.array(), 0.0);
+  };
+  const Eigen::VectorXd own = weighed(before - preview.residual);
+  std::size_t compared = 0;
+  for (const EffectFinding& other : session.rank()) {
+    if (other.resolution || other.name == preview.effect.name) continue;
+    if (++compared > kCompared) break;
+    const Eigen::VectorXd theirs = weighed(before - session.preview(other.name).residual);
+    const double size = own.norm() * theirs.norm();
+    if (size > 0.0)
+      rivals.push_back({{"name", full_name(other.name)},
+                        {"label", other.label},
+                        {"cosine", number(std::abs(own.dot(theirs)) / size)}});
+  }
+  return rivals;
+}
+
+Json preview_json(const Session& session, const EffectPreview& preview) {
+  Json suspect = effect_json(preview.effect);
+  suspect["fall"] = fall_json(session, preview.rms_heldout);
+  return {{"model", session.current().number}, {"effect", std::move(suspect)}};
+}
+
+struct Bins {
+  double from = 0.0;
+  double width = 1.0;
+  std::size_t count = 1;
+
+  Bins(const Eigen::VectorXd& values, std::size_t number_of_bins) : count(number_of_bins) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : values) {
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    if (low > high) low = high = 0.0;
+    from = low;
+    width = high > low ? (high - low) / static_cast<double>(count) : 1.0;
+  }
+  std::size_t of(double value) const {
+    return std::min(count - 1, static_cast<std::size_t>(std::max(0.0, (value - from) / width)));
+  }
+  Json edges() const {
+    Json json = Json::array();
+    for (std::size_t i = 0; i <= count; ++i) json.push_back(from + width * static_cast<double>(i));
+    return json;
+  }
+};
+
+/// Letters, digits and underscores that end at a place.
+std::size_t word_begin(const std::string& text, std::size_t at) {
+  const auto belongs = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  std::size_t begin = std::min(at, text.size());
+  while (begin > 0 && belongs(text[begin - 1])) --begin;
+  return begin;
+}
+
+/// Name and meaning of what may stand in a formula.
+std::vector<std::pair<std::string, std::string>> formula_words(const Session& session) {
+  std::vector<std::pair<std::string, std::string>> words;
+  const Campaign& campaign = session.campaign();
+  for (const Axis& axis : campaign.machine.axes) {
+    const std::string letter(1, lower_letter_of(axis.name)),
+        called = std::string("axis ") + letter_of(axis.name);
+    words.emplace_back(letter, "position of " + called + (is_rotary(axis.name) ? ", deg" : ", mm"));
+    words.emplace_back("dir_" + letter, "direction of approach of " + called + ", -1 or +1");
+  }
+  for (const ColumnInfo& column : recorded_columns(session)) {
+    if (column.kind == "temperature") words.emplace_back(column.name, column.label + ", degC");
+  }
+  for (const std::string& name : plain_variables()) words.emplace_back(name, "recorded with the readings");
+  for (const std::string& name : Expression::function_names()) words.emplace_back(name + "(", "function");
+  return words;
+}
+
+std::vector<std::pair<std::string, std::string>> target_words(const Session& session) {
+  std::vector<std::pair<std::string, std::string>> words;
+  for (const Axis& axis : session.campaign().machine.axes) {
+    for (const char* component : {"X", "Y", "Z", "A", "B", "C"})
+      words.emplace_back("E" + std::string(component) + letter_of(axis.name),
+                         std::string("error motion of axis ") + letter_of(axis.name));
+  }
+  return words;
+}
+
+std::vector<ResidualRecord> records_of(const Session& session, std::size_t model) {
+  const auto& places = session.linear().observations();
+  const Eigen::VectorXd& residual = session.residual(model);
+  const std::vector<double>& sigma = session.linear().problem().data.sigma;
+  std::vector<ResidualRecord> records;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto& [setup, row, channel] = places[i];
+    const Readings& readings = session.campaign().setups[setup].readings;
+    ResidualRecord& record = records.emplace_back();
+    record.setup = setup;
+    record.row = row;
+    record.channel = channel;
+    record.source_line = readings.source_line[row];
+    record.reading = readings.value[static_cast<std::size_t>(channel)][row];
+    record.predicted = record.reading - residual[static_cast<Eigen::Index>(i)];
+    record.removed = !std::isfinite(sigma[i]);
+  }
+  return records;
+}
+
+Json radial_json(const std::vector<CircleReading>& readings) {
+  Json json = Json::array();
+  for (const CircleReading& reading : readings) json.push_back(number(reading.deviation * kPerMicro));
+  return json;
+}
+
+Json circle_json(const CircleTest& now, const CircleTest& before) {
+  Json angle = Json::array(), sense = Json::array();
+  for (const CircleReading& reading : now.radial.readings) {
+    angle.push_back(reading.angle / kRadianPerDegree);
+    sense.push_back(reading.sense);
+  }
+  const auto deviation = [](const CircularFigures& figures) {
+    return number(figures.bidirectional.value_or(std::numeric_limits<double>::quiet_NaN()) * kPerMicro);
+  };
+  return {{"name", now.setup},
+          {"plane", std::string(1, letter_of(now.first)) + letter_of(now.second)},
+          {"radius_mm", now.radius * kPerMilli},
+          {"setup", now.setup_index},
+          {"rows", now.rows},
+          {"angle_deg", std::move(angle)},
+          {"sense", std::move(sense)},
+          {"measured_um", radial_json(now.radial.readings)},
+          {"predicted_um", radial_json(now.radial.model)},
+          {"before_um", radial_json(before.radial.model)},
+          {"G_measured_um", deviation(now.figures.readings)},
+          {"G_predicted_um", deviation(now.figures.model)}};
+}
+
+std::vector<EffectFinding> added_since_fit(const Session& session) {
+  std::vector<EffectFinding> added;
+  for (const EffectFinding& effect : session.current().effects) {
+    if (session.is_preview(effect.name)) added.push_back(effect);
+  }
+  return added;
+}
+
+bool changes_while_it_runs(const std::string& depends_on) {
+  for (const std::string& word : variables_in(depends_on)) {
+    if (word == "t" || word == "time" || word == "feed" || word.starts_with("T_")) return true;
+  }
+  return false;
+}
+
+/// Of a machine that is compensated by the tables of the last full fit: how uncertain they are, and what none
+/// holds.
+Json left_json(const Session& session) {
+  const FitResult& result = session.fitted_result();
+  constexpr int kPerAxis = 5;
+  const ErrorBudget budget =
+      error_budget(result, result.machine.tools.front(), default_conditions(result), kPerAxis);
+  double squares = 0.0;
+  Json held_by_none = Json::array();
+  for (const BudgetLine& line : budget.contributions) {
+    if (!changes_while_it_runs(line.depends_on)) continue;
+    squares += line.rms * line.rms;
+    held_by_none.push_back(line.name);
+  }
+  return {{"before_um", number(budget.total.rms * kPerMicro)},
+          {"by_uncertainty_um", number(budget.total.u_rms * kPerMicro)},
+          {"by_time_and_temperature_um", number(std::sqrt(squares) * kPerMicro)},
+          {"held_by_no_table", std::move(held_by_none)}};
+}
+
+/// Of every kind the effect that is seen best.
+Json detectable_json(const std::vector<EffectFinding>& ranking) {
+  std::map<std::string, std::pair<const EffectFinding*, const AmplitudeFigure*>> best;
+  for (const EffectFinding& effect : ranking) {
+    for (const AmplitudeFigure& figure : effect.amplitudes) {
+      if (effect.resolution || !std::isfinite(figure.mdb)) continue;
+      auto& known = best[effect.name.kind + " " + figure.unit];
+      if (known.second == nullptr || figure.mdb < known.second->mdb) known = {&effect, &figure};
+    }
+  }
+  Json json = Json::array();
+  for (const auto& [kind, found] : best) {
+    json.push_back({{"kind", found.first->name.kind},
+                    {"label", found.first->label},
+                    {"detectable", number(found.second->mdb / found.second->si_per_unit)},
+                    {"unit", found.second->unit}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json rank_json(Session& session) {
+  const std::vector<EffectFinding> ranking = session.rank();
+  Json unknown = Json::array(), hidden = Json::array(), drawn = Json::array();
+  for (const UnknownFinding& finding : session.unknown())
+    unknown.push_back(unknown_json(finding, unknown.size()));
+  for (const SurfaceFinding& surface : session.drawn()) drawn.push_back(surface_json(surface));
+  for (const EffectFinding& effect : session.not_visible()) {
+    if (hidden.size() < kHidden) hidden.push_back(effect_json(effect));
+  }
+  return {{"model", session.current().number},
+          {"tests", ranking.size()},
+          {"tried", session.tried()},
+          {"effects", suspects_json(session, ranking)},
+          {"unknown_leads", session.unknown_leads()},
+          {"unknown", std::move(unknown)},
+          {"drawn", std::move(drawn)},
+          {"not_visible", std::move(hidden)}};
+}
+
+std::string preview_frame(Session& session, const std::string& effect) {
+  const EffectName name = effect_name_from(effect);
+  try {
+    const EffectPreview preview = session.preview(name);
+    return frame(preview_json(session, preview), {"residual"}, {preview.residual * kPerMicro});
+  } catch (const std::invalid_argument& error) {
+    throw InputError({}, error.what(), "choose one of the list of this model");
+  }
+}
+
+std::string formula_frame(Session& session, const std::string& text,
+                          const std::vector<std::string>& parameters) {
+  const WrittenEffect written = written_effect("formula", text, parameters);
+  const EffectPreview preview = session.formula(written.spec);
+  Json json = preview_json(session, preview);
+  json["tried"] = session.tried();
+  json["rivals"] = all_cosines_json(session, preview, session.residual());
+  return frame(std::move(json), {"residual", "driver"},
+               {preview.residual * kPerMicro, session.driver(preview.effect.name)});
+}
+
+Json completion_json(const Session& session, const std::string& text, std::size_t at) {
+  const std::size_t from = word_begin(text, at);
+  const std::string begun = text.substr(from, std::min(at, text.size()) - from);
+  const bool in_target = text.find("+=") == std::string::npos && text.find(':') == std::string::npos;
+  Json words = Json::array();
+  for (const auto& [word, meaning] : in_target ? target_words(session) : formula_words(session)) {
+    if (word.starts_with(begun)) words.push_back({{"word", word}, {"meaning", meaning}});
+  }
+  return {{"from", from}, {"words", std::move(words)}};
+}
+
+std::string map_frame(const Session& session, const std::string& x, const std::string& y, std::size_t bins) {
+  const Eigen::VectorXd across = column(session, x), up = column(session, y);
+  const Eigen::VectorXd residual = session.residual() * kPerMicro;
+  const Eigen::VectorXd sigma = session.sigma(session.current().number) * kPerMicro;
+  const Bins columns(across, bins), rows(up, bins);
+  const auto places = static_cast<Eigen::Index>(bins * bins);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(places), variance = sum, count = sum;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    if (!std::isfinite(sigma[i]) || !std::isfinite(across[i]) || !std::isfinite(up[i])) continue;
+    const auto at = static_cast<Eigen::Index>(rows.of(up[i]) * bins + columns.of(across[i]));
+    sum[at] += residual[i];
+    variance[at] += sigma[i] * sigma[i];
+    count[at] += 1.0;
+  }
+  const Eigen::VectorXd mean = sum.cwiseQuotient(count);
+  const Eigen::VectorXd u = variance.cwiseSqrt().cwiseQuotient(count);
+  return frame({{"model", session.current().number}, {"x_edges", columns.edges()}, {"y_edges", rows.edges()}},
+               {"mean", "u", "count"}, {mean, u, count});
+}
+
+Json periodogram_json(const Session& session, const std::string& variable) {
+  const Eigen::VectorXd at = column(session, variable), sigma = session.sigma(session.current().number);
+  const Eigen::VectorXd& residual = session.residual();
+  const Bins range(at, 1);
+  const double step = kWavesPerRange / static_cast<double>(kFrequencies) / range.width;
+  std::vector<std::complex<double>> sums(kFrequencies, 0.0);
+  double weights = 0.0;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    if (!std::isfinite(sigma[i]) || !std::isfinite(at[i])) continue;
+    const double weight = 1.0 / (sigma[i] * sigma[i]);
+    const std::complex<double> turn = std::polar(1.0, 2.0 * std::numbers::pi * step * (at[i] - range.from));
+    std::complex<double> wave = residual[i] * weight;
+    for (std::complex<double>& sum : sums) sum += (wave *= turn);
+    weights += weight;
+  }
+  Json period = Json::array(), power = Json::array();
+  std::size_t peak = 0;
+  for (std::size_t k = 0; k < kFrequencies; ++k) {
+    period.push_back(1.0 / (step * static_cast<double>(k + 1)));
+    power.push_back(number(std::norm(sums[k]) / weights));
+    if (std::norm(sums[k]) > std::norm(sums[peak])) peak = k;
+  }
+  return {{"model", session.current().number},
+          {"variable", variable},
+          {"period", period},
+          {"power", std::move(power)},
+          {"level", std::log(kWavesPerRange / kPeriodogramRisk)},
+          {"peak", period[peak]}};
+}
+
+Json polar_json(const Session& session) {
+  const StandardFigures now =
+      standard_figures(session.campaign(), records_of(session, session.current().number));
+  const StandardFigures before = standard_figures(session.campaign(), records_of(session, 0));
+  Json circles = Json::array();
+  for (std::size_t i = 0; i < now.circles.size(); ++i)
+    circles.push_back(circle_json(now.circles[i], before.circles[std::min(i, before.circles.size() - 1)]));
+  return {{"model", session.current().number}, {"circles", std::move(circles)}};
+}
+
+Json meaning_json(Session& session) {
+  const VolumeCauses causes = volume_causes(session.fitted_result(), added_since_fit(session));
+  Json share = Json::array();
+  for (const VolumeCause& cause : causes.causes) {
+    share.push_back({{"label", cause.name},
+                     {"found", cause.found},
+                     {"um", number(cause.rms * kPerMicro)},
+                     {"u95_um", cause.u ? number(kCoverageFactor * *cause.u * kPerMicro) : Json()},
+                     {"percent", number(100.0 * cause.share)}});
+  }
+  return {{"model", session.current().number},
+          {"tool", causes.tool},
+          {"rms_um", number(causes.total_rms * kPerMicro)},
+          {"share", std::move(share)},
+          {"not_in_volume", causes.not_in_volume},
+          {"left", left_json(session)},
+          {"detectable", detectable_json(session.rank())}};
+}
+
+}  // namespace volcal::workbench

@@ -1,0 +1,468 @@
+#include "volcal/identify/workbench/workbench.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <system_error>
+#include <utility>
+
+#include "volcal/identify/criticism/catalogue/written_effect.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/model_reader.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/identify/words/sentences.h"
+#include "volcal/identify/workbench/columns.h"
+#include "volcal/identify/workbench/exports.h"
+#include "volcal/identify/workbench/looking.h"
+#include "volcal/identify/workbench/session_json.h"
+
+namespace volcal::workbench {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{400};  // between looks at files that are to be mended
+constexpr std::size_t kLinesShown = 5;           // on either side of a wrong line
+constexpr std::size_t kMostBins = 200;
+constexpr std::size_t kMostColumns = 64;
+
+/// What cannot be done now.
+struct Refusal : std::runtime_error {
+  int status;
+  std::string remedy;
+  Refusal(int code, const std::string& problem, std::string what_to_do)
+      : std::runtime_error(problem), status(code), remedy(std::move(what_to_do)) {}
+};
+
+std::string text_of(const Json& body, const char* key) {
+  if (!body.is_object() || !body.contains(key) || !body[key].is_string())
+    throw Refusal(400, std::string("the request lacks the text \"") + key + "\"", "load the page again");
+  return body[key].get<std::string>();
+}
+
+std::size_t number_of(const Json& body, const char* key) {
+  if (!body.is_object() || !body.contains(key) || !body[key].is_number_unsigned())
+    throw Refusal(400, std::string("the request lacks the number \"") + key + "\"", "load the page again");
+  return body[key].get<std::size_t>();
+}
+
+std::vector<std::string> texts_of(const Json& body, const char* key) {
+  std::vector<std::string> texts;
+  if (!body.contains(key)) return texts;
+  if (!body[key].is_array())
+    throw Refusal(400, std::string("\"") + key + "\" is no list", "load the page again");
+  for (const Json& each : body[key]) {
+    if (!each.is_string())
+      throw Refusal(400, std::string("\"") + key + "\" holds no texts", "load the page again");
+    texts.push_back(each.get<std::string>());
+  }
+  return texts;
+}
+
+Json error_json(const std::string& problem, const std::string& remedy) {
+  return {{"error", problem}, {"remedy", remedy}};
+}
+
+/// Lines about a place that is wrong.
+Json lines_about(const SourcePlace& place) {
+  Json lines = Json::array();
+  std::ifstream file(place.file);
+  std::string text;
+  const auto wanted = static_cast<std::size_t>(std::max(place.line, 1));
+  for (std::size_t line = 1; std::getline(file, text) && line <= wanted + kLinesShown; ++line) {
+    if (line + kLinesShown >= wanted) lines.push_back({{"line", line}, {"text", text}});
+  }
+  return lines;
+}
+
+Json input_error_json(const InputError& error) {
+  return {{"file", error.place().file},
+          {"line", error.place().line},
+          {"problem", error.problem()},
+          {"remedy", error.remedy()},
+          {"text", lines_about(error.place())}};
+}
+
+using Stamp = std::map<std::string, std::pair<std::filesystem::file_time_type, std::uintmax_t>>;
+
+/// When files were written last, and how long they are.
+Stamp stamp_of(const std::vector<std::string>& files) {
+  Stamp stamp;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(file, error);
+    const auto size = error ? 0 : std::filesystem::file_size(file, error);
+    if (!error) stamp[file] = {time, size};
+  }
+  return stamp;
+}
+
+ModelSpec model_of(const std::string& path, const Machine& machine) {
+  if (path.empty()) return {};
+  return is_result(path) ? read_known_errors(path).identified : read_model(path, machine);
+}
+
+SessionCommand command_of(const std::string& request, const Json& body) {
+  if (request == "add" || request == "remove")
+    return session_command_from(request + " " + text_of(body, "effect"));
+  if (request == "go") return session_command_from("go " + std::to_string(number_of(body, "model")));
+  if (request == "draw")
+    return session_command_from("draw " + std::to_string(number_of(body, "unknown") + 1));
+  if (request == "leave-out") {
+    SessionCommand command;
+    command.verb = SessionCommand::Verb::LeaveOut;
+    if (!body.contains("observations") || !body["observations"].is_array() || body["observations"].empty())
+      throw Refusal(400, "no readings are marked", "mark some in a picture");
+    for (const Json& each : body["observations"]) {
+      if (!each.is_number_unsigned())
+        throw Refusal(400, "an observation is no number", "load the page again");
+      command.observations.push_back(each.get<std::size_t>());
+    }
+    std::ranges::sort(command.observations);
+    command.reason = text_of(body, "reason");
+    if (command.reason.find_first_not_of(' ') == std::string::npos)
+      throw Refusal(400, "it is not said why readings are left out", "give a reason");
+    std::ranges::replace(command.reason, '\n', ' ');
+    return command;
+  }
+  return session_command_from(request);
+}
+
+constexpr std::array kCommands = {"add",  "remove", "go",    "draw",   "leave-out",
+                                  "undo", "redo",   "climb", "confirm"};
+
+bool is_command(const std::string& request) {
+  return std::ranges::find(kCommands, request) != kCommands.end();
+}
+
+std::string command_line_of(const SessionCommand& command, std::size_t current) {
+  if (command.verb != SessionCommand::Verb::Confirm || command.number) return to_string(command);
+  return "confirm " + std::to_string(current);
+}
+
+}  // namespace
+
+/// Work in the thread of its own: what it finds is taken under the lock.
+struct Workbench::Job {
+  std::string what;
+  std::string command;  ///< as it is kept; empty: it changes no model
+  bool behind = false;
+  std::function<std::function<void()>(const SessionProgress&)> run;
+};
+
+Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
+  worker_ = std::thread([this] { work(); });
+}
+
+Workbench::~Workbench() {
+  {
+    const Lock lock(mutex_);
+    ends_ = cancelled_ = true;
+    woken_.notify_all();
+  }
+  worker_.join();
+  hub_.close();
+}
+
+bool Workbench::wants_to_end() const {
+  const Lock lock(mutex_);
+  return ends_;
+}
+
+void Workbench::wait_until_idle() {
+  Lock lock(mutex_);
+  woken_.wait(lock, [this] { return phase_ != Phase::Loading && !busy_ && !waiting_; });
+}
+
+Session& Workbench::session() {
+  if (phase_ != Phase::Ready)
+    throw Refusal(409, phase_ == Phase::Loading ? "the campaign is still being loaded" : "the input is wrong",
+                  "wait until it is there");
+  return *session_;
+}
+
+Answer Workbench::answer(const std::string& request, const std::string& body, const std::string& tab) {
+  const auto refused = [](int status, Json json) {
+    return Answer{status, "application/json", json_text(json, -1)};
+  };
+  try {
+    const Json json = body.empty() ? Json::object() : Json::parse(body);
+    const Lock lock(mutex_);
+    if (auto framed = look_framed(request, json))
+      return {200, "application/octet-stream", *std::move(framed)};
+    const bool looks = request != "cancel" && request != "take" && request != "quit" && request != "export" &&
+                       !is_command(request);
+    const Json told =
+        looks ? look(request, request == "state" ? Json{{"tab", tab}} : json) : act(request, json, tab);
+    return {200, "application/json", json_text(told, -1)};
+  } catch (const WrittenEffectError& error) {
+    Json json = error_json(error.told(), error.remedy());
+    json["column"] = error.column();
+    return refused(422, std::move(json));
+  } catch (const InputError& error) {
+    return refused(422, error_json(error.problem(), error.remedy()));
+  } catch (const Refusal& refusal) {
+    return refused(refusal.status, error_json(refusal.what(), refusal.remedy));
+  } catch (const Json::exception&) {
+    return refused(400, error_json("the request is no JSON of its kind", "load the page again"));
+  } catch (const std::exception& error) {
+    return refused(500, error_json(error.what(), "undo the last step, or start the program again"));
+  }
+}
+
+Json Workbench::look(const std::string& request, const Json& body) {
+  if (request == "state") return state(text_of(body, "tab"));
+  if (request == "rank") return rank_json(session());
+  if (request == "complete") return completion_json(session(), text_of(body, "text"), number_of(body, "at"));
+  if (request == "periodogram") return periodogram_json(session(), text_of(body, "variable"));
+  if (request == "polar") return polar_json(session());
+  if (request == "meaning") return meaning_json(session());
+  throw Refusal(404, "\"" + request + "\" is no request of the workbench", "load the page again");
+}
+
+std::optional<std::string> Workbench::look_framed(const std::string& request, const Json& body) {
+  if (request == "columns") {
+    const std::vector<std::string> names = texts_of(body, "names");
+    if (names.size() > kMostColumns) throw Refusal(400, "too many columns at once", "ask for fewer");
+    std::vector<Eigen::VectorXd> columns;
+    for (const std::string& name : names) columns.push_back(column(session(), name));
+    return frame({{"observations", session().linear().size()}}, names, columns);
+  }
+  if (request == "preview") return preview_frame(session(), text_of(body, "effect"));
+  if (request == "map") {
+    const std::size_t bins = body.contains("bins") ? number_of(body, "bins") : 40;
+    if (bins < 2 || bins > kMostBins) throw Refusal(400, "so many bins cannot be drawn", "2 to 200");
+    return map_frame(session(), text_of(body, "x"), text_of(body, "y"), bins);
+  }
+  if (request != "formula") return std::nullopt;
+  SessionCommand command;
+  command.verb = SessionCommand::Verb::Formula;
+  command.formula = text_of(body, "text");
+  command.parameters = texts_of(body, "parameters");
+  const std::size_t before = session().tried();
+  std::string framed = formula_frame(session(), command.formula, command.parameters);
+  if (session().tried() > before) commands_.push_back(to_string(command));
+  return framed;
+}
+
+Json Workbench::act(const std::string& request, const Json& body, const std::string& tab) {
+  if (request == "cancel") {
+    cancelled_ = busy_.has_value();
+    return state(tab);
+  }
+  if (request == "take") {
+    writer_ = tab;
+    publish_state();
+    return state(tab);
+  }
+  if (writer_.empty()) writer_ = tab;
+  if (tab != writer_) throw Refusal(409, "another page writes", "press \"write here\" to take over");
+  if (request == "quit") {
+    hub_.publish("bye", "{}");
+    ends_ = true;
+    return Json::object();
+  }
+  if (busy_ && !busy_->behind)
+    throw Refusal(409, "the program is at work: " + busy_->what, "wait for it, or cancel it");
+  if (request == "export") {
+    export_now(text_of(body, "what"));
+  } else {
+    do_command(command_of(request, body));
+  }
+  publish_state();
+  return state(tab);
+}
+
+/// At once, or started.
+void Workbench::do_command(const SessionCommand& command) {
+  if (busy_ && busy_->behind) cancelled_ = true;
+  const std::string line = command_line_of(command, session().current().number);
+  std::optional<SessionWork> long_work = begin(session(), command);
+  if (!long_work) {
+    commands_.push_back(line);
+    waiting_.reset();
+    return confirm_what_is_linear();
+  }
+  start({line.substr(0, line.find(' ')), line, false,
+         [this, long_work = *std::move(long_work)](const SessionProgress& progress) -> std::function<void()> {
+           return [this, change = long_work(progress)] { change(*session_); };
+         }});
+}
+
+void Workbench::start(Job job) {
+  waiting_ = std::make_unique<Job>(std::move(job));
+  woken_.notify_all();
+}
+
+/// Behind, as long as the user does nothing else.
+void Workbench::confirm_what_is_linear() {
+  if (!options_.confirm_behind || session_->current().standing != ModelStanding::Preview) return;
+  const std::size_t model = session_->current().number;
+  start(
+      {"confirm", "confirm " + std::to_string(model), true,
+       [this, confirm = session_->confirmation()](const SessionProgress& progress) -> std::function<void()> {
+         return [this, change = confirm(progress)] { change(*session_); };
+       }});
+}
+
+void Workbench::export_now(const std::string& what) {
+  if (options_.read_only) throw Refusal(403, "this workbench only reads", "start it without --read-only");
+  const ExportPlace place{options_.output, options_.campaign, options_.model, options_.provenance};
+  const auto tell = [this, what](const std::vector<std::string>& files) {
+    hub_.publish("exported", json_text(Json{{"what", what}, {"files", files}}, -1));
+  };
+  if (what == "model") return tell({export_model(session(), place)});
+  if (what == "commands") return tell({export_commands(commands_, place)});
+  if (busy_ && busy_->behind) cancelled_ = true;
+  const ExportWork make = export_work(what, session(), place, options_.threads);
+  start({"export", "", false, [make, tell](const SessionProgress& progress) -> std::function<void()> {
+           return [files = make(progress), tell] { tell(files); };
+         }});
+}
+
+Json Workbench::state(const std::string& tab) const {
+  Json busy = nullptr;
+  if (busy_) {
+    const double seconds = std::chrono::duration<double>(EventHub::Clock::now() - busy_->begun).count();
+    constexpr double kToBeJudged = 0.03;
+    busy = {{"what", busy_->what},
+            {"behind", busy_->behind},
+            {"stage", busy_->stage},
+            {"share", busy_->share},
+            {"left_s",
+             busy_->share > kToBeJudged ? Json(seconds * (1.0 - busy_->share) / busy_->share) : Json()}};
+  }
+  Json json = {{"version", options_.provenance.version},
+               {"revision", revision_},
+               {"read_only", options_.read_only},
+               {"writer", writer_.empty() || writer_ == tab},
+               {"writer_tab", writer_},
+               {"phase", phase_ == Phase::Ready     ? "ready"
+                         : phase_ == Phase::Loading ? "loading"
+                                                    : "bad-input"},
+               {"input_error", input_error_ ? input_error_json(*input_error_) : Json()},
+               {"busy", std::move(busy)},
+               {"campaign", campaign_json_},
+               {"confirm_behind", options_.confirm_behind},
+               {"output", options_.output},
+               {"commands", commands_}};
+  if (phase_ != Phase::Ready) return json;
+  json.update(models_json(*session_));
+  json["notes"] = sentences(session_->campaign().notes);
+  json["can_undo"] = session_->can_undo();
+  json["can_redo"] = session_->can_redo();
+  json["tried"] = session_->tried();
+  json["left_out"] = left_out_json(session_->campaign());
+  return json;
+}
+
+void Workbench::publish_state() {
+  ++revision_;
+  hub_.publish("state", json_text(state(writer_), -1));
+}
+
+/// False once the work is to stop. Told a few times a second.
+SessionProgress Workbench::progress() {
+  return [this, last = EventHub::Clock::time_point()](const std::string& stage, double done) mutable {
+    const Lock lock(mutex_);
+    if (cancelled_) return false;
+    constexpr std::chrono::milliseconds kBetween{150};
+    const auto now = EventHub::Clock::now();
+    if (!busy_ || now - last < kBetween) return true;
+    last = now;
+    busy_->stage = stage;
+    busy_->share = std::max(busy_->share, std::min(1.0, done));
+    hub_.publish("progress", json_text(state(writer_)["busy"], -1));
+    return true;
+  };
+}
+
+void Workbench::work() {
+  Lock lock(mutex_);
+  while (!ends_ && phase_ != Phase::Ready) {
+    load(lock);
+    if (phase_ == Phase::BadInput) wait_for_mended_files(lock);
+  }
+  while (!ends_) {
+    woken_.wait(lock, [this] { return ends_ || waiting_; });
+    if (ends_) break;
+    const std::unique_ptr<Job> job = std::move(waiting_);
+    run(*job, lock);
+    woken_.notify_all();
+  }
+}
+
+void Workbench::run(Job& job, Lock& lock) {
+  cancelled_ = false;
+  busy_.emplace();
+  busy_->what = job.what;
+  busy_->behind = job.behind;
+  publish_state();
+  lock.unlock();
+  Json failed;
+  std::function<void()> take;
+  try {
+    take = job.run(progress());
+  } catch (const SessionStopped&) {
+  } catch (const InputError& error) {
+    failed = error_json(error.problem(), error.remedy());
+  } catch (const std::exception& error) {
+    failed = error_json(error.what(), "the model before stands");
+  }
+  lock.lock();
+  const bool stopped = cancelled_;
+  busy_.reset();
+  cancelled_ = false;
+  if (take && !stopped) {
+    take();
+    if (!job.command.empty()) commands_.push_back(job.command);
+    if (job.what == "draw" && !session_->drawn().empty())
+      hub_.publish("surface", json_text(surface_json(session_->drawn().back()), -1));
+  }
+  if (!failed.is_null()) {
+    failed["what"] = job.what;
+    hub_.publish("failed", json_text(failed, -1));
+  }
+  publish_state();
+}
+
+/// A session, or what is wrong with the files.
+void Workbench::load(Lock& lock) {
+  phase_ = Phase::Loading;
+  input_error_.reset();
+  busy_.emplace();
+  busy_->what = "load";
+  publish_state();
+  lock.unlock();
+  std::unique_ptr<Session> opened;
+  std::optional<InputError> error;
+  try {
+    Campaign campaign = read_campaign(options_.campaign);
+    ModelSpec model = model_of(options_.model, campaign.machine);
+    opened = std::make_unique<Session>(std::move(campaign), std::move(model),
+                                       SessionOptions{.threads = options_.threads, .progress = progress()});
+  } catch (const SessionStopped&) {
+    error = InputError({options_.campaign, 0}, "loading was stopped", "save the file again to load it anew");
+  } catch (const InputError& wrong) {
+    error = wrong;
+  }
+  lock.lock();
+  busy_.reset();
+  cancelled_ = false;
+  session_ = std::move(opened);
+  input_error_ = std::move(error);
+  phase_ = session_ ? Phase::Ready : Phase::BadInput;
+  if (session_) campaign_json_ = campaign_json(*session_);
+  publish_state();
+  woken_.notify_all();
+}
+
+void Workbench::wait_for_mended_files(Lock& lock) {
+  const std::vector<std::string> files = {options_.campaign, options_.model, input_error_->place().file};
+  const Stamp before = stamp_of(files);
+  while (!ends_ && stamp_of(files) == before) woken_.wait_for(lock, kLook);
+}
+
+}  // namespace volcal::workbench

@@ -1,0 +1,103 @@
+#pragma once
+/// The workbench without its network: a campaign that is loaded, loaded again once a file is mended, a
+/// session on it, work that takes long in a thread of its own, exports, and what the page is told
+/// (docs/workbench-protocol.md). For several threads at once.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/session/session.h"
+#include "volcal/identify/session/session_command.h"
+#include "volcal/identify/workbench/event_hub.h"
+#include "volcal/identify/workbench/frame.h"
+#include "volcal/model/description/errors.h"
+
+namespace volcal::workbench {
+
+struct WorkbenchOptions {
+  std::string campaign;  ///< campaign.toml
+  std::string model;     ///< model.toml, or a result of volcal fit; empty: all errors
+  std::string output;    ///< folder of exports
+  int threads = 0;
+  bool read_only = false;
+  bool confirm_behind = true;  ///< a full fit follows every linear preview
+  Provenance provenance = {};
+};
+
+struct Answer {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body;
+};
+
+class Workbench {
+ public:
+  /// Begins to load.
+  explicit Workbench(WorkbenchOptions options);
+  /// Stops what is under way.
+  ~Workbench();
+  Workbench(const Workbench&) = delete;
+  Workbench& operator=(const Workbench&) = delete;
+
+  /// `request`: the name behind /api/; `tab`: of the page's. Errors are answers.
+  Answer answer(const std::string& request, const std::string& body, const std::string& tab);
+  EventHub& events() { return hub_; }
+  bool wants_to_end() const;
+  /// Until nothing is under way; for tests.
+  void wait_until_idle();
+
+ private:
+  struct Job;
+  struct Busy {
+    std::string what;
+    std::string stage;
+    double share = 0.0;
+    EventHub::Clock::time_point begun = EventHub::Clock::now();
+    bool behind = false;  ///< it may be stopped by whatever the user does next
+  };
+  enum class Phase { Loading, BadInput, Ready };
+  using Lock = std::unique_lock<std::mutex>;
+
+  Json look(const std::string& request, const Json& body);
+  std::optional<std::string> look_framed(const std::string& request, const Json& body);
+  Json act(const std::string& request, const Json& body, const std::string& tab);
+  void do_command(const SessionCommand& command);
+  void export_now(const std::string& what);
+  Json state(const std::string& tab) const;
+  void publish_state();
+  Session& session();
+
+  void work();
+  void run(Job& job, Lock& lock);
+  void load(Lock& lock);
+  void wait_for_mended_files(Lock& lock);
+  void start(Job job);
+  void confirm_what_is_linear();
+  SessionProgress progress();
+
+  WorkbenchOptions options_;
+  EventHub hub_;
+  mutable std::mutex mutex_;
+  std::condition_variable woken_;
+  Phase phase_ = Phase::Loading;
+  std::optional<InputError> input_error_;
+  std::unique_ptr<Session> session_;
+  Json campaign_json_;
+  std::unique_ptr<Job> waiting_;
+  std::optional<Busy> busy_;
+  bool cancelled_ = false;
+  bool ends_ = false;
+  std::vector<std::string> commands_;
+  std::string writer_;
+  std::size_t revision_ = 0;
+  std::thread worker_;
+};
+
+}  // namespace volcal::workbench

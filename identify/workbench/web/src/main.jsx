@@ -41,7 +41,7 @@ function WhereItFails() {
 function Ready() {
   return (
     <>
-      <div class="top"><Progress /><Ladder /></div>
+      <div class="top"><Ladder /></div>
       <div class="centre"><div><WhereItFails /><FormulaBox /></div><Suspects /></div>
       <Meaning />
       <Exports />
@@ -57,10 +57,11 @@ function Page() {
   return (
     <>
       {now ? <Header /> : <header class="head"><h1><strong>volcal</strong> workbench</h1></header>}
+      <Progress />
       <main>
         <Line retry={retry} /><ReadOnly /><Trouble />
         {now?.phase === 'bad-input' && <BadInput />}
-        {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : <>{now && <Progress />}{loading()}</>}
+        {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : loading()}
       </main>
       <p class="hidden" role="status" aria-live="polite" id="said">{said.value}</p>
     </>

@@ -1,6 +1,6 @@
 // What a click does.
 import { call, latest, NoAnswer, Refusal } from '../api/call.js';
-import { begin, painted } from '../draw/timing.js';
+import { abandon, begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
 import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
@@ -50,6 +50,7 @@ export async function rank() {
     const answer = await askRank('rank', {});
     if (!answer) return;
     ranking.value = { ...answer, model, standing };
+    keepSurfaces(answer.drawn ?? [], model);
     openOn(standsOutMost(answer));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
@@ -76,8 +77,19 @@ export async function act(name, body = {}) {
 
 export async function add(effect) {
   begin('add');
-  const done = await act('add', { effect });
-  if (done) whenDrawn(() => painted('add'));
+  if (!await act('add', { effect })) return abandon('add');
+  return whenDrawn(() => painted('add'));
+}
+
+/** A law that stands behind a surface: tried as a formula, then added by the name that it got. */
+export async function addFormula({ name, text, parameters = [] }) {
+  if (name) return add(name);
+  try {
+    const { head } = await call('formula', { text, parameters });
+    return add(head.effect.name);
+  } catch (error) {
+    return report('formula', error);
+  }
 }
 
 export const go = (model) => act('go', { model });
@@ -119,6 +131,7 @@ export async function look(effect, label) {
 export function lookAway(effect) {
   if (wanted !== effect) return;
   wanted = null;
+  abandon('hover');
   askPreview.cancel();
   preview.value = null;
 }
@@ -146,9 +159,14 @@ export function onEvent(name, data) {
   else if (name === 'bye') line.value = 'ended';
 }
 
+/** Surfaces of a model, each once. */
+function keepSurfaces(list, model) {
+  const names = new Set(list.map(({ name }) => name));
+  surfaces.value = [...surfaces.value.filter((each) => each.model !== model || !names.has(each.name)), ...list.map((surface) => ({ ...surface, model }))];
+}
+
 function takeSurface(surface) {
-  const model = state.value.current;
-  surfaces.value = [...surfaces.value.filter((each) => each.label !== surface.label || each.model !== model), { ...surface, model }];
+  keepSurfaces([surface], state.value.current);
   said.value = `${surface.label} is drawn.`;
 }
 

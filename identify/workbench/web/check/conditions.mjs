@@ -60,18 +60,24 @@ export async function twoTabs(story, fault) {
   await second.context.close();
 }
 
+/** A program of its own, started on a campaign that is wrong. */
 export async function badInput(story, fault) {
-  const { page } = story.main;
   const good = await readFile(story.campaign, 'utf8');
-  await writeFile(story.campaign, good.replace(/^instrument = "[^"]*"/m, 'instrument = "laser-trcer"'));
+  const file = story.campaign.replace(/\.toml$/, '-wrong.toml');
+  await writeFile(file, good.replace(/^instrument = "[^"]*"/m, 'instrument = "laser-trcer"'));
+  const program = story.startOn(file);
+  program.child.on('exit', () => {});
+  const { page, context } = await open(story.browser, await program.url, story.wide, fault);
   await page.locator('.bad-input .wrong').waitFor({ timeout: 30_000 });
   const text = await page.locator('.bad-input').textContent();
   if (!/line \d+/.test(text) || !text.includes('laser-trcer')) fault('bad input is not shown with its line');
   await accessible(story, page, fault);
   await shot(page, story, 'bad-input');
-  await writeFile(story.campaign, good);
+  await writeFile(file, good);
   await until(page, () => document.querySelector('.headline') && !document.querySelector('.bad-input'));
   await ranked(page);
+  await context.close();
+  program.child.kill();
 }
 
 export async function serverGone(story, fault) {

@@ -6,7 +6,7 @@ const kLong = 180_000; // ms, for a full fit of a large campaign
 export const shot = (page, story, name, fullPage = true) => page.screenshot({ path: path.join(story.out, `${name}.png`), fullPage });
 export const until = (page, condition, argument, timeout = kLong) => page.waitForFunction(condition, argument, { timeout });
 
-export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.top .progress'));
+export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.progress'));
 export const ranked = async (page) => {
   await idle(page);
   await until(page, () => document.querySelector('.suspects') && !document.querySelector('.suspects.is-stale') && document.querySelector('.suspects .rows, .suspects .nothing'));
@@ -112,7 +112,7 @@ async function add(story, fault) {
 async function confirm(story, fault) {
   const { page } = story.main;
   await page.getByRole('button', { name: 'Confirm by a full fit' }).click();
-  await page.locator('.top .progress').waitFor({ timeout: 5000 }).catch(() => fault('no progress is shown'));
+  await page.locator('.progress').waitFor({ timeout: 5000 }).catch(() => fault('no progress is shown'));
   await until(page, () => ['fitted', 'contradicted'].includes(document.querySelector('.headline')?.dataset.standing));
   await ranked(page);
 }

@@ -37,7 +37,7 @@ async function chapter(name, tell) {
 }
 
 const url = await program.url;
-const story = { url, browser, axe, out, campaign: copy, program, wide: { width: 1400, height: 1000 } };
+const story = { url, browser, axe, out, campaign: copy, program, startOn: (file) => start(command, [...given, file]), wide: { width: 1400, height: 1000 } };
 let current = () => {};
 const main = await open(browser, url, story.wide, (text) => current(text));
 story.main = main;

@@ -1,10 +1,9 @@
 // The page of volcal workbench.
 import { effect } from '@preact/signals';
 import { render } from 'preact';
-import { useEffect } from 'preact/hooks';
 import { keepLine } from './api/events.js';
 import { onEvent, onLine } from './app/actions.js';
-import { kMostPictures, open, openPictures, pictures } from './app/pictures.js';
+import { kMostPictures, open, pictures } from './app/pictures.js';
 import { listenToKeys } from './app/shortcuts.js';
 import { campaign, currentModel, line, preview, said, state } from './app/store.js';
 import { Card } from './lenses/card.jsx';
@@ -40,10 +39,9 @@ function WhereItFails() {
 }
 
 function Ready() {
-  useEffect(() => openPictures(), [campaign.value?.file]);
   return (
     <>
-      <div class="top"><Progress /><Ladder /></div>
+      <div class="top"><Ladder /></div>
       <div class="centre"><div><WhereItFails /><FormulaBox /></div><Suspects /></div>
       <Meaning />
       <Exports />
@@ -59,10 +57,11 @@ function Page() {
   return (
     <>
       {now ? <Header /> : <header class="head"><h1><strong>volcal</strong> workbench</h1></header>}
+      <Progress />
       <main>
         <Line retry={retry} /><ReadOnly /><Trouble />
         {now?.phase === 'bad-input' && <BadInput />}
-        {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : <>{now && <Progress />}{loading()}</>}
+        {ready ? <Ready /> : now?.phase === 'bad-input' || line.value === 'refused' || line.value === 'ended' ? null : loading()}
       </main>
       <p class="hidden" role="status" aria-live="polite" id="said">{said.value}</p>
     </>

@@ -110,6 +110,6 @@ export const catalogue = [
 export const truth = { 'reversal:EYY:dir_y:step': 3.2, 'cyclic:EXX:x:10mm:sin': 0.5, 'empirical:y:x:z': 1, 'pitch:EBX:dir_x:step': 1.5 };
 export const rivalsOf = { 'cyclic:EXX:x:10mm:sin': ['cyclic EXX cos'], 'sag:EZX:x:quadratic': ['thermal EZZ'] };
 export const unseen = [
-  { name: 'pivot:A:offset', label: 'offset of pivot A', amplitudes: [], words: '', visible: false, remedy: 'Measure with A at three angles at least.' },
-  { name: 'history:EYY:spindle_speed', label: 'EYY after the spindle has run', amplitudes: [], words: '', visible: false, remedy: 'Record spindle_speed and measure after an hour at speed.' },
+  { name: 'pivot:A:offset', label: 'offset of pivot A', amplitudes: [], words: '', visible: 0, remedy: 'Measure with A at three angles at least.' },
+  { name: 'history:EYY:spindle_speed', label: 'EYY after the spindle has run', amplitudes: [], words: '', visible: 0, remedy: 'Record spindle_speed and measure after an hour at speed.' },
 ];

@@ -28,6 +28,7 @@ export class Session {
   }
 
   restart() {
+    this.drawn = {};
     this.models = [];
     this.back = [];
     this.forth = [];
@@ -78,15 +79,15 @@ export class Session {
   }
 
   described(effect, score) {
-    return { name: effect.name, label: effect.label, words: effect.words, amplitudes: [{ label: effect.label, value: score.value, u95: score.u95, mdb: score.mdb, unit: effect.unit }], shape: effect.shape, p: String(10 ** Math.max(-300, -score.gain / 2.3)), log10_p: -score.gain / 2.3, gain: score.gain, visible: true, remedy: null, formula: effect.formula ?? null, surface: Boolean(effect.surface), rivals: rivalsOf[effect.name] ?? [], sketch: effect.sketch };
+    return { name: effect.name, label: effect.label, words: effect.words, amplitudes: [{ label: effect.label, value: score.value, u95: score.u95, detectable: score.mdb, unit: effect.unit }], shape: effect.shape, p: String(10 ** Math.max(-300, -score.gain / 2.3)), log10_p: -score.gain / 2.3, gain: score.gain, visible: 0.9, can_be_added: true, driver: effect.name.split(':')[2] ?? '', causes: '', formula: effect.formula ?? null, surface: Boolean(effect.surface), rivals: rivalsOf[effect.name] ?? [], sketch: effect.sketch };
   }
 
   now() { return this.models[this.current]; }
 
   state(tab) {
     return {
-      version: '0.9.0', revision: this.revision, read_only: false, writer: tab === this.writer, phase: this.inputError ? 'bad-input' : 'ready', input_error: this.inputError, busy: this.busy, current: this.current,
-      campaign: { file: 'campaign.toml', machine: 'VMC 500', structure: 'X Y table, Z column', observations: this.length, setups: this.setups.map((setup, k) => ({ name: setup.name, instrument: setup.instrument, readings: this.columns.setup.filter((s) => s === k).length, channels: ['length'], unit: setup.unit, bar: Boolean(setup.bar) })), columns: kVariables },
+      version: '0.9.0', revision: this.revision, read_only: false, writer: true, writer_tab: this.writer ?? '', confirm_behind: false, phase: this.inputError ? 'bad-input' : 'ready', input_error: this.inputError, busy: this.busy, current: this.current,
+      campaign: { file: 'campaign.toml', machine: 'VMC 500', structure: 'X Y table, Z column', observations: this.length, setups: this.setups.map((setup, k) => ({ name: setup.name, instrument: setup.instrument, readings: this.columns.setup.filter((s) => s === k).length, channels: [{ name: 'length', unit: setup.unit }], bar: Boolean(setup.bar) })), columns: kVariables },
       notes: ['Set-up pitch_X states no repeatability; 0.5 µrad is assumed.'], models: this.models.map(({ residual, names, ...model }) => model), can_undo: this.back.length > 0, can_redo: this.forth.length > 0, tried: this.tried, left_out: this.leftOut, commands: this.commands, output: '/tmp/volcal-workbench',
     };
   }
@@ -135,14 +136,14 @@ export class Session {
     const list = catalogue.filter((effect) => !effect.hidden && !own.includes(effect.name)).map((effect) => ({ effect, score: this.scored(effect) })).sort((a, b) => b.score.gain - a.score.gain);
     const effects = list.filter(({ score }) => score.gain > 8).map(({ effect, score }, k) => ({ ...this.described(effect, score), fall: k < 12 ? { from_um: this.now().figures.rms_heldout_um, to_um: this.figures(score.residual).rms_heldout_um } : null }));
     const unknown = own.includes('empirical:y:x:z') || own.some((name) => name.startsWith('formula:')) ? [] : [{ number: 0, label: 'something that depends on x and z along Y', variables: ['x', 'z'], direction: 'Y', rms_um: 0.42, p: '1e-40', period_mm: null }];
-    return { model: this.current, seconds: 0.1, effects, unknown, not_visible: unseen, tests: 812 };
+    return { model: this.current, seconds: 0.1, effects, tried: this.tried, unknown_leads: true, drawn: this.drawn[this.current] ?? [], unknown, not_visible: unseen, tests: 812 };
   }
 
   preview(effect, more = {}, columns = {}) {
     const score = this.scored(effect);
     const column = this.linear.column(effect);
     const rivals = catalogue.filter((each) => each.name !== effect.name && !each.hidden).map((each) => ({ name: each.name, label: each.label, cosine: this.linear.cosine(column, this.linear.column(each)) })).sort((a, b) => Math.abs(b.cosine) - Math.abs(a.cosine)).slice(0, 5);
-    return writeFrame({ effect: this.described(effect, score), figures: this.figures(score.residual), rivals, ...more }, { residual: score.residual, ...columns });
+    return writeFrame({ effect: { ...this.described(effect, score), fall: { from_um: this.now().figures.rms_heldout_um, to_um: this.figures(score.residual).rms_heldout_um } }, rivals, ...more }, { residual: score.residual, ...columns });
   }
 
   formula({ text }) {
@@ -153,29 +154,28 @@ export class Session {
     this.formulas.set(name, effect);
     this.looked.add(text);
     this.tried = this.looked.size;
-    const score = this.scored(effect);
-    return this.preview(effect, { tried: this.tried, p_counted: String(Math.min(1, this.tried * 10 ** Math.max(-300, -score.gain / 2.3))) }, { driver: Float32Array.from(this.linear.column(effect)) });
+    return this.preview(effect, { tried: this.tried }, { driver: Float32Array.from(this.linear.column(effect)) });
   }
 
   periodogram({ variable }) {
     const period = Array.from({ length: 300 }, (_, k) => 10 ** (0.3 + (2 * k) / 299));
     const own = this.now().names.includes('cyclic:EXX:x:10mm:sin');
     const power = period.map((p, k) => 3 + 2 * Math.sin(k * 1.7) + (variable === 'x' && !own ? 60 * Math.exp(-(((p - 10.02) / 0.35) ** 2)) : 0));
-    return { period_mm: period, power, level: 14.2, peak_mm: period[power.indexOf(Math.max(...power))] };
+    return { variable, period, power, level: 14.2, peak: period[power.indexOf(Math.max(...power))] };
   }
 
   polar() {
     const circles = this.setups.flatMap((setup, s) => (setup.bar ? [{ setup, s }] : [])).map(({ setup, s }) => {
       const rows = [...this.columns.setup.keys()].filter((i) => this.columns.setup[i] === s);
       const residual = this.now().residual;
-      return { name: setup.name, first: 'XYZ'[setup.plane[0]], second: 'XYZ'[setup.plane[1]], radius_mm: kRadius, angle_deg: rows.map((i) => this.columns.angle[i]), sense: rows.map((i) => this.columns.sense[i]), measured_um: rows.map((i) => this.y[i] + 2 * Math.cos((2 * this.columns.angle[i] * Math.PI) / 180)), predicted_um: rows.map((i) => this.y[i] - residual[i] + 2 * Math.cos((2 * this.columns.angle[i] * Math.PI) / 180)) };
+      return { name: setup.name, setup: s, rows: rows.map((i) => this.columns.row[i]), plane: setup.plane.map((k) => 'XYZ'[k]).join(''), radius_mm: kRadius, angle_deg: rows.map((i) => this.columns.angle[i]), sense: rows.map((i) => this.columns.sense[i]), measured_um: rows.map((i) => this.y[i] + 2 * Math.cos((2 * this.columns.angle[i] * Math.PI) / 180)), predicted_um: rows.map((i) => this.y[i] - residual[i] + 2 * Math.cos((2 * this.columns.angle[i] * Math.PI) / 180)) };
     });
     return { circles };
   }
 
   meaning() {
     const { systematic_um: left } = this.now().figures;
-    return { rms_um: 14.2, share: [['squareness', 9.1, 41], ['positioning', 7.2, 26], ['angles', 6, 18], ['straightness', 3.3, 8], ...this.now().effects.map((effect) => [effect.label, 1.2, 3])].map(([label, um, percent]) => ({ label, um, u95_um: 0.1 * um, percent })), left_um: { tables: left + 1, all: left }, detectable: catalogue.filter((effect) => !effect.hidden).map((effect) => this.described(effect, this.scored(effect))), next: ['Measure Y once more from both sides at z = -260 mm: it halves the uncertainty of the surface.'] };
+    return { rms_um: 14.2, share: [['squareness', 9.1, 41], ['positioning', 7.2, 26], ['angles', 6, 18], ['straightness', 3.3, 8], ...this.now().effects.map((effect) => [effect.label, 1.2, 3])].map(([label, um, percent]) => ({ label, um, u95_um: 0.1 * um, percent })), tool: 'short', not_in_volume: [], left: { before_um: 14.2, by_uncertainty_um: left, by_time_and_temperature_um: 0.8, held_by_no_table: ['thermal EXX'] }, detectable: catalogue.filter((effect) => !effect.hidden).map((effect) => ({ kind: effect.name, label: effect.label, detectable: this.scored(effect).mdb, unit: effect.unit })), next: ['Measure Y once more from both sides at z = -260 mm: it halves the uncertainty of the surface.'] };
   }
 
   moved(number) {
@@ -256,7 +256,9 @@ export class Session {
       const [xs, zs] = [Array.from({ length: 24 }, (_, k) => -250 + (500 * k) / 23), Array.from({ length: 20 }, (_, k) => -400 + (400 * k) / 19)];
       const value = xs.flatMap((x) => zs.map((z) => bump(x, z)));
       this.formulas.set('formula:law', { name: 'formula:law', label: 'EYY += exp(-((x - 90)/80)^2 - ((z + 260)/90)^2)', unit: 'um', words: '', shape: '', column: effectNamed('empirical:y:x:z').column, sketch: [] });
-      this.tell('surface', { label: 'something that depends on x and z along Y', unknown: 0, drivers: ['x', 'z'], unit: 'um', places: [xs, zs], value, u95: value.map(() => 0.2), dots: [xs.flatMap((x) => [x, x]), zs.concat(zs).concat(zs.slice(0, 8))], free: ['a constant'], name: 'empirical:y:x:z', formulas: [{ text: 'EYY += exp(-((x - 90)/80)^2 - ((z + 260)/90)^2)', name: 'formula:law', amplitude: 2.21, u95: 0.1, unit: 'um', log_evidence: 812 }] });
+      const surface = { label: 'something that depends on x and z along Y', drivers: ['x', 'z'], unit: 'um', places: [xs, zs], value, u95: value.map(() => 0.2), dots: [xs.flatMap((x) => [x, x]), zs.concat(zs).concat(zs.slice(0, 8))], free: ['a constant'], name: 'empirical:y:x:z', formulas: [{ text: 'EYY += exp(-((x - 90)/80)^2 - ((z + 260)/90)^2)', name: 'formula:law', amplitude: 2.21, u95: 0.1, unit: 'um', log_evidence: 812 }] };
+      this.drawn[this.current] = [surface];
+      this.tell('surface', surface);
     });
   }
 

@@ -2,7 +2,7 @@
 import { readFrame } from './frames.js';
 
 const token = location.hash.slice(1);
-const tab = Array.from(crypto.getRandomValues(new Uint32Array(2)), (n) => n.toString(36)).join('');
+export const tab = Array.from(crypto.getRandomValues(new Uint32Array(2)), (n) => n.toString(36)).join('');
 
 /** What the program refuses: what is wrong, what to do, and the column where it stands in a text. */
 export class Refusal extends Error {

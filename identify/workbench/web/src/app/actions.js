@@ -1,12 +1,12 @@
 // What a click does.
 import { call, latest, NoAnswer, Refusal } from '../api/call.js';
-import { begin, painted } from '../draw/timing.js';
+import { abandon, begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
 import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
-import { openOn, variablesIn } from './pictures.js';
+import { columnsOfPictures, openOn, openPictures, pictures, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
-import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble } from './store.js';
+import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, variables } from './store.js';
 
 export function report(what, error) {
   if (error instanceof NoAnswer) line.value = 'gone';
@@ -22,9 +22,10 @@ export async function takeState(next) {
   busy.value = next.busy ?? null;
   if (next.campaign?.file !== former?.campaign?.file || next.campaign?.observations !== former?.campaign?.observations) forgetReadings();
   if (next.phase !== 'ready') return;
+  if (pictures.value.length === 0) openPictures();
   if (sentence) said.value = sentence;
   if (former?.current !== next.current) preview.value = null;
-  await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value)]).catch((error) => report('columns', error));
+  await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
   if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) rank();
 }
 
@@ -33,6 +34,7 @@ function forgetReadings() {
   selection.value = emptySelection;
   shown.value = { unit: null, setup: -1, alone: null };
   ranking.value = null;
+  pictures.value = [];
 }
 
 /** Variables of the first suspect, and of what has no name. */
@@ -48,9 +50,12 @@ export async function rank() {
     const answer = await askRank('rank', {});
     if (!answer) return;
     ranking.value = { ...answer, model, standing };
+    keepSurfaces(answer.drawn ?? [], model);
     openOn(standsOutMost(answer));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
+    // What a menu may ask for next is here before it does.
+    ensure(variables.value.map(({ name }) => name)).catch(() => {});
   } catch (error) {
     rankingBusy.value = false;
     if (!(error instanceof Refusal && error.status === 409)) report('rank', error);
@@ -72,8 +77,19 @@ export async function act(name, body = {}) {
 
 export async function add(effect) {
   begin('add');
-  const done = await act('add', { effect });
-  if (done) whenDrawn(() => painted('add'));
+  if (!await act('add', { effect })) return abandon('add');
+  return whenDrawn(() => painted('add'));
+}
+
+/** A law that stands behind a surface: tried as a formula, then added by the name that it got. */
+export async function addFormula({ name, text, parameters = [] }) {
+  if (name) return add(name);
+  try {
+    const { head } = await call('formula', { text, parameters });
+    return add(head.effect.name);
+  } catch (error) {
+    return report('formula', error);
+  }
 }
 
 export const go = (model) => act('go', { model });
@@ -115,6 +131,7 @@ export async function look(effect, label) {
 export function lookAway(effect) {
   if (wanted !== effect) return;
   wanted = null;
+  abandon('hover');
   askPreview.cancel();
   preview.value = null;
 }
@@ -142,9 +159,14 @@ export function onEvent(name, data) {
   else if (name === 'bye') line.value = 'ended';
 }
 
+/** Surfaces of a model, each once. */
+function keepSurfaces(list, model) {
+  const names = new Set(list.map(({ name }) => name));
+  surfaces.value = [...surfaces.value.filter((each) => each.model !== model || !names.has(each.name)), ...list.map((surface) => ({ ...surface, model }))];
+}
+
 function takeSurface(surface) {
-  const model = state.value.current;
-  surfaces.value = [...surfaces.value.filter((each) => each.label !== surface.label || each.model !== model), { ...surface, model }];
+  keepSurfaces([surface], state.value.current);
   said.value = `${surface.label} is drawn.`;
 }
 

@@ -80,7 +80,7 @@ export function linesOfReadings() {
   return lines;
 }
 
-export const kFirst = ['setup', 'line', 'row', 'stated_sigma', 'heldout', 'left_out', 'point_x', 'point_y', 'point_z', 'along_x', 'along_y', 'along_z'];
+export const kFirst = ['setup', 'channel', 'line', 'row', 'stated_sigma', 'heldout', 'left_out', 'point_x', 'point_y', 'point_z', 'along_x', 'along_y', 'along_z'];
 
 /** What every picture needs of the current model and the one before. */
 export const residualNames = (...models) => models.filter(Boolean).map((model) => `residual@${model.number}`);

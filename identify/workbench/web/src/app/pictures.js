@@ -1,11 +1,18 @@
 // Which lenses are open, and what they show.
 import { effect, signal } from '@preact/signals';
 import { directionsOf, timeOf } from '../data/variables.js';
+import { lenses } from '../lenses/registry.js';
 import { campaign, variables } from './store.js';
 
 /** [{ key, kind, x, y, of, perSigma, ... }] */
 export const pictures = signal([]);
 export const kMostPictures = 4;
+
+/** Columns that the open lenses draw. */
+export const columnsOfPictures = () => pictures.value.flatMap((config) => {
+  const lens = lenses[config.kind];
+  return lens.needs(lens.adjust ? lens.adjust(config, variables.value) : config, variables.value);
+});
 
 const storageKey = () => `volcal:pictures:${campaign.value?.file}`;
 let next = 0;

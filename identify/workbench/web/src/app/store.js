@@ -1,5 +1,6 @@
 // All that the page knows, as signals.
 import { computed, signal } from '@preact/signals';
+import { tab } from '../api/call.js';
 import { emptySelection } from '../data/selection.js';
 import { variablesOf } from '../data/variables.js';
 
@@ -29,8 +30,11 @@ export const exported = signal([]);
 export const currentModel = computed(() => modelOf(state.value?.current));
 export const campaign = computed(() => state.value?.campaign ?? null);
 export const variables = computed(() => (campaign.value ? variablesOf(campaign.value) : []));
-export const mayWrite = computed(() => Boolean(state.value) && line.value === 'open' && state.value.writer !== false && !state.value.read_only);
-export const mayAct = computed(() => mayWrite.value && state.value.phase === 'ready' && busy.value === null);
+/** A program that only reads does all but write files; one tab at a time changes the model. */
+export const isWriter = computed(() => Boolean(state.value) && (state.value.writer_tab === undefined ? state.value.writer !== false : ['', tab].includes(state.value.writer_tab)));
+export const mayWrite = computed(() => line.value === 'open' && isWriter.value);
+/** What runs behind the user's back gives way to what the user does. */
+export const mayAct = computed(() => mayWrite.value && state.value.phase === 'ready' && (busy.value === null || Boolean(busy.value.behind)));
 
 export function modelOf(number) {
   return state.value?.models?.find((model) => model.number === number) ?? null;

@@ -3,21 +3,22 @@ import { computed } from '@preact/signals';
 import { arrived, column, linesOfReadings } from './columns.js';
 import { beforeModel, campaign, currentModel, preview, selection, shown, variables } from './store.js';
 
-/** Unit of every set-up's readings: 'um' or 'urad'. */
-const unitsOf = (given) => given.setups.map((setup) => setup.unit ?? 'um');
-export const unitsPresent = computed(() => (campaign.value ? [...new Set(unitsOf(campaign.value))] : ['um']));
+/** Units of every set-up's channels: 'um' or 'urad'. */
+const unitsOf = (given) => given.setups.map((setup) => setup.channels.map((channel) => (channel.unit ?? 'um').replace('µ', 'u')));
+export const unitsPresent = computed(() => (campaign.value ? [...new Set(unitsOf(campaign.value).flat())] : ['um']));
+export const unitOfSetup = (given, setup) => unitsOf(given)[setup]?.[0] ?? 'um';
 export const unit = computed(() => (unitsPresent.value.includes(shown.value.unit) ? shown.value.unit : unitsPresent.value[0]));
 
 /** One byte a reading: is it drawn? */
 export const visible = computed(() => {
   arrived.value;
-  const [setup, leftOut] = [column('setup'), column('left_out')];
-  if (!setup) return null;
-  const units = unitsOf(campaign.value).map((each) => each === unit.value);
+  const [setup, channel, leftOut] = [column('setup'), column('channel'), column('left_out')];
+  if (!setup || !channel) return null;
+  const units = unitsOf(campaign.value).map((each) => each.map((one) => one === unit.value));
   const { setup: only, alone } = shown.value;
   const mask = new Uint8Array(setup.length);
   for (let i = 0; i < setup.length; i += 1) {
-    mask[i] = units[setup[i]] !== false && (only < 0 || setup[i] === only) && (!alone || alone[i]) && !(leftOut && leftOut[i] === 1) ? 1 : 0;
+    mask[i] = units[setup[i]]?.[channel[i]] !== false && (only < 0 || setup[i] === only) && (!alone || alone[i]) && !(leftOut && leftOut[i] === 1) ? 1 : 0;
   }
   return mask;
 });

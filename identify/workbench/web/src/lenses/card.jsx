@@ -37,7 +37,7 @@ const controls = {
     <label class="menu"><input type="checkbox" checked={config.perSigma} onChange={(event) => { begin('variable'); set({ perSigma: event.currentTarget.checked }); }} /><span title="The uncertainty that the campaign states, not the estimated noise: what the noise has swallowed stays visible">÷ stated σ</span></label>
   ),
   period: ({ config, set }) => (
-    <label class="menu"><span>period</span><input type="number" min="0" step="any" value={config.period || (config.spectrum?.peak_mm ?? '')} onChange={(event) => set({ period: Number(event.currentTarget.value) })} /></label>
+    <label class="menu"><span>period</span><input type="number" min="0" step="any" value={config.period || (config.spectrum?.peak ?? '')} onChange={(event) => set({ period: Number(event.currentTarget.value) })} /></label>
   ),
   turn: ({ config, set }) => (
     <span class="turns" role="group" aria-label="Turn the picture">
@@ -50,12 +50,9 @@ const controls = {
 
 /** What a lens asks the program for, besides columns. */
 const answers = {
-  periodogram: async ({ x }) => ({ spectrum: await call('periodogram', { variable: x }).catch((error) => ({ period_mm: [], power: [], problem: error.message })) }),
-  polar: async () => ({ circles: withSenses((await call('polar', {})).circles) }),
+  periodogram: async ({ x }) => ({ spectrum: await call('periodogram', { variable: x }).catch((error) => ({ period: [], power: [], problem: error.message })) }),
+  polar: async () => ({ circles: (await call('polar', {})).circles }),
 };
-
-/** A circle whose readings all go one way says so in one word. */
-const withSenses = (circles) => circles.map((circle) => ({ ...circle, sense: Array.isArray(circle.sense) ? circle.sense : circle.angle_deg.map(() => (/^(cw|clockwise|-)/.test(String(circle.direction)) ? -1 : 1)) }));
 
 function useAnswers(lens, config) {
   const [got, setGot] = useState({});

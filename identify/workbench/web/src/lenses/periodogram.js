@@ -25,7 +25,7 @@ function folded(values, period) {
 }
 
 function powerScales(spectrum, box) {
-  const logs = spectrum.period_mm.map(Math.log10);
+  const logs = spectrum.period.map(Math.log10);
   const finite = logs.filter(Number.isFinite);
   const most = Math.max(...spectrum.power.filter(Number.isFinite), spectrum.level ?? 0, 1);
   return { logs, sx: linear(Math.min(...finite), Math.max(...finite), box.left, box.right), sy: linear(0, 1.1 * most, box.bottom, box.top) };
@@ -36,12 +36,12 @@ function prepare(view, config, size) {
   const variable = view.variables.find(({ name }) => name === config.x);
   const spectrum = config.spectrum;
   if (!values || !variable) return null;
-  if (!spectrum || spectrum.period_mm.length < 2) return { empty: spectrum?.problem ?? 'The program looks for periods.' };
+  if (!spectrum || spectrum.period.length < 2) return { empty: spectrum?.problem ?? 'The program looks for periods.' };
   const middle = 8 + 0.4 * (size.height - 110);
   const box = { left: 58, right: size.width - 12, top: 8, bottom: middle };
   const second = { ...box, top: middle + 38, bottom: middle + 38 + 0.3 * (size.height - 110) };
   const third = { ...box, top: second.bottom + 8, bottom: size.height - 38 };
-  const period = config.period > 0 ? config.period : spectrum.peak_mm;
+  const period = config.period > 0 ? config.period : spectrum.peak;
   const phase = folded(values, period);
   const sx = linear(0, 1, box.left, box.right);
   const axis = { steps: null, bins: kPhases, index: binIndex(phase, 0, 1, kPhases), centres: Array.from({ length: kPhases }, (_, k) => (k + 0.5) / kPhases), title: `phase of ${significant(period, 4)} ${unitText(variable.unit)} in ${variable.label}` };
@@ -102,15 +102,15 @@ function click({ power, spectrum, box, empty }, x, y) {
   power.logs.forEach((value, k) => {
     if (Math.abs(power.sx(value) - x) < 6 && (best < 0 || spectrum.power[k] > spectrum.power[best])) best = k;
   });
-  return best < 0 ? null : { period: spectrum.period_mm[best] };
+  return best < 0 ? null : { period: spectrum.period[best] };
 }
 
 function readout({ power, spectrum, box, strip, view, config, empty, sx, variable }, x, y) {
   if (empty) return empty;
   if (y <= box.bottom) {
     const value = 10 ** power.sx.invert(x);
-    const k = spectrum.period_mm.reduce((best, period, m) => (Math.abs(period - value) < Math.abs(spectrum.period_mm[best] - value) ? m : best), 0);
-    return `period ${significant(spectrum.period_mm[k], 4)} ${unitText(variable.unit)}: power ${fixed(spectrum.power[k], 1)}; a click folds to it`;
+    const k = spectrum.period.reduce((best, period, m) => (Math.abs(period - value) < Math.abs(spectrum.period[best] - value) ? m : best), 0);
+    return `period ${significant(spectrum.period[k], 4)} ${unitText(variable.unit)}: power ${fixed(spectrum.power[k], 1)}; a click folds to it`;
   }
   const k = Math.max(0, Math.min(kPhases - 1, Math.floor(sx.invert(x) * kPhases)));
   return `phase ${fixed((k + 0.5) / kPhases, 2)}: mean ${fixed(strip.now.mean[k], 2)} ± ${significant(2 * strip.now.u[k], 2)} ${unitOf(view, config)}`;

@@ -1,6 +1,6 @@
 // A picture in two layers: what changes with the model below, what changes under the pointer above.
 import { effect } from '@preact/signals';
-import { onThemeChange } from '../../../../report/web/src/theme.js';
+import { onPrint, onThemeChange } from '../../../../report/web/src/theme.js';
 import { overlay, view } from '../app/view.js';
 import { selection } from '../app/store.js';
 import { emptySelection, mark } from '../data/selection.js';
@@ -13,6 +13,8 @@ const kClick = 4; // pixels: a shorter way of the pointer is a click
 
 const living = new Set();
 onThemeChange(() => living.forEach((picture) => picture.redraw()));
+// Paper is printed before the next frame.
+onPrint(() => living.forEach((picture) => picture.paintNow()));
 
 function prepared(canvas, width, height) {
   const ratio = Math.min(2, globalThis.devicePixelRatio || 1);
@@ -54,6 +56,11 @@ export class Picture {
   redraw() {
     nextFrame(this.drawBelow);
     nextFrame(this.drawAbove);
+  }
+
+  paintNow() {
+    this.paintBelow();
+    this.paintAbove();
   }
 
   size() { return { width: this.frame.clientWidth, height: this.frame.clientHeight }; }

@@ -64,13 +64,14 @@ function Problem({ error }) {
 }
 
 function Result({ answer, onAdd }) {
-  const { effect, rivals = [], tried, p_counted: counted, figures } = answer.head;
+  const { effect, rivals = [], tried = 1 } = answer.head;
+  const counted = Math.min(0, effect.log10_p + Math.log10(Math.max(1, tried)));
   return (
     <div class="result">
       <div class="is-preview-block">
         {effect.amplitudes.map((each) => <p key={each.label}>Amplitude <b>~{amplitudeText(each)}</b> <AmplitudeBar amplitude={each} preview /></p>)}
-        <p>Gain in log-likelihood <b>~{significant(effect.gain, 3)}</b>; p <b>{chance(effect.log10_p)}</b>{counted !== undefined && counted !== null ? <>, counted over {tried} tried by hand: <b>{chance(Math.log10(Number(counted)))}</b></> : ''}.</p>
-        {figures && Number.isFinite(figures.systematic_um) && <p>Systematic error on held-out lines <b>~{significant(figures.systematic_um, 3)} µm</b>.</p>}
+        <p>Gain in log-likelihood <b>~{significant(effect.gain, 3)}</b>; p <b>{chance(effect.log10_p)}</b>, counted over {tried} tried by hand: <b>{chance(counted)}</b>.</p>
+        {effect.fall && Number.isFinite(effect.fall.to_um) && <p>RMS of held-out lines {significant(effect.fall.from_um, 3)} → <b>~{significant(effect.fall.to_um, 3)} µm</b>.</p>}
         {rivals.length > 0 && <p class="cosines">Alike (cosine of the angle between what both explain): {rivals.slice(0, 5).map(({ name, label, cosine }, k) => <span key={name ?? label} class={Math.abs(cosine) > 0.9 ? 'rivals' : ''}>{k > 0 ? ', ' : ''}{label} {significant(cosine, 2)}</span>)}.</p>}
         <button type="button" class="primary" disabled={!mayAct.value} onClick={onAdd}>Add this formula</button>
       </div>

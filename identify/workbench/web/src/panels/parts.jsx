@@ -14,7 +14,7 @@ export const amplitudeText = ({ value, u95, unit }) => `${fixed(value, decimalsF
 export const partOf = (effect, amplitude) => (effect.amplitudes.length > 1 ? String(amplitude.label).replace(effect.label, '').trim() : '');
 
 /** How many of the smallest detectable amplitude it is. */
-export const timesDetectable = ({ value, mdb }) => (mdb > 0 ? Math.abs(value) / mdb : null);
+export const timesDetectable = ({ value, detectable }) => (detectable > 0 ? Math.abs(value) / detectable : null);
 
 const kScale = 10; // times the smallest detectable amplitude: the length of the bar
 
@@ -22,7 +22,7 @@ const kScale = 10; // times the smallest detectable amplitude: the length of the
 export function AmplitudeBar({ amplitude, preview = false }) {
   const times = timesDetectable(amplitude);
   if (times === null) return null;
-  const u = amplitude.u95 / amplitude.mdb;
+  const u = amplitude.u95 / amplitude.detectable;
   const x = (value) => 200 * Math.min(1, Math.max(0, value / kScale));
   return (
     <svg class={`amplitude ${preview ? 'is-preview' : ''}`} viewBox="0 0 204 16" width="140" height="11" aria-hidden="true">

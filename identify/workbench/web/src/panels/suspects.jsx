@@ -7,7 +7,7 @@ import { chance } from '../app/sentences.js';
 import { busy, currentModel, mayAct, modelName, modelOf, preview, ranking, rankingBusy, state } from '../app/store.js';
 import { unitText } from '../data/variables.js';
 import { AmplitudeBar, amplitudeText, partOf, Sketch, timesDetectable, words } from './parts.jsx';
-import { Unknowns } from './unknowns.jsx';
+import { Drawn, Unknowns } from './unknowns.jsx';
 
 const kFirst = 12;
 
@@ -21,7 +21,7 @@ function Amplitudes({ effect, sign = '' }) {
     <span class="amplitudes">
       <span class="values">{effect.amplitudes.map((each) => `${partOf(effect, each)} ${sign && `${sign}\u2009`}${amplitudeText(each)}`.trim()).join('; ')}</span>
       <AmplitudeBar amplitude={main} preview={sign === '~'} />
-      {times !== null && <span class="muted small">{significant(times, 2)} × the smallest detectable, {significant(main.mdb, 2)} {unitText(main.unit)}</span>}
+      {times !== null && <span class="muted small">{significant(times, 2)} × the smallest detectable, {significant(main.detectable, 2)} {unitText(main.unit)}</span>}
     </span>
   );
 }
@@ -33,9 +33,9 @@ function Fall({ fall }) {
 
 function Suspect({ effect }) {
   const hovered = preview.value?.name === effect.name;
-  const usable = effect.visible !== false;
+  const usable = effect.can_be_added !== false && effect.visible !== 0;
   const may = mayAct.value && usable;
-  const along = variablesIn(effect.name);
+  const along = effect.driver ? variablesIn(effect.driver) : variablesIn(effect.name);
   const look_ = () => look(effect.name, effect.label);
   const away = () => lookAway(effect.name);
   return (
@@ -44,10 +44,11 @@ function Suspect({ effect }) {
         <Sketch points={effect.sketch} label={effect.label} />
         <span class="body" id={`about-${effect.name}`}>
           <span class="title"><b>{effect.label}</b>{effect.shape ? <span class="muted">, {words(effect.shape)}</span> : ''}<span class="p muted" title="Probability of so much by chance">p {chance(effect.log10_p)}</span></span>
-          <span class="plain">{words(effect.words)}</span>
+          <span class="plain">{words(effect.words)}{effect.causes ? <span class="muted"> Usual causes: {words(effect.causes)}.</span> : ''}</span>
           <Amplitudes effect={effect} sign="~" />
           <Fall fall={effect.fall} />
           {effect.rivals?.length > 0 && <span class="rivals">These readings hardly tell it from {effect.rivals.map((rival) => rival.label ?? rival).join(', ')}.</span>}
+          {effect.can_be_added === false && <span class="remedy">The error function needs more knots: give it more in the model file.</span>}
           {!usable && effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}
         </span>
         <button type="button" class="add" aria-label={`add ${effect.label}`} aria-describedby={`about-${effect.name}`} aria-disabled={!may} onFocus={look_} onBlur={away} onClick={(event) => { event.stopPropagation(); if (may) add(effect.name); }}>add</button>
@@ -67,19 +68,21 @@ function InModel() {
       <h3 id="in-model-title">In this model</h3>
       <ul>{effects.map((effect) => (
         <li key={effect.name} class={`is-${model.standing}`}>
-          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.visible === false && <span class="remedy">These readings do not determine it. {words(effect.remedy)}</span>}</span>
-          <button type="button" disabled={!mayAct.value} aria-label={`Take ${effect.label} out`} onClick={() => act('remove', { effect: effect.name })}>take out</button>
+          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.visible === 0 && <span class="remedy">These readings do not determine it. {words(effect.remedy)}</span>}</span>
+          <button type="button" disabled={!mayAct.value} aria-label={`take out: ${effect.label}`} onClick={() => act('remove', { effect: effect.name })}>take out</button>
         </li>
       ))}</ul>
     </section>
   );
 }
 
+const kRemedy = 'The readings hardly feel it: measure where it acts, or from another side.';
+
 function NotVisible({ effects }) {
   if (!effects?.length) return null;
   return (
     <details class="not-visible"><summary>{effects.length} effects that these readings cannot show</summary>
-      <ul>{effects.map((effect) => <li key={effect.name}><b>{effect.label}</b> <span class="remedy">{words(effect.remedy)}</span></li>)}</ul>
+      <ul>{effects.map((effect) => <li key={effect.name}><b>{effect.label}</b> <span class="remedy">{effect.remedy ? words(effect.remedy) : kRemedy}</span></li>)}</ul>
     </details>
   );
 }
@@ -87,17 +90,38 @@ function NotVisible({ effects }) {
 /** Numbers of another model than the current one are out of date. */
 const isStale = () => ranking.value && (ranking.value.model !== state.value.current || ranking.value.standing !== currentModel.value?.standing);
 
+const kRisk = Math.log10(0.05); // of one exceedance by chance in the whole catalogue
+
+/** p counted over the catalogue and what was tried by hand. */
+const countedOver = ({ tests = 1, tried = 0 }) => Math.log10(Math.max(1, tests + tried));
+
 function Rank({ answer }) {
   const [all, setAll] = useState(false);
-  const effects = all ? answer.effects : answer.effects.slice(0, kFirst);
+  const exceeding = answer.effects.filter((effect) => effect.log10_p + countedOver(answer) < kRisk);
+  const below = answer.effects.slice(exceeding.length);
+  const unknown = <Unknowns list={answer.unknown ?? []} />;
   return (
     <>
-      <Unknowns list={answer.unknown ?? []} />
-      {answer.effects.length === 0 && (answer.unknown ?? []).length === 0 && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
-      <ol class="rows">{effects.map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>
-      {answer.effects.length > kFirst && <button type="button" onClick={() => setAll(!all)}>{all ? 'The first alone' : `All ${answer.effects.length}`}</button>}
+      <Drawn />
+      {answer.unknown_leads !== false && unknown}
+      {exceeding.length === 0 && (answer.unknown ?? []).length === 0 && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
+      <ol class="rows">{(all ? exceeding : exceeding.slice(0, kFirst)).map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>
+      {exceeding.length > kFirst && <button type="button" onClick={() => setAll(!all)}>{all ? 'The first alone' : `All ${exceeding.length}`}</button>}
+      {answer.unknown_leads === false && unknown}
+      <Below effects={below} />
       <NotVisible effects={answer.not_visible} />
     </>
+  );
+}
+
+/** What chance alone may give: still to be tried. */
+function Below({ effects }) {
+  const [open, setOpen] = useState(false);
+  if (effects.length === 0) return null;
+  return (
+    <details class="not-visible" onToggle={(event) => setOpen(event.currentTarget.open)}><summary>{effects.length} that chance alone may give</summary>
+      {open && <ol class="rows">{effects.map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>}
+    </details>
   );
 }
 

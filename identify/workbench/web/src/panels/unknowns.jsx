@@ -2,10 +2,10 @@
 import { useEffect, useState } from 'preact/hooks';
 import { significant } from '../../../../report/web/src/dom.js';
 import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
-import { act, add } from '../app/actions.js';
+import { act, add, addFormula } from '../app/actions.js';
 import { lookAlong } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
-import { busy, mayAct, state, surfaces, variables } from '../app/store.js';
+import { busy, currentModel, mayAct, state, surfaces, variables } from '../app/store.js';
 import { surfaceData } from '../data/surface.js';
 import { unitText } from '../data/variables.js';
 import { Drawing, words } from './parts.jsx';
@@ -21,9 +21,9 @@ function Figure({ figure }) {
 function Formula({ formula }) {
   return (
     <li class="formula">
-      <code>{formula.text}</code>
-      <span>{significant(formula.amplitude, 3)} ± {significant(formula.u95, 2)} {unitText(formula.unit)}, log evidence {significant(formula.log_evidence, 3)}</span>
-      <button type="button" disabled={!mayAct.value} aria-label={`Add ${formula.text}`} onClick={() => add(formula.name ?? formula.text)}>Add</button>
+      <code>{formula.text ?? formula.label}</code>
+      <span>{significant(formula.amplitude, 3)} ± {significant(formula.u95, 2)} {unitText(formula.unit)}, log evidence {significant(formula.log_evidence, 3)}{formula.shape ? `, ${words(formula.shape)}` : ''}</span>
+      <button type="button" disabled={!mayAct.value} aria-label={`Add ${formula.text ?? formula.label}`} onClick={() => addFormula(formula)}>Add</button>
     </li>
   );
 }
@@ -36,13 +36,12 @@ export function Surface({ surface }) {
       {figures.map((figure) => <Figure key={figure.caption} figure={figure} />)}
       {surface.free?.length > 0 && <p class="muted">These readings leave open {surface.free.map(words).join('; ')}.</p>}
       <button type="button" class="primary" disabled={!mayAct.value} onClick={() => add(surface.name)}>Add the {surface.drivers.length > 1 ? 'surface' : 'curve'}</button>
-      {surface.formulas?.length > 0 && <><p>Laws that may stand behind it:</p><ul class="formulas">{surface.formulas.map((formula) => <Formula key={formula.text} formula={formula} />)}</ul></>}
+      {surface.formulas?.length > 0 && <><p>Laws that may stand behind it:</p><ul class="formulas">{surface.formulas.map((formula) => <Formula key={formula.text ?? formula.label} formula={formula} />)}</ul></>}
     </div>
   );
 }
 
 function Unknown({ unknown }) {
-  const drawn = surfaces.value.find((each) => each.model === state.value.current && (each.unknown === unknown.number || each.label === unknown.label));
   const drawing = busy.value?.what === 'draw';
   const thing = unknown.variables.length > 1 ? 'surface' : 'curve';
   return (
@@ -50,11 +49,22 @@ function Unknown({ unknown }) {
       <p class="title"><b>{words(unknown.label)}</b> <span class="p muted">p {chance(unknown.log10_p ?? Math.log10(Number(unknown.p)))}</span></p>
       <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
       <p class="buttons">
-        {!drawn && <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>}
+        <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
         <button type="button" onClick={() => lookAlong(unknown.variables)}>Look along {unknown.variables.join(', ')}</button>
       </p>
-      {drawn && <Surface surface={drawn} />}
     </li>
+  );
+}
+
+/** Surfaces that are drawn for the current model. */
+export function Drawn() {
+  const inModel = new Set((currentModel.value?.effects ?? []).map(({ name }) => name));
+  const list = surfaces.value.filter((surface) => surface.model === state.value.current && !inModel.has(surface.name));
+  if (list.length === 0) return null;
+  return (
+    <ul class="unknowns" aria-label="Drawn without a name">{list.map((surface) => (
+      <li key={surface.name} class="unknown"><p class="title"><b>{words(surface.label)}</b></p><Surface surface={surface} /></li>
+    ))}</ul>
   );
 }
 

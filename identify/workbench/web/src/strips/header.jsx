@@ -5,7 +5,7 @@ import { count } from '../../../../report/web/src/dom.js';
 import { act, redo, undo } from '../app/actions.js';
 import { unitText } from '../data/variables.js';
 import { currentModel, line, mayAct, shown, state } from '../app/store.js';
-import { unit, unitsPresent } from '../app/view.js';
+import { unit, unitOfSetup, unitsPresent } from '../app/view.js';
 
 const otherTheme = () => (document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
 
@@ -23,7 +23,7 @@ function Shown({ campaign }) {
       {unitsPresent.value.length > 1 && <label class="menu"><span>readings in</span><select value={unit.value} onChange={(event) => set({ unit: event.currentTarget.value, setup: -1 })}>{unitsPresent.value.map((name) => <option key={name} value={name}>{unitText(name)}</option>)}</select></label>}
       <label class="menu"><span>of</span><select value={shown.value.setup} onChange={(event) => {
         const setup = Number(event.currentTarget.value);
-        set({ setup, unit: setup < 0 ? shown.value.unit : campaign.setups[setup].unit ?? 'um' });
+        set({ setup, unit: setup < 0 ? shown.value.unit : unitOfSetup(campaign, setup) });
       }}><option value={-1}>all set-ups</option>{campaign.setups.map(({ name, readings }, k) => <option key={name} value={k}>{name} ({count(readings)})</option>)}</select></label>
     </>
   );

@@ -14,7 +14,7 @@ function useMeaning() {
   const model = currentModel.value;
   const key = `${model?.number} ${model?.standing}`;
   useEffect(() => {
-    if (!model || busy.value) return;
+    if (!model || (busy.value && !busy.value.behind)) return;
     ask('meaning', {}).then((answer) => { if (answer) setGot({ ...answer, key }); }).catch((error) => {
       if (error instanceof NoAnswer) report('meaning', error);
       else if (!(error instanceof Refusal && error.status === 409)) setGot({ key, problem: error.message });
@@ -34,7 +34,9 @@ function Volume({ got }) {
   return (
     <div>
       <h3>Error in the working volume, by cause</h3>
-      <p>RMS <b>{significant(got.rms_um, 3)} µm</b>{got.left_um ? <>; tables of this model would leave <b>{significant(got.left_um.tables, 3)} µm</b>, all that the model knows <b>{significant(got.left_um.all, 3)} µm</b></> : ''}.</p>
+      <p>RMS <b>{significant(got.rms_um, 3)} µm</b>{got.tool ? ` at the tool ${got.tool}` : ''}.</p>
+      {got.left && <p>Compensated by tables of this model: what the tables leave uncertain is <b>{significant(got.left.by_uncertainty_um, 3)} µm</b>; what time and temperature move, and no table holds, <b>{significant(got.left.by_time_and_temperature_um, 3)} µm</b>{got.left.held_by_no_table?.length > 0 ? ` (${got.left.held_by_no_table.join(', ')})` : ''}.</p>}
+      {got.not_in_volume?.length > 0 && <p class="muted">Not an error of the volume: {got.not_in_volume.map(words).join(', ')}.</p>}
       <div class="table-frame"><table><caption class="hidden">Error in the working volume by cause</caption><thead><tr><th scope="col">Cause</th><th scope="col">µm</th><th scope="col">%</th><td /></tr></thead>
         <tbody>{(got.share ?? []).map((row) => <Share key={row.label} row={row} most={most} />)}</tbody></table></div>
     </div>
@@ -45,8 +47,8 @@ function Detectable({ effects }) {
   return (
     <div>
       <h3>Smallest detectable effects</h3>
-      <p class="muted">Anything smaller may be there: these readings find an effect of this size in four campaigns of five.</p>
-      <ul class="plain-list">{effects.slice(0, 10).map((effect) => <li key={effect.name}>{effect.label}{effect.amplitudes?.[0] ? `: ${significant(effect.amplitudes[0].mdb, 2)} ${unitText(effect.amplitudes[0].unit)}` : ''}</li>)}</ul>
+      <p class="muted">Anything smaller may be there: these readings find an effect of this size in four campaigns of five. Of every kind the one that is seen best.</p>
+      <ul class="plain-list">{effects.slice(0, 14).map((effect) => <li key={`${effect.kind} ${effect.unit}`}>{effect.label}: {significant(effect.detectable, 2)} {unitText(effect.unit)}</li>)}</ul>
     </div>
   );
 }

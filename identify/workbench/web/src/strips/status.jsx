@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import { act } from '../app/actions.js';
 import { seconds } from '../app/sentences.js';
-import { busy, line, state, trouble } from '../app/store.js';
+import { busy, isWriter, line, state, trouble } from '../app/store.js';
 import { words } from '../panels/parts.jsx';
 
 const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
@@ -60,7 +60,7 @@ export function Line({ retry }) {
 
 export function ReadOnly() {
   const now = state.value;
-  if (!now || line.value !== 'open' || (now.writer !== false && !now.read_only)) return null;
+  if (!now || line.value !== 'open' || isWriter.value) return null;
   return (
     <div class="banner" role="status">
       <p><strong>Another tab writes.</strong> Here everything can be looked at.</p>

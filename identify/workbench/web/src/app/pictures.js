@@ -54,20 +54,12 @@ export function openPictures() {
 }
 
 /** What stands out most is looked at first, while nobody has chosen anything. */
-export function openOn(names) {
+export function openOn([first, ...others]) {
   if (!untouched) return;
-  const [first, ...others] = names;
-  lookAlong(first === undefined ? others : [first]);
-  if (others.length > 1) {
-    const map = pictures.value.find(({ kind }) => kind === 'heat');
-    if (map) change(map.key, { x: others[0], y: others[1] });
-  }
+  const to = (kind, values) => { pictures.value = pictures.value.map((each) => (each.kind === kind ? { ...each, ...values } : each)); };
+  if (has(first)) to('scatter', { x: first });
+  if (others.length > 1 && others.every(has)) to('heat', { x: others[0], y: others[1] });
 }
-
-effect(() => {
-  const list = pictures.value;
-  if (list.length > 0 && campaign.peek()) sessionStorage.setItem(storageKey(), JSON.stringify(list));
-});
 
 export function change(key, values) {
   untouched = false;

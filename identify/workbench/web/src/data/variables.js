@@ -7,7 +7,7 @@ export const titleOf = (variable) => (variable.unit ? `${variable.label} [${unit
 
 const isTime = (column) => column.kind === 'time' || /^time(_s)?$/.test(column.name);
 const isTemperature = (column) => column.kind === 'temperature' || ['degC', '°C', 'K'].includes(column.unit) || /^T_/.test(column.name);
-export const isDirection = (column) => column.kind === 'direction' || /^dir_/.test(column.name);
+const isDirection = (column) => column.kind === 'direction' || /^dir_/.test(column.name);
 
 export const timeOf = (columns) => columns.find(isTime) ?? null;
 export const temperaturesOf = (columns) => columns.filter(isTemperature);

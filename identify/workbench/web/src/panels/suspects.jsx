@@ -4,7 +4,7 @@ import { significant } from '../../../../report/web/src/dom.js';
 import { act, add, look, lookAway } from '../app/actions.js';
 import { lookAlong, variablesIn } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
-import { busy, currentModel, mayAct, modelName, modelOf, preview, ranking, rankingBusy, state } from '../app/store.js';
+import { busy, currentModel, mayAct, modelName, modelOf, preview, ranking, rankingBusy, state, unknowns } from '../app/store.js';
 import { unitText } from '../data/variables.js';
 import { AmplitudeBar, amplitudeText, partOf, Sketch, timesDetectable, words } from './parts.jsx';
 import { Drawn, Unknowns } from './unknowns.jsx';
@@ -99,15 +99,18 @@ function Rank({ answer }) {
   const [all, setAll] = useState(false);
   const exceeding = answer.effects.filter((effect) => effect.log10_p + countedOver(answer) < kRisk);
   const below = answer.effects.slice(exceeding.length);
-  const unknown = <Unknowns list={answer.unknown ?? []} />;
+  const found = unknowns.value?.model === state.value.current ? unknowns.value : null;
+  const list = found?.unknown ?? [];
+  const unknown = <Unknowns list={list} />;
   return (
     <>
       <Drawn />
-      {answer.unknown_leads !== false && unknown}
-      {exceeding.length === 0 && (answer.unknown ?? []).length === 0 && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
+      {found?.unknown_leads && unknown}
+      {exceeding.length === 0 && list.length === 0 && found?.ready && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
       <ol class="rows">{(all ? exceeding : exceeding.slice(0, kFirst)).map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>
       {exceeding.length > kFirst && <button type="button" onClick={() => setAll(!all)}>{all ? 'The first alone' : `All ${exceeding.length}`}</button>}
-      {answer.unknown_leads === false && unknown}
+      {!found?.unknown_leads && unknown}
+      {!found?.ready && <p class="muted">What has no name is being looked for.</p>}
       <Below effects={below} />
       <NotVisible effects={answer.not_visible} />
     </>

@@ -28,7 +28,7 @@ function Formula({ formula }) {
   );
 }
 
-export function Surface({ surface }) {
+function Surface({ surface }) {
   const [figures, setFigures] = useState([]);
   useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
   return (

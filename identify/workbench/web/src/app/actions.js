@@ -4,7 +4,7 @@ import { abandon, begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
 import { clearColumns, ensure, kFirst, residualNames } from './columns.js';
-import { columnsOfPictures, openOn, openPictures, pictures, variablesIn } from './pictures.js';
+import { columnsOfPictures, openOn, openPictures, pictures, shiftOf, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
 import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, unknowns, variables } from './store.js';
 
@@ -57,7 +57,7 @@ function takeUnknown(answer) {
   if (answer.model !== state.value.current) return;
   unknowns.value = { ...answer, standing: currentModel.value?.standing };
   keepSurfaces(answer.drawn ?? [], answer.model);
-  if (answer.unknown[0]) openOn([null, ...answer.unknown[0].variables]);
+  if (answer.unknown[0]) openOn([null, ...answer.unknown[0].variables], shiftOf(answer.unknown[0]));
 }
 
 async function rank() {
@@ -68,7 +68,7 @@ async function rank() {
     const answer = await askRank('rank', {});
     if (!answer) return;
     ranking.value = { ...answer, model, standing };
-    openOn(variablesIn(answer.effects[0]?.driver ?? ''));
+    if (answer.effects[0]) openOn(variablesIn(answer.effects[0].driver ?? '').slice(0, 1), shiftOf(answer.effects[0]));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
     // What a menu may ask for next is here before it does.

@@ -3,7 +3,7 @@ import { useEffect, useState } from 'preact/hooks';
 import { significant } from '../../../../report/web/src/dom.js';
 import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
 import { act, add, addFormula } from '../app/actions.js';
-import { lookAlong } from '../app/pictures.js';
+import { lookAlong, shiftOf } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
 import { busy, currentModel, mayAct, state, surfaces, variables } from '../app/store.js';
 import { surfaceData } from '../data/surface.js';
@@ -50,7 +50,7 @@ function Unknown({ unknown }) {
       <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
       <p class="buttons">
         <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
-        <button type="button" onClick={() => lookAlong(unknown.variables)}>Look along {unknown.variables.join(', ')}</button>
+        <button type="button" onClick={() => lookAlong(unknown.variables, shiftOf(unknown))}>Look along {unknown.variables.join(', ')}</button>
       </p>
     </li>
   );

@@ -1,6 +1,6 @@
-# The report's page template: bundled from npm packages when the program is built and kept inside the library. npm
-# fetches them where it is installed; else they are fetched one by one, as the lock file names them. Without Node, or
-# when the packages cannot be fetched, the program is built without the report and says so.
+# The pages of the report and of the workbench: bundled from npm packages when the program is built and kept inside the
+# library. npm fetches them where it is installed; else they are fetched one by one, as the lock file names them. Without
+# Node, or when the packages cannot be fetched, the program is built without its pages and says so.
 
 set(VOLCAL_REPORT AUTO CACHE STRING "Build the HTML report: AUTO (when its packages can be fetched), ON, OFF")
 set_property(CACHE VOLCAL_REPORT PROPERTY STRINGS AUTO ON OFF)
@@ -57,8 +57,28 @@ function(volcal_fetch_without_npm out dir)
   file(REMOVE_RECURSE ${dir}/fetched)
 endfunction()
 
-# volcal_add_report(TARGET): embeds the template into the library TARGET.
-function(volcal_add_report target)
+# volcal_add_page(TARGET NAME SOURCE VARIABLE SOURCES): bundles a page into WORK/NAME.html, which SOURCE, a file of TARGET,
+# takes in by the macro VARIABLE.
+function(volcal_add_page target name source variable)
+  set(web ${PROJECT_SOURCE_DIR}/identify/report/web)
+  set(work ${PROJECT_BINARY_DIR}/report)
+  set(page ${work}/${name}.html)
+  file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${web}/src/* ${PROJECT_SOURCE_DIR}/identify/workbench/web/src/*)
+  add_custom_command(
+    OUTPUT ${page}
+    COMMAND ${VOLCAL_NODE} ${web}/build.mjs --page ${name} ${work}/node_modules ${page}
+    DEPENDS ${inputs} ${web}/build.mjs ${web}/library.mjs ${work}/packages.sha256
+    COMMENT "Bundling the page of the ${name}"
+    VERBATIM)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/${source} PROPERTIES
+    COMPILE_DEFINITIONS "${variable}=\"${page}\""
+    OBJECT_DEPENDS ${page} SKIP_PRECOMPILE_HEADERS ON SKIP_UNITY_BUILD_INCLUSION ON)
+  # A generated file belongs to the target that uses it.
+  target_sources(${target} PRIVATE ${page})
+endfunction()
+
+# volcal_add_pages(REPORT WORKBENCH): embeds the pages into these libraries.
+function(volcal_add_pages report workbench)
   if(NOT VOLCAL_REPORT)
     return()
   endif()
@@ -95,17 +115,6 @@ function(volcal_add_report target)
     file(WRITE ${work}/packages.sha256 ${lock_hash})
   endif()
 
-  set(template ${work}/report_template.html)
-  file(GLOB_RECURSE inputs CONFIGURE_DEPENDS ${source}/src/*)
-  add_custom_command(
-    OUTPUT ${template}
-    COMMAND ${VOLCAL_NODE} ${source}/build.mjs ${work}/node_modules ${template}
-    DEPENDS ${inputs} ${source}/build.mjs ${source}/library.mjs ${work}/packages.sha256
-    COMMENT "Bundling the report's page"
-    VERBATIM)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/identify/report/template_data.cpp PROPERTIES
-    COMPILE_DEFINITIONS "VOLCAL_REPORT_TEMPLATE=\"${template}\""
-    OBJECT_DEPENDS ${template} SKIP_PRECOMPILE_HEADERS ON)
-  # A generated file belongs to the target that uses it.
-  target_sources(${target} PRIVATE ${template})
+  volcal_add_page(${report} report identify/report/template_data.cpp VOLCAL_REPORT_TEMPLATE)
+  volcal_add_page(${workbench} workbench identify/workbench/page.cpp VOLCAL_WORKBENCH_PAGE)
 endfunction()

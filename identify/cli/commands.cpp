@@ -14,6 +14,8 @@ namespace volcal::cli {
   COMMAND(montecarlo_command)    \
   COMMAND(plan_command)          \
   COMMAND(diagnose_command)      \
+  COMMAND(workbench_command)     \
+  COMMAND(session_command)       \
   COMMAND(try_command)           \
   COMMAND(extend_command)        \
   COMMAND(align_command)         \

@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kContradiction = 0.25;  // of U95: a preview that is off by more was wrong
 constexpr double kShareOfFit = 0.6;      // of the time of a full step
+constexpr double kShareOfNoise = 0.9;    // with that of the noise
 constexpr double kShareOfSearch = 0.8;   // of the time of a climb
 
 void report(const SessionProgress& progress, const std::string& stage, double done) {
@@ -105,6 +106,16 @@ double rms_of_heldout(const ModelState& state, const Eigen::VectorXd& residual) 
   return std::sqrt(squares / count);
 }
 
+double mean_noise_variance(const ModelState& state) {
+  double sum = 0.0, count = 0.0;
+  for (const double variance : noise_variance(state.model().problem().data, state.noise())) {
+    if (!std::isfinite(variance)) continue;
+    sum += variance;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
 /// Marks observations as left out. The number of those that were not yet.
 std::size_t leave_out(const LinearModel& model, const std::vector<bool>& selected, const std::string& reason,
                       Campaign& campaign) {
@@ -129,9 +140,11 @@ std::size_t leave_out(const LinearModel& model, const std::vector<bool>& selecte
 /// A model by a full fit, and what tests stand on.
 struct Session::Fitted {
   std::shared_ptr<const Campaign> campaign;
-  ModelSpec model;
   FitResult result;
   ModelState state;
+  double noise_variance;  ///< mean over the readings in use
+  std::vector<LadderStep>
+      figures;  ///< of the models before, against this noise, where it is the least so far
 };
 
 /// What stands behind a model of the tree.
@@ -163,6 +176,8 @@ struct Session::Node {
 struct Session::Fitting {
   SessionOptions options;
   std::vector<EffectSpec> own;
+  std::vector<ModelState> before;  ///< models of the tree
+  double least_variance;           ///< of these
 
   std::shared_ptr<const Fitted> operator()(const std::shared_ptr<const Campaign>& campaign,
                                            const ModelSpec& model, const SessionProgress& progress) const {
@@ -172,8 +187,14 @@ struct Session::Fitting {
     auto setting = std::make_shared<const SearchSetting>(linear, heldout_lines(linear, options.heldout_share),
                                                          std::vector<std::string>{}, options.threads, own);
     ModelState state(linear, std::move(setting));
+    report(progress, "models against this noise", kShareOfNoise);
+    const double variance = mean_noise_variance(state);
+    std::vector<LadderStep> figures;
+    for (std::size_t i = 0; i < before.size() && variance < least_variance; ++i)
+      figures.push_back(last_step_at(before[i], state.noise()));
     report(progress, "done", 1.0);
-    return std::make_shared<const Fitted>(Fitted{campaign, model, std::move(result), std::move(state)});
+    return std::make_shared<const Fitted>(
+        Fitted{campaign, std::move(result), std::move(state), variance, std::move(figures)});
   }
 };
 
@@ -181,12 +202,32 @@ Session::Session(Campaign campaign, ModelSpec model, SessionOptions options)
     : options_(std::move(options)), given_(std::move(model)) {
   options_.threads = thread_count(options_.threads);
   const auto shared = std::make_shared<const Campaign>(std::move(campaign));
-  append(0, Node(fitting()(shared, given_, options_.progress), {}), "", ModelStanding::Fitted);
+  appending(0, Node(fitting()(shared, given_, options_.progress), {}), "")(*this);
 }
 
 Session::~Session() = default;
 
-Session::Fitting Session::fitting() const { return {options_, own_}; }
+Session::Fitting Session::fitting() const {
+  std::vector<ModelState> before;
+  for (const auto& node : nodes_) before.push_back(node->state);
+  return {options_, own_, std::move(before),
+          least_ ? least_->noise_variance : std::numeric_limits<double>::max()};
+}
+
+/// Noise that was estimated without an effect holds part of it and hides its fall, so that all models are
+/// told against the least noise that a full fit has found.
+void Session::put_in_place(const std::shared_ptr<const Fitted>& fitted) {
+  if (least_ && fitted->noise_variance >= least_->noise_variance) return;
+  least_ = fitted;
+  for (std::size_t i = 0; i < std::min(fitted->figures.size(), models_.size()); ++i)
+    set_figures(fitted->figures[i], models_[i]);
+}
+
+void Session::set_figures(LadderStep figures, SessionModel& shown) {
+  shown.figures = std::move(figures);
+  shown.figures.model = std::to_string(shown.number);
+  shown.figures.added = shown.change;
+}
 const Campaign& Session::campaign() const { return *node().base->campaign; }
 const std::vector<SessionModel>& Session::models() const { return models_; }
 const SessionModel& Session::current() const { return models_[current_]; }
@@ -224,14 +265,14 @@ const SessionModel& Session::append(std::size_t parent, Node made, std::string c
 
 SessionChange Session::appending(std::size_t parent, Node made, std::string change) {
   return [parent, made = std::move(made), change = std::move(change)](Session& session) {
+    session.put_in_place(made.base);
     session.append(parent, made, change, ModelStanding::Fitted);
   };
 }
 
 void Session::describe(const Node& made, SessionModel& shown) const {
-  shown.figures = last_step_of(made.state);
-  shown.figures.model = std::to_string(shown.number);
-  shown.figures.added = shown.change;
+  const bool at_least = made.base == least_;
+  set_figures(at_least ? last_step_of(made.state) : last_step_at(made.state, least_->state.noise()), shown);
   shown.effects.clear();
   for (std::size_t i = 0; i < made.in_base(); ++i)
     shown.effects.push_back(fitted_finding(made.effects[i], made.base->result));
@@ -260,16 +301,29 @@ const std::vector<FamilyTest>& Session::tests() {
   return *here.tests;
 }
 
+SessionWork Session::scan() {
+  return [state = node().state, families = tests(),
+          number = current_](const SessionProgress& progress) -> SessionChange {
+    report(progress, "scans without a catalogue", 0.1);
+    const ModelState scanned = state.with_tests(tests_of(state, families));
+    std::vector<UnknownFinding> unknown = unknown_findings(scanned, {});
+    report_what_is_certain(unknown);
+    report(progress, "done", 1.0);
+    return [scanned, unknown = std::move(unknown), number](Session& session) {
+      Node& of = *session.nodes_[number];
+      of.scanned = scanned;
+      of.unknown = unknown;
+    };
+  };
+}
+
+bool Session::is_scanned() const { return node().scanned.has_value(); }
+
 /// With the scans.
 const ModelState& Session::scanned() {
-  const std::vector<FamilyTest>& families = tests();
-  Node& here = node();
-  if (!here.scanned) {
-    here.scanned = here.state.with_tests(tests_of(here.state, families));
-    here.unknown = unknown_findings(*here.scanned, {});
-    report_what_is_certain(here.unknown);
-  }
-  return *here.scanned;
+  renew_setting();
+  if (!is_scanned()) scan()({})(*this);
+  return *node().scanned;
 }
 
 const FamilyTest& Session::test_of(const EffectName& effect) {
@@ -464,6 +518,7 @@ SessionWork Session::confirmation(std::size_t number) const {
       for (std::size_t i = here.in_base(); i < here.effects.size() && !shown.contradiction; ++i)
         shown.contradiction =
             contradiction_of(shown.effects[i], fitted_finding(here.effects[i], base->result));
+      session.put_in_place(base);
       here.base = base;
       here.becomes(base->state);
       shown.standing = shown.contradiction ? ModelStanding::Contradicted : ModelStanding::Fitted;
@@ -527,6 +582,7 @@ SessionWork Session::climb() const {
         accepted_effects(diagnose_model(*campaign, model, options).diagnosis);
     std::vector<SessionChange> changes;
     std::vector<EffectFinding> all = effects;
+    Fitting fit_next = fit_it;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double from = kShareOfSearch +
                           (1.0 - kShareOfSearch) * static_cast<double>(i) / static_cast<double>(found.size());
@@ -534,10 +590,12 @@ SessionWork Session::climb() const {
         return !progress || progress(found[i].label + ": " + stage, from);
       };
       all.push_back(found[i]);
-      Node made(fit_it(campaign, extended_model(given, *campaign, all), part), all);
+      const auto base = fit_next(campaign, extended_model(given, *campaign, all), part);
+      fit_next.before.push_back(base->state);
+      fit_next.least_variance = std::min(fit_next.least_variance, base->noise_variance);
       changes.push_back(
-          [made = std::move(made), change = "+ " + found[i].label, parent, first = i == 0](Session& session) {
-            session.append(first ? parent : session.current_, made, change, ModelStanding::Fitted);
+          [made = Node(base, all), change = "+ " + found[i].label, parent, first = i == 0](Session& session) {
+            appending(first ? parent : session.current_, made, change)(session);
           });
     }
     return [changes = std::move(changes)](Session& session) {

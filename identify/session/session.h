@@ -78,7 +78,8 @@ struct SessionModel {
   std::string change;                 ///< "+ reversal EXX", "- ECX by z"; empty for the first
   ModelStanding standing = ModelStanding::Fitted;
   std::optional<Contradiction> contradiction = {};
-  LadderStep figures = {};                  ///< on fitted and on held-out readings
+  LadderStep figures =
+      {};  ///< on fitted and on held-out readings, against the least noise of a full fit so far
   std::vector<EffectFinding> effects = {};  ///< added to the given model, with their amplitudes in this one
 };
 
@@ -139,6 +140,9 @@ class Session {
   std::vector<EffectFinding> not_visible();
   /// Of the first of the ranking, at most `most`.
   Rivalry rivals(std::size_t most);
+  /// The scans of the current model without a catalogue, which unknown() makes where they are not there.
+  SessionWork scan();
+  bool is_scanned() const;
   /// What moves the residuals of the current model without a name, leading first.
   const std::vector<UnknownFinding>& unknown();
   /// Something without a name explains the residuals better than the leading effect.
@@ -197,6 +201,8 @@ class Session {
   struct Fitting;
 
   Fitting fitting() const;
+  void put_in_place(const std::shared_ptr<const Fitted>& fitted);
+  static void set_figures(LadderStep figures, SessionModel& shown);
   Node& node() const { return *nodes_[current_]; }
   void renew_setting();
   const std::vector<FamilyTest>& tests();
@@ -215,6 +221,7 @@ class Session {
   std::vector<EffectSpec> own_;
   std::vector<std::unique_ptr<Node>> nodes_;
   std::vector<SessionModel> models_;
+  std::shared_ptr<const Fitted> least_;  ///< of the least noise
   std::size_t current_ = 0;
   std::vector<std::size_t> undone_;
 };

@@ -271,10 +271,7 @@ Json detectable_json(const std::vector<EffectFinding>& ranking) {
 
 Json rank_json(Session& session) {
   const std::vector<EffectFinding> ranking = session.rank();
-  Json unknown = Json::array(), hidden = Json::array(), drawn = Json::array();
-  for (const UnknownFinding& finding : session.unknown())
-    unknown.push_back(unknown_json(finding, unknown.size()));
-  for (const SurfaceFinding& surface : session.drawn()) drawn.push_back(surface_json(surface));
+  Json hidden = Json::array();
   for (const EffectFinding& effect : session.not_visible()) {
     if (hidden.size() < kHidden) hidden.push_back(effect_json(effect));
   }
@@ -282,10 +279,22 @@ Json rank_json(Session& session) {
           {"tests", ranking.size()},
           {"tried", session.tried()},
           {"effects", suspects_json(session, ranking)},
-          {"unknown_leads", session.unknown_leads()},
-          {"unknown", std::move(unknown)},
-          {"drawn", std::move(drawn)},
           {"not_visible", std::move(hidden)}};
+}
+
+Json unknown_json(Session& session) {
+  const bool ready = session.is_scanned();
+  Json unknown = Json::array(), drawn = Json::array();
+  if (ready) {
+    for (const UnknownFinding& finding : session.unknown())
+      unknown.push_back(unknown_json(finding, unknown.size()));
+  }
+  for (const SurfaceFinding& surface : session.drawn()) drawn.push_back(surface_json(surface));
+  return {{"model", session.current().number},
+          {"ready", ready},
+          {"unknown_leads", ready && session.unknown_leads()},
+          {"unknown", std::move(unknown)},
+          {"drawn", std::move(drawn)}};
 }
 
 std::string preview_frame(Session& session, const std::string& effect) {

@@ -10,8 +10,10 @@
 
 namespace volcal::workbench {
 
-/// Suspects and what has no name, at the current model.
+/// Suspects at the current model.
 Json rank_json(Session& session);
+/// What has no name there, and surfaces that were drawn; "ready": whether the scans were made.
+Json unknown_json(Session& session);
 /// Framed: residuals with the effect in the model.
 std::string preview_frame(Session& session, const std::string& effect);
 /// Framed: residuals and driver of a formula, which is one more test.

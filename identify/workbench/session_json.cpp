@@ -27,8 +27,9 @@ Json amplitude_json(const AmplitudeFigure& figure) {
 /// "1.3e-12" also where a double ends.
 std::string probability_text(double log10_p) {
   if (log10_p > -3.0) return fmt::format("{:.2g}", std::pow(10.0, log10_p));
-  const double exponent = std::floor(log10_p);
-  return fmt::format("{:.1f}e{:.0f}", std::pow(10.0, log10_p - exponent), exponent);
+  const double rounded = std::log10(0.95);  // 9.5 and more of a power round to the next
+  const double exponent = std::floor(log10_p - rounded);
+  return fmt::format("{:.0f}e{:.0f}", std::pow(10.0, log10_p - exponent), exponent);
 }
 
 std::string words_of(const EffectFinding& effect) {

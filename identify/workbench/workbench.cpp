@@ -10,9 +10,7 @@
 
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
-#include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
-#include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
@@ -97,11 +95,6 @@ Stamp stamp_of(const std::vector<std::string>& files) {
     if (!error) stamp[file] = {time, size};
   }
   return stamp;
-}
-
-ModelSpec model_of(const std::string& path, const Machine& machine) {
-  if (path.empty()) return {};
-  return is_result(path) ? read_known_errors(path).identified : read_model(path, machine);
 }
 
 SessionCommand command_of(const std::string& request, const Json& body) {
@@ -215,6 +208,10 @@ Answer Workbench::answer(const std::string& request, const std::string& body, co
 Json Workbench::look(const std::string& request, const Json& body) {
   if (request == "state") return state(text_of(body, "tab"));
   if (request == "rank") return rank_json(session());
+  if (request == "unknown") {
+    look_for_unknown();
+    return unknown_json(session());
+  }
   if (request == "complete") return completion_json(session(), text_of(body, "text"), number_of(body, "at"));
   if (request == "periodogram") return periodogram_json(session(), text_of(body, "variable"));
   if (request == "polar") return polar_json(session());
@@ -283,7 +280,8 @@ void Workbench::do_command(const SessionCommand& command) {
   if (!long_work) {
     commands_.push_back(line);
     waiting_.reset();
-    return confirm_what_is_linear();
+    confirm_what_is_linear();
+    return look_for_unknown();
   }
   start({line.substr(0, line.find(' ')), line, false,
          [this, long_work = *std::move(long_work)](const SessionProgress& progress) -> std::function<void()> {
@@ -305,6 +303,18 @@ void Workbench::confirm_what_is_linear() {
        [this, confirm = session_->confirmation()](const SessionProgress& progress) -> std::function<void()> {
          return [this, change = confirm(progress)] { change(*session_); };
        }});
+}
+
+/// Behind as well, once nothing else is under way; event "unknown" tells what was found.
+void Workbench::look_for_unknown() {
+  if (session().is_scanned() || waiting_ || (busy_ && !cancelled_)) return;
+  start({"scan", "", true,
+         [this, scan = session_->scan()](const SessionProgress& progress) -> std::function<void()> {
+           return [this, change = scan(progress)] {
+             change(*session_);
+             hub_.publish("unknown", json_text(unknown_json(*session_), -1));
+           };
+         }});
 }
 
 void Workbench::export_now(const std::string& what) {
@@ -425,6 +435,7 @@ void Workbench::run(Job& job, Lock& lock) {
     failed["what"] = job.what;
     hub_.publish("failed", json_text(failed, -1));
   }
+  if (job.what != "scan") look_for_unknown();
   publish_state();
 }
 
@@ -440,7 +451,7 @@ void Workbench::load(Lock& lock) {
   std::optional<InputError> error;
   try {
     Campaign campaign = read_campaign(options_.campaign);
-    ModelSpec model = model_of(options_.model, campaign.machine);
+    ModelSpec model = read_starting_model(options_.model, campaign.machine);
     opened = std::make_unique<Session>(std::move(campaign), std::move(model),
                                        SessionOptions{.threads = options_.threads, .progress = progress()});
   } catch (const SessionStopped&) {

@@ -80,6 +80,7 @@ class Workbench {
   void wait_for_mended_files(Lock& lock);
   void start(Job job);
   void confirm_what_is_linear();
+  void look_for_unknown();
   SessionProgress progress();
 
   WorkbenchOptions options_;

@@ -4,9 +4,8 @@ import os
 import random
 import re
 
-from runner import Row
+from runner import FIT, Row
 
-FIT = ["fit", "c/campaign.toml", "-o", "o"]
 ROW = "0,0,-300,1.0012\n"
 
 

@@ -1,7 +1,6 @@
 """Hostile command lines."""
-from runner import Row
+from runner import FIT, Row
 
-FIT = ["fit", "c/campaign.toml", "-o", "o"]
 DRAW = ["montecarlo", "c/campaign.toml", "-o", "o"]
 PLAN = ["plan", "c/machine.toml", "-o", "o"]
 TABLES = ["tables", "r", "--format", "csv", "-o", "o"]

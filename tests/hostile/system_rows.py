@@ -3,9 +3,8 @@ import os
 import signal
 import subprocess
 
-from runner import Row, Skip
+from runner import FIT, Row, Skip
 
-FIT = ["fit", "c/campaign.toml", "-o", "o"]
 DRAW = ["montecarlo", "d/campaign.toml", "-m", "d/model.toml", "-n", "100000000", "-o", "o"]
 MEBIBYTE = 1 << 20
 
@@ -108,7 +107,7 @@ def files():
                  for name, code, prepare in in_place_of(path)]
     rows += [Row(f"result is {name}", ["tables", "r", "--format", "csv", "-o", "o"], code, ".", prepare=prepare)
              for name, code, prepare in in_place_of("r/result.json")]
-    rows += [Row(f"model is {name}", [*FIT, "-m", "c/model.toml"], code, ".", prepare=prepare)
+    rows += [Row(f"model is {name}", ["fit", "c/campaign.toml", "-m", "c/model.toml", "-o", "o"], code, ".", prepare=prepare)
              for name, code, prepare in in_place_of("c/model.toml")]
     long_name = "n" * 255
     rows += [

@@ -17,10 +17,20 @@
 
 namespace volcal::testing_support {
 
+/// The error functions of hiding() are polynomials of degree 7. A model of these has a quarter of the
+/// parameters of the default one and leaves none of a function to an effect.
+inline ModelSpec polynomials() {
+  ModelSpec model;
+  model.default_function.basis = "legendre";
+  model.default_function.degree = 7;
+  return model;
+}
+
 inline sim::Study hiding(std::vector<sim::HiddenEffect> hidden, const Eigen::Vector3i& grid = {6, 5, 5}) {
   sim::Study study;
   study.machine = sim::reference_machines()[0];
   study.seed = 31;
+  study.truth.random.wave_scale = 0.0;
   study.environment.channels = {
       {.name = "column", .start = 20.0, .drift = 0.6 / 3600.0, .amplitude = 0.2, .period = 9000.0}};
   study.hidden = std::move(hidden);
@@ -39,9 +49,9 @@ inline sim::HiddenEffect reversal(const std::string& symbol, double rms) {
 
 /// A study simulated, fitted and linearised.
 struct FittedStudy {
-  explicit FittedStudy(const sim::Study& study)
+  explicit FittedStudy(const sim::Study& study, const ModelSpec& spec = polynomials())
       : simulated(sim::simulate(study)),
-        result(fit(simulated.campaign, ModelSpec{})),
+        result(fit(simulated.campaign, spec)),
         model(simulated.campaign, result) {}
 
   sim::SimulatedCampaign simulated;

@@ -1,6 +1,8 @@
 #pragma once
 /// Statistical tests have a short form for every run and the long one for the night.
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
 
 namespace volcal::testing {
@@ -14,3 +16,8 @@ T short_or_long(T in_every_run, T for_the_night) {
 }
 
 }  // namespace volcal::testing
+
+/// At the beginning of a test that costs much and whose claim another test of every run makes, too: name it.
+#define VOLCAL_FOR_THE_NIGHT(in_every_run) \
+  if (!volcal::testing::long_tests())      \
+  GTEST_SKIP() << "VOLCAL_LONG_TESTS=1 runs it; in every run: " << (in_every_run)

@@ -173,12 +173,24 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
   return ladder;
 }
 
-LadderStep last_step_of(const ModelState& state) {
+namespace {
+
+LadderStep last_step(const ModelState& state, std::span<const NoiseParameters> noise,
+                     const Projector& projector) {
   Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
   for (const AddedEffect& added : state.added()) append_columns(added.columns, effects);
   std::optional<double> no_step_before;
-  return ladder_step(state.model(), state.setting().heldout, state.noise(), state.projector(), effects,
-                     no_step_before);
+  return ladder_step(state.model(), state.setting().heldout, noise, projector, effects, no_step_before);
+}
+
+}  // namespace
+
+LadderStep last_step_of(const ModelState& state) {
+  return last_step(state, state.noise(), state.projector());
+}
+
+LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise) {
+  return last_step(state, noise, *state.projector_at(noise));
 }
 
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {

@@ -129,4 +129,9 @@ FitResult read_known_errors(const std::string& path, const SourcePlace& named_at
   return read_result(path, named_at);
 }
 
+ModelSpec read_starting_model(const std::string& path, const Machine& machine) {
+  if (path.empty()) return {};
+  return is_result(path) ? read_result(path).identified : read_model(path, machine);
+}
+
 }  // namespace volcal

@@ -17,4 +17,8 @@ FitResult read_known_errors(const std::string& path, const SourcePlace& named_at
 /// Whether the path is a folder of `volcal tables --format csv` and no result.
 bool is_tables_folder(const std::string& path);
 
+/// The model that a person begins with: model.toml, or what a result of `volcal fit` has identified; all
+/// errors where no path is given. Throws InputError.
+ModelSpec read_starting_model(const std::string& path, const Machine& machine);
+
 }  // namespace volcal

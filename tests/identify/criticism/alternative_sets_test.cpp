@@ -73,7 +73,7 @@ Eigen::Matrix3Xd predicted(const FitResult& result, const Tool& tool,
 }
 
 FitResult refitted(const FittedStudy& study, const EffectSpec& effect) {
-  ModelSpec model;
+  ModelSpec model = testing_support::polynomials();
   model.effects = {effect};
   FitOptions options;
   options.noise = NoisePolicy::White;

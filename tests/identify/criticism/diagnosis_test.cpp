@@ -23,7 +23,9 @@ struct Diagnosed {
   Diagnosis diagnosis;
 };
 
-Diagnosed diagnosed(const sim::Study& study) {
+/// Of a machine whose functions lie outside every basis, with the default model.
+Diagnosed diagnosed(sim::Study study) {
+  study.truth.random.wave_scale = 1.0;
   Diagnosed out{sim::simulate(study), {}, {}};
   out.result = fit(out.simulated.campaign, ModelSpec{});
   DiagnoseOptions options;

@@ -31,26 +31,38 @@ TEST(Screening, IsSilentWhereNothingIsMissing) {
   EXPECT_EQ(study.result.status, FitStatus::Ok);
 }
 
+/// Screened once, by one thread.
+const FittedStudy& study_with_backlash() {
+  static const FittedStudy study(hiding({testing_support::reversal("EYY", 1.2e-6)}));
+  return study;
+}
+const Screening& screening_of_backlash() {
+  static const Screening made =
+      screen(study_with_backlash().simulated.campaign, study_with_backlash().result, 1);
+  return made;
+}
+
+void expect_contradiction(const Screening& screening, FitResult result) {
+  EXPECT_TRUE(screening.contradicts) << screening.leading << " " << screening.log10_p;
+  EXPECT_GT(screening.rms, 0.3e-6) << screening.leading;
+  const std::size_t before = result.findings.size();
+  result.status = FitStatus::Ok;
+  judge(screening, result);
+  EXPECT_EQ(result.status, FitStatus::LackOfFit);
+  ASSERT_EQ(result.findings.size(), before + 1);
+  EXPECT_EQ(result.findings.back().code, FindingCode::ModelContradicted);
+  EXPECT_EQ(result.findings.back().text("leading"), screening.leading);
+}
+
 TEST(Screening, ContradictsAFitThatLacksAnEffect) {
-  for (const sim::HiddenEffect& effect : {testing_support::reversal("EYY", 1.2e-6), tilt_by_temperature()}) {
-    FittedStudy study(hiding({effect}));
-    const Screening screening = screen(study.simulated.campaign, study.result, 1);
-    EXPECT_TRUE(screening.contradicts) << effect.kind << " " << screening.log10_p;
-    EXPECT_GT(screening.rms, 0.3e-6) << effect.kind;
-    const std::size_t before = study.result.findings.size();
-    study.result.status = FitStatus::Ok;
-    judge(screening, study.result);
-    EXPECT_EQ(study.result.status, FitStatus::LackOfFit);
-    ASSERT_EQ(study.result.findings.size(), before + 1);
-    EXPECT_EQ(study.result.findings.back().code, FindingCode::ModelContradicted);
-    EXPECT_EQ(study.result.findings.back().text("leading"), screening.leading);
-  }
+  expect_contradiction(screening_of_backlash(), study_with_backlash().result);
+  const FittedStudy tilted(hiding({tilt_by_temperature()}));
+  expect_contradiction(screen(tilted.simulated.campaign, tilted.result, 1), tilted.result);
 }
 
 TEST(Screening, DoesNotDependOnThreads) {
-  const FittedStudy study(hiding({testing_support::reversal("EYY", 1.2e-6)}));
-  const Screening one = screen(study.simulated.campaign, study.result, 1);
-  const Screening three = screen(study.simulated.campaign, study.result, 3);
+  const Screening& one = screening_of_backlash();
+  const Screening three = screen(study_with_backlash().simulated.campaign, study_with_backlash().result, 3);
   EXPECT_EQ(one.leading, three.leading);
   EXPECT_EQ(one.log10_p, three.log10_p);
 }

@@ -83,7 +83,7 @@ TEST(SurfaceFindings, TheErrorFallsToTheNoiseWithIt) {
 /// In the full model, with everything identified anew.
 TEST(SurfaceFindings, AFitWithItExplainsTheReadings) {
   const Campaign& campaign = study_of_bump().simulated.campaign;
-  ModelSpec model;
+  ModelSpec model = testing_support::polynomials();
   extend_model({model, campaign.machine, &campaign}, diagnosis_of_bump().surfaces.front().spec, {});
   model.effects.back().options = [&] {
     Options open;  // coefficients left to the fit
@@ -94,7 +94,8 @@ TEST(SurfaceFindings, AFitWithItExplainsTheReadings) {
   }();
   FitOptions options;
   options.noise = NoisePolicy::White;
-  const FitResult before = fit(campaign, ModelSpec{}, options), after = fit(campaign, model, options);
+  const FitResult before = fit(campaign, testing_support::polynomials(), options),
+                  after = fit(campaign, model, options);
   EXPECT_GT(before.sigma0, 1.3);
   EXPECT_LT(after.sigma0, 1.1);
   const auto kept = *after.identified.effects.front().options.numbers("coefficients");

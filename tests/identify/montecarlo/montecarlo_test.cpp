@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/long_tests.h"
 #include "tests/support/montecarlo_studies.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/errors.h"
@@ -207,6 +208,7 @@ class TwoRanks {
 };
 
 TEST_F(TracerStudy, RanksDoNotChangeABit) {
+  VOLCAL_FOR_THE_NIGHT("the test mpi, whose two ranks write the files of one process");
   for (const DrawPath path : {DrawPath::Linear, DrawPath::Chord}) {
     MonteCarloOptions options;
     options.path = path;

@@ -29,9 +29,9 @@ const EffectName kOther{"reversal", "EXX", "dir_x", "step"};
 /// Two reversals hidden, of which the first moves the readings most.
 class SessionOfTwo : public ::testing::Test {
  protected:
+  static sim::Study study() { return hiding({reversal("EYY", 1.0e-6), reversal("EXX", 0.6e-6)}, {5, 4, 4}); }
   static const Campaign& campaign() {
-    static const Campaign made =
-        sim::simulate(hiding({reversal("EYY", 1.0e-6), reversal("EXX", 0.6e-6)}, {5, 4, 4})).campaign;
+    static const Campaign made = sim::simulate(study()).campaign;
     return made;
   }
   static SessionOptions options_of(const SessionProgress& progress) {
@@ -41,7 +41,7 @@ class SessionOfTwo : public ::testing::Test {
     return options;
   }
   static std::unique_ptr<Session> open() {
-    return std::make_unique<Session>(campaign(), ModelSpec{}, options_of({}));
+    return std::make_unique<Session>(campaign(), testing_support::polynomials(), options_of({}));
   }
   /// Opened once; tests leave it at its first model.
   static Session& session() {
@@ -61,7 +61,7 @@ TEST_F(SessionOfTwo, RanksAsADiagnosisToTheBit) {
   fit_options.threads = 1;
   fit_options.outliers = OutlierPolicy::Remove;
   fit_options.noise = NoisePolicy::White;
-  const FitResult result = fit(campaign(), ModelSpec{}, fit_options);
+  const FitResult result = fit(campaign(), testing_support::polynomials(), fit_options);
   const LinearModel model(campaign(), result);
   const ModelState given = ModelState(model, std::make_shared<SearchSetting>(
                                                  model, heldout_lines(model, SessionOptions{}.heldout_share),
@@ -135,9 +135,13 @@ TEST_F(SessionOfTwo, MovesBetweenModelsAndLosesNone) {
   EXPECT_THROW(session().remove_preview(kOther), std::invalid_argument);
 }
 
-/// The full fit agrees with the preview, and takes the effect out again.
+/// The full fit agrees with the preview, and takes the effect out again. The functions are smoothed ones
+/// here.
 TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
-  const std::unique_ptr<Session> own = open();
+  sim::Study with_waves = study();
+  with_waves.truth.random.wave_scale = 1.0;
+  const Campaign measured = sim::simulate(with_waves).campaign;
+  const auto own = std::make_unique<Session>(measured, ModelSpec{}, options_of({}));
   own->add(kReversal);
   own->add(kOther);
   const double previewed = own->current().effects[0].amplitudes[0].value;
@@ -204,7 +208,7 @@ TEST_F(SessionOfTwo, IsLeftAsItWasByAStepThatIsStopped) {
   EXPECT_EQ(session().current().standing, ModelStanding::Preview);
   EXPECT_EQ(session().residual(), residual);
   const auto never = [](const std::string& /*stage*/, double /*done*/) { return false; };
-  EXPECT_THROW(Session(campaign(), ModelSpec{}, options_of(never)), SessionStopped);
+  EXPECT_THROW(Session(campaign(), testing_support::polynomials(), options_of(never)), SessionStopped);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "tests/support/hidden_studies.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/priors/resolution.h"
@@ -22,6 +23,7 @@ const Campaign& campaign_of_tracking() {
     sim::Study study;
     study.machine = sim::reference_machines()[0];
     study.seed = 44;
+    study.truth.random.wave_scale = 0.0;  // functions that polynomials() holds
     sim::Tracking tracking;
     tracking.grid = {5, 4, 4};
     study.measurements.emplace_back().settings = tracking;
@@ -32,7 +34,7 @@ const Campaign& campaign_of_tracking() {
 }
 
 ModelSpec without(std::initializer_list<const char*> symbols) {
-  ModelSpec model;
+  ModelSpec model = testing_support::polynomials();
   for (const char* symbol : symbols) model.functions[*ErrorSymbol::parse(symbol)].basis = "zero";
   return model;
 }

@@ -64,7 +64,7 @@ TEST(LinearModel, LocalRowsAreTheSameColumns) {
 /// Residuals that follow a wave along X of 3 um: the functions of X may be rougher than without it, and what
 /// a column without prior explains asks for no roughness.
 TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
-  const testing_support::FittedStudy study(testing_support::hiding({}, {7, 4, 4}));
+  const testing_support::FittedStudy study(testing_support::hiding({}, {7, 4, 4}), ModelSpec{});
   const LinearModel model(study.simulated.campaign, study.result);
   const auto roughness = [&](const Eigen::VectorXd& residual, bool explained) {
     Projector projector = testing_support::white_projector(model, residual);

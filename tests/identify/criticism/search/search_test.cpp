@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tests/support/hidden_studies.h"
+#include "tests/support/long_tests.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -138,10 +139,15 @@ sim::HiddenEffect bump_in_xy() {
   return bump;
 }
 
+const FittedStudy& study_of_bump_in_xy() {
+  static const FittedStudy study(hiding({bump_in_xy()}, kGrid));
+  return study;
+}
+
 /// What the user thinks of is tested beside the catalogue: the right shape is named, the wrong one is not
 /// asked for, and both are told.
 TEST(Search, NamesWhatTheUserThinksOf) {
-  const FittedStudy study(hiding({bump_in_xy()}, kGrid));
+  const FittedStudy& study = study_of_bump_in_xy();
   DiagnoseOptions options;
   options.climb = true;
   options.figures = options.compare = false;
@@ -164,8 +170,7 @@ TEST(Search, NamesWhatTheUserThinksOf) {
 }
 
 TEST(Search, WhatIsInNoCatalogueGetsNoName) {
-  const FittedStudy study(hiding({bump_in_xy()}, kGrid));
-  const Diagnosis diagnosis = searched(study, false);
+  const Diagnosis diagnosis = searched(study_of_bump_in_xy(), false);
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());
   ASSERT_FALSE(diagnosis.unknown.empty());
@@ -174,6 +179,7 @@ TEST(Search, WhatIsInNoCatalogueGetsNoName) {
 
 /// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
 TEST(Search, AReversalThatIsTakenUpOnTheWayGetsNoName) {
+  VOLCAL_FOR_THE_NIGHT("Constancy.SeesAReversalThatIsTakenUpOnTheWay, by which the search refuses the name");
   sim::HiddenEffect memory = hidden_beside("direction-memory", "EYY", 1.5e-6);
   memory.options.set("length", 0.05);
   const Diagnosis diagnosis = searched(FittedStudy(hiding({memory}, kGrid)), true);

@@ -1,0 +1,128 @@
+#include "volcal/identify/session/session_command.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/progress.h"
+#include "volcal/identify/cli/provenance.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
+#include "volcal/identify/io/results/known_errors.h"
+#include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/identify/text/text_file.h"
+#include "volcal/identify/workbench/session_json.h"
+#include "volcal/model/description/units.h"
+
+namespace volcal::cli {
+namespace {
+
+struct SessionArguments {
+  std::string campaign;
+  std::string model;
+  std::vector<std::string> lines;
+  std::string output;
+  int threads = 0;
+  bool json = false;
+};
+
+std::string interval_text(const LadderStep& figures) {
+  return fixed_number(figures.systematic * kPerMicro, 2) + " (" +
+         fixed_number(figures.systematic_low * kPerMicro, 2) + " to " +
+         fixed_number(figures.systematic_high * kPerMicro, 2) + ")";
+}
+
+std::string standing_of(const SessionModel& model) {
+  if (model.standing == ModelStanding::Preview) return "linear preview";
+  return model.standing == ModelStanding::Contradicted ? "full fit, off the preview" : "full fit";
+}
+
+std::string models_text(const Session& session) {
+  TextTable table({{"", Align::Left},
+                   {"model", Align::Right},
+                   {"from", Align::Right},
+                   {"change", Align::Left},
+                   {"systematic error [um]", Align::Left},
+                   {"chi2/dof", Align::Right},
+                   {"by", Align::Left}});
+  for (const SessionModel& model : session.models()) {
+    table.add_row({model.number == session.current().number ? ">" : "", std::to_string(model.number),
+                   model.parent ? std::to_string(*model.parent) : "",
+                   model.change.empty() ? "as given" : model.change, interval_text(model.figures),
+                   fixed_number(model.figures.reduced_chi2, 3), standing_of(model)});
+  }
+  return table.text();
+}
+
+void do_line(Session& session, const std::string& line) {
+  ProgressBar bar(line);
+  const auto progress = [&bar](const std::string& stage, double done) {
+    bar.update(stage, done);
+    return true;
+  };
+  try {
+    if (const auto work = begin(session, session_command_from(line))) session.take(*work, progress);
+  } catch (const InputError& error) {
+    throw InputError(error.place(), "--do \"" + line + "\": " + error.problem(), error.remedy());
+  }
+}
+
+int run_session(const SessionArguments& arguments) {
+  Campaign campaign = read_campaign(arguments.campaign);
+  const ModelSpec model = read_starting_model(arguments.model, campaign.machine);
+  for (const std::string& line : arguments.lines) session_command_from(line);
+  ProgressBar bar("session");
+  const auto progress = [&bar](const std::string& stage, double done) {
+    bar.update(stage, done);
+    return true;
+  };
+  Session session(std::move(campaign), model, {.threads = arguments.threads, .progress = progress});
+  bar.finish();
+  for (const std::string& line : arguments.lines) do_line(session, line);
+  if (!arguments.output.empty())
+    write_text_file(arguments.output, model_toml(session.model(), session.campaign().machine.file));
+  if (arguments.json) {
+    fmt::print("{}\n", json_text(workbench::models_json(session), 2));
+    return kDone;
+  }
+  fmt::print("{}", models_text(session));
+  if (!arguments.output.empty()) fmt::print("written: {}\n", arguments.output);
+  return kDone;
+}
+
+std::function<int()> define_session(CLI::App& app) {
+  auto arguments = std::make_shared<SessionArguments>();
+  app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
+  app.add_option("-m,--model", arguments->model,
+                 "model.toml, or result of volcal fit, to begin with; default: all 21 errors");
+  app.add_option("--do", arguments->lines,
+                 "what to do, one after another: \"add KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula "
+                 "TARGET += EXPRESSION\", \"confirm\", \"climb\", \"draw N\", \"leave-out OBSERVATIONS "
+                 "REASON\", \"undo\", \"redo\", \"go N\"; may be given several times")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("-o,--output", arguments->output, "model file to write at the end");
+  app.add_option("--threads", arguments->threads, "0 = all; results do not depend on it")
+      ->check(number_of_threads());
+  app.add_flag("--json", arguments->json, "print the models as one JSON document and nothing else");
+  return [arguments] { return run_session(*arguments); };
+}
+
+}  // namespace
+
+const Command& session_command() {
+  static const Command command = {
+      "session", "do what the workbench does by a list of commands: the same numbers, without the page",
+      "  volcal session campaign.toml --do \"add reversal:EXX:dir_x:step\" --do confirm\n"
+      "  volcal session campaign.toml --model model.toml --do climb -o found.toml\n"
+      "  volcal session campaign.toml --do \"formula EXX += dir_x * (T_air - 20)\" --json\n",
+      define_session};
+  return command;
+}
+
+}  // namespace volcal::cli

@@ -6,7 +6,7 @@ const kLong = 180_000; // ms, for a full fit of a large campaign
 export const shot = (page, story, name, fullPage = true) => page.screenshot({ path: path.join(story.out, `${name}.png`), fullPage });
 export const until = (page, condition, argument, timeout = kLong) => page.waitForFunction(condition, argument, { timeout });
 
-export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.progress'));
+export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.progress:not([data-behind])'));
 export const ranked = async (page) => {
   await idle(page);
   await until(page, () => document.querySelector('.suspects') && !document.querySelector('.suspects.is-stale') && document.querySelector('.suspects .rows, .suspects .nothing'));

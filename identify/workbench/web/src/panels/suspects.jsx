@@ -39,7 +39,7 @@ const listed = (names) => (names.length > kNamed + 1 ? `${names.slice(0, kNamed)
 
 function Suspect({ effect }) {
   const hovered = preview.value?.name === effect.name;
-  const usable = effect.can_be_added !== false && effect.visible !== 0;
+  const usable = effect.can_be_added !== false;
   const may = mayAct.value && usable;
   const along = effect.driver ? variablesIn(effect.driver) : variablesIn(effect.name);
   const look_ = () => look(effect.name, effect.label);
@@ -77,7 +77,7 @@ function InModel() {
       <h3 id="in-model-title">In this model</h3>
       <ul>{effects.map((effect) => (
         <li key={effect.name} class={`is-${model.standing}`}>
-          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.visible === 0 && <span class="remedy">These readings do not determine it. {words(effect.remedy)}</span>}</span>
+          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}</span>
           <button type="button" disabled={!mayAct.value} aria-label={`take out: ${effect.label}`} onClick={() => act('remove', { effect: effect.name })}>take out</button>
         </li>
       ))}</ul>

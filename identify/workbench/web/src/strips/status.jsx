@@ -13,7 +13,7 @@ export function Progress() {
   const share = Number.isFinite(now.share) ? Math.max(0, Math.min(1, now.share)) : null;
   const title = kDoing[now.what] ?? now.what;
   return (
-    <div class="progress" role="status">
+    <div class="progress" role="status" data-behind={now.behind ? "" : undefined}>
       <span><strong>{title}</strong>{now.stage ? `: ${now.stage}` : ''}</span>
       <progress aria-label={title} max="1" value={share ?? undefined} />
       <span class="muted">{share !== null ? `${Math.round(100 * share)} %` : ''}{now.left_s !== null && now.left_s !== undefined ? `, ${seconds(now.left_s)}` : ''}</span>

@@ -20,6 +20,7 @@ async function takeState(next) {
   const sentence = former ? fallSentence(former, next) : null;
   state.value = next;
   busy.value = next.busy ?? null;
+  watchDrawing();
   if (next.campaign?.file !== former?.campaign?.file || next.campaign?.observations !== former?.campaign?.observations) forgetReadings();
   if (next.phase !== 'ready') return;
   if (pictures.value.length === 0) openPictures();
@@ -106,6 +107,24 @@ export async function addFormula({ name, text, parameters = [] }) {
     return add(head.effect.name);
   } catch (error) {
     return report('formula', error);
+  }
+}
+
+let drawing = null;
+
+/** Draws what has no name. A program that is done and has sent no surface has found none. */
+export async function draw(unknown) {
+  drawing = { surfaces: surfaces.value.length, begun: false };
+  if (!await act('draw', { unknown })) drawing = null;
+}
+
+function watchDrawing() {
+  if (!drawing) return;
+  if (busy.value?.what === 'draw') drawing.begun = true;
+  else if (drawing.begun) {
+    const none = surfaces.value.length === drawing.surfaces && !trouble.value;
+    drawing = null;
+    if (none) trouble.value = { what: 'draw', error: 'The readings draw no curve or surface of it.', remedy: 'Look along its variables: a suspect with a name may explain it.' };
   }
 }
 

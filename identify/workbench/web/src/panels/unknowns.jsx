@@ -2,7 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import { significant } from '../../../../report/web/src/dom.js';
 import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
-import { act, add, addFormula } from '../app/actions.js';
+import { add, addFormula, draw } from '../app/actions.js';
 import { lookAlong, shiftOf } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
 import { busy, currentModel, mayAct, state, surfaces, variables } from '../app/store.js';
@@ -49,7 +49,7 @@ function Unknown({ unknown }) {
       <p class="title"><b>{words(unknown.label)}</b> <span class="p muted">p {chance(unknown.log10_p ?? Math.log10(Number(unknown.p)))}</span></p>
       <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
       <p class="buttons">
-        <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
+        <button type="button" class="primary" disabled={!mayAct.value} onClick={() => draw(unknown.number)}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
         <button type="button" onClick={() => lookAlong(unknown.variables, shiftOf(unknown))}>Look along {unknown.variables.join(', ')}</button>
       </p>
     </li>

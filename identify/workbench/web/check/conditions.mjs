@@ -1,5 +1,6 @@
 // The page under other conditions: narrow, dark, printed, with another tab, with bad input, without its program.
-import { readFile, writeFile } from 'node:fs/promises';
+import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { open } from './browser.mjs';
 import { ranked, shot, until } from './steps.mjs';
@@ -63,7 +64,9 @@ export async function twoTabs(story, fault) {
 /** A program of its own, started on a campaign that is wrong. */
 export async function badInput(story, fault) {
   const good = await readFile(story.campaign, 'utf8');
-  const file = story.campaign.replace(/\.toml$/, '-wrong.toml');
+  const folder = await mkdtemp(path.join(tmpdir(), 'volcal-story-'));
+  await cp(path.dirname(story.campaign), folder, { recursive: true, filter: (from) => !from.endsWith('workbench') });
+  const file = path.join(folder, path.basename(story.campaign));
   await writeFile(file, good.replace(/^instrument = "[^"]*"/m, 'instrument = "laser-trcer"'));
   const program = story.startOn(file);
   program.child.on('exit', () => {});
@@ -78,6 +81,7 @@ export async function badInput(story, fault) {
   await ranked(page);
   await context.close();
   program.child.kill();
+  await rm(folder, { recursive: true, force: true });
 }
 
 export async function serverGone(story, fault) {

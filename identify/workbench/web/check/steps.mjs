@@ -6,7 +6,7 @@ const kLong = 180_000; // ms, for a full fit of a large campaign
 export const shot = (page, story, name, fullPage = true) => page.screenshot({ path: path.join(story.out, `${name}.png`), fullPage });
 export const until = (page, condition, argument, timeout = kLong) => page.waitForFunction(condition, argument, { timeout });
 
-export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.progress'));
+export const idle = (page) => until(page, () => document.querySelector('.headline') && !document.querySelector('.progress:not([data-behind])'));
 export const ranked = async (page) => {
   await idle(page);
   await until(page, () => document.querySelector('.suspects') && !document.querySelector('.suspects.is-stale') && document.querySelector('.suspects .rows, .suspects .nothing'));
@@ -50,6 +50,7 @@ async function look(story, fault) {
   for (const kind of kinds) {
     await page.locator('.lens').first().locator('select').first().selectOption(kind);
     await page.waitForTimeout(500);
+    await until(page, () => document.querySelector('.lens .readout').textContent !== 'The program looks for periods.', null, 20_000).catch(() => {});
     await page.locator('.lens').first().screenshot({ path: path.join(story.out, `lens-${kind}.png`) });
     if (kind !== 'polar' && (await inked(page, '.lens:first-child .canvas > canvas:first-child'))[0] < 0.005) fault(`the lens ${kind} is empty`);
   }
@@ -189,8 +190,12 @@ async function unknown(story, fault) {
   await ranked(page);
   if (await page.locator('.unknown').count() === 0) return console.log('  nothing without a name stands out here');
   const before = await headline(page);
-  await page.locator('.unknown button.primary').first().click();
-  await page.locator('.surface-drawn button.primary').first().waitFor({ timeout: kLong });
+  await page.locator('.unknown button.primary').last().click();
+  await page.locator('.surface-drawn button.primary, .banner.bad').first().waitFor({ timeout: kLong });
+  if (await page.locator('.banner.bad').count() > 0) {
+    console.log(`  ${await page.locator('.banner.bad').first().textContent()}`);
+    return page.locator('.banner.bad button').first().click();
+  }
   await page.waitForTimeout(1200);
   await shot(page, story, 'surface');
   await page.locator('.surface-drawn button.primary').first().click();

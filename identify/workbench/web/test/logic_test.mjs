@@ -5,6 +5,7 @@ import { eventParser } from '../src/api/events_text.js';
 import { readFrame, writeFrame } from '../src/api/frames.js';
 import { indices, mark, meanOf, sharedValue, standOut } from '../src/data/selection.js';
 import { binIndex, histogram, magnitudeQuantile, meansInBins, numberLines, rangeOf, standardisedDifference } from '../src/data/statistics.js';
+import { sketchOf } from '../src/data/sketch.js';
 import { surfaceData } from '../src/data/surface.js';
 import { treeOf } from '../src/data/tree.js';
 import { directionWords, stepsOf, unitText, variablesOf } from '../src/data/variables.js';
@@ -130,4 +131,11 @@ test('a surface is drawn with the names and units of its variables, its largest 
   assert.equal(data.largest, -5);
   assert.equal(data.largest_U95, 2);
   assert.equal(data.axes[0].title, 'X [mm]');
+});
+
+test('an effect is sketched by its kind, one that has no known shape is not', () => {
+  const step = sketchOf({ kind: 'reversal', label: 'reversal EXX' });
+  assert.deepEqual([step[0][1], step.at(-1)[1]], [-1, 1]);
+  assert.ok(sketchOf({ label: 'EXX', shape: 'period 10.02 mm' }).some(([, y]) => y > 0.9));
+  assert.equal(sketchOf({ kind: 'other', label: 'EXX' }), null);
 });

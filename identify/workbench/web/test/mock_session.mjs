@@ -109,7 +109,7 @@ export class Session {
 
   answer(name, body, tab) {
     if (this.writer === null) this.writer = tab;
-    const looks = { state: () => this.state(tab), columns: () => this.sendColumns(body), rank: () => this.rank(), preview: () => this.preview(this.effect(body.effect)), formula: () => this.formula(body), complete: () => complete(body.text, body.at, kVariables.map((v) => v.name)), periodogram: () => this.periodogram(body), polar: () => this.polar(), meaning: () => this.meaning(), cancel: () => this.cancel(), take: () => { this.writer = tab; this.changed(); return this.state(tab); } };
+    const looks = { state: () => this.state(tab), columns: () => this.sendColumns(body), rank: () => this.rank(), unknown: () => this.unknown(), preview: () => this.preview(this.effect(body.effect)), formula: () => this.formula(body), complete: () => complete(body.text, body.at, kVariables.map((v) => v.name)), periodogram: () => this.periodogram(body), polar: () => this.polar(), meaning: () => this.meaning(), cancel: () => this.cancel(), take: () => { this.writer = tab; this.changed(); return this.state(tab); } };
     if (looks[name]) return looks[name]();
     if (tab !== this.writer) throw fault(409, 'another tab writes', 'Choose “Write here”.');
     if (this.busy) throw fault(409, 'the program is busy');
@@ -135,8 +135,13 @@ export class Session {
     const own = this.now().names;
     const list = catalogue.filter((effect) => !effect.hidden && !own.includes(effect.name)).map((effect) => ({ effect, score: this.scored(effect) })).sort((a, b) => b.score.gain - a.score.gain);
     const effects = list.filter(({ score }) => score.gain > 8).map(({ effect, score }, k) => ({ ...this.described(effect, score), fall: k < 12 ? { from_um: this.now().figures.rms_heldout_um, to_um: this.figures(score.residual).rms_heldout_um } : null }));
+    return { model: this.current, effects, tried: this.tried, not_visible: unseen, tests: 812 };
+  }
+
+  unknown() {
+    const own = this.now().names;
     const unknown = own.includes('empirical:y:x:z') || own.some((name) => name.startsWith('formula:')) ? [] : [{ number: 0, label: 'something that depends on x and z along Y', variables: ['x', 'z'], direction: 'Y', rms_um: 0.42, p: '1e-40', period_mm: null }];
-    return { model: this.current, seconds: 0.1, effects, tried: this.tried, unknown_leads: true, drawn: this.drawn[this.current] ?? [], unknown, not_visible: unseen, tests: 812 };
+    return { model: this.current, ready: true, unknown_leads: true, unknown, drawn: this.drawn[this.current] ?? [] };
   }
 
   preview(effect, more = {}, columns = {}) {

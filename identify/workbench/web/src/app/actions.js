@@ -3,10 +3,10 @@ import { call, latest, NoAnswer, Refusal } from '../api/call.js';
 import { abandon, begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
-import { clearColumns, column, ensure, kFirst, residualNames } from './columns.js';
-import { columnsOfPictures, openOn, openPictures, pictures, variablesIn } from './pictures.js';
+import { clearColumns, ensure, kFirst, residualNames } from './columns.js';
+import { columnsOfPictures, openOn, openPictures, pictures, shiftOf, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
-import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, variables } from './store.js';
+import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, unknowns, variables } from './store.js';
 
 export function report(what, error) {
   if (error instanceof NoAnswer) line.value = 'gone';
@@ -14,19 +14,21 @@ export function report(what, error) {
 }
 
 /** Takes over a state that the program sent. */
-export async function takeState(next) {
+async function takeState(next) {
   const former = state.value;
   if (former && next.revision !== undefined && next.revision < former.revision) return;
   const sentence = former ? fallSentence(former, next) : null;
   state.value = next;
   busy.value = next.busy ?? null;
+  watchDrawing();
   if (next.campaign?.file !== former?.campaign?.file || next.campaign?.observations !== former?.campaign?.observations) forgetReadings();
   if (next.phase !== 'ready') return;
   if (pictures.value.length === 0) openPictures();
   if (sentence) said.value = sentence;
   if (former?.current !== next.current) preview.value = null;
   await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
-  if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) rank();
+  if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) await rank();
+  if (busy.value === null || busy.value.behind) askUnknown();
 }
 
 function forgetReadings() {
@@ -34,15 +36,32 @@ function forgetReadings() {
   selection.value = emptySelection;
   shown.value = { unit: null, setup: -1, alone: null };
   ranking.value = null;
+  unknowns.value = null;
   pictures.value = [];
 }
 
-/** Variables of the first suspect, and of what has no name. */
-const standsOutMost = ({ effects = [], unknown = [] }) => [...variablesIn(effects[0]?.name ?? '').slice(0, 1), ...(unknown[0]?.variables ?? [])];
-
 const askRank = latest();
 
-export async function rank() {
+/** What has no name is looked for behind: asked for until it is there. */
+async function askUnknown() {
+  const model = state.value.current;
+  const known = unknowns.value;
+  if (known?.ready && known.model === model && known.standing === currentModel.value?.standing) return;
+  try {
+    takeUnknown(await call('unknown', {}));
+  } catch (error) {
+    if (!(error instanceof Refusal && error.status === 409)) report('unknown', error);
+  }
+}
+
+function takeUnknown(answer) {
+  if (answer.model !== state.value.current) return;
+  unknowns.value = { ...answer, standing: currentModel.value?.standing };
+  keepSurfaces(answer.drawn ?? [], answer.model);
+  if (answer.unknown[0]) openOn([null, ...answer.unknown[0].variables], shiftOf(answer.unknown[0]));
+}
+
+async function rank() {
   const [model, standing] = [state.value.current, currentModel.value?.standing];
   rankingBusy.value = true;
   begin('rank');
@@ -50,8 +69,7 @@ export async function rank() {
     const answer = await askRank('rank', {});
     if (!answer) return;
     ranking.value = { ...answer, model, standing };
-    keepSurfaces(answer.drawn ?? [], model);
-    openOn(standsOutMost(answer));
+    if (answer.effects[0]) openOn(variablesIn(answer.effects[0].driver ?? '').slice(0, 1), shiftOf(answer.effects[0]));
     whenDrawn(() => painted('rank'));
     rankingBusy.value = false;
     // What a menu may ask for next is here before it does.
@@ -89,6 +107,24 @@ export async function addFormula({ name, text, parameters = [] }) {
     return add(head.effect.name);
   } catch (error) {
     return report('formula', error);
+  }
+}
+
+let drawing = null;
+
+/** Draws what has no name. A program that is done and has sent no surface has found none. */
+export async function draw(unknown) {
+  drawing = { surfaces: surfaces.value.length, begun: false };
+  if (!await act('draw', { unknown })) drawing = null;
+}
+
+function watchDrawing() {
+  if (!drawing) return;
+  if (busy.value?.what === 'draw') drawing.begun = true;
+  else if (drawing.begun) {
+    const none = surfaces.value.length === drawing.surfaces && !trouble.value;
+    drawing = null;
+    if (none) trouble.value = { what: 'draw', error: 'The readings draw no curve or surface of it.', remedy: 'Look along its variables: a suspect with a name may explain it.' };
   }
 }
 
@@ -153,6 +189,7 @@ export function leaveOut(reason) {
 export function onEvent(name, data) {
   if (name === 'state') takeState(data);
   else if (name === 'progress') busy.value = data.busy === undefined ? data : data.busy;
+  else if (name === 'unknown') takeUnknown(data);
   else if (name === 'surface') takeSurface(data);
   else if (name === 'exported') takeExported(data);
   else if (name === 'failed') trouble.value = data;
@@ -186,4 +223,3 @@ export async function onLine(status) {
   }
 }
 
-export { column };

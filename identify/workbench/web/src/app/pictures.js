@@ -54,20 +54,12 @@ export function openPictures() {
 }
 
 /** What stands out most is looked at first, while nobody has chosen anything. */
-export function openOn(names) {
+export function openOn([first, ...others], of = 'reading') {
   if (!untouched) return;
-  const [first, ...others] = names;
-  lookAlong(first === undefined ? others : [first]);
-  if (others.length > 1) {
-    const map = pictures.value.find(({ kind }) => kind === 'heat');
-    if (map) change(map.key, { x: others[0], y: others[1] });
-  }
+  const to = (kind, values) => { pictures.value = pictures.value.map((each) => (each.kind === kind ? { ...each, ...values } : each)); };
+  if (has(first)) to('scatter', { x: first, of });
+  if (others.length > 1 && others.every(has)) to('heat', { x: others[0], y: others[1], of });
 }
-
-effect(() => {
-  const list = pictures.value;
-  if (list.length > 0 && campaign.peek()) sessionStorage.setItem(storageKey(), JSON.stringify(list));
-});
 
 export function change(key, values) {
   untouched = false;
@@ -80,13 +72,13 @@ export function open(kind) {
 }
 
 /** Sets lenses to the variables in which something stands out: residuals against the first, a map of the first two. */
-export function lookAlong(names) {
+export function lookAlong(names, of = 'reading') {
   untouched = false;
   const usable = names.filter(has);
   if (usable.length === 0) return;
-  const wanted = [{ kind: 'scatter', x: usable[0] }];
-  if (usable.length > 1) wanted.push({ kind: 'heat', x: usable[0], y: usable[1] });
-  if (usable.length > 2) wanted.push({ kind: 'scatter', x: usable[2] });
+  const wanted = [{ kind: 'scatter', x: usable[0], of }];
+  if (usable.length > 1) wanted.push({ kind: 'heat', x: usable[0], y: usable[1], of });
+  if (usable.length > 2) wanted.push({ kind: 'scatter', x: usable[2], of });
   const list = [...pictures.value];
   for (const config of wanted) {
     const at = list.findIndex((each) => each.kind === config.kind && !each.set);
@@ -98,3 +90,9 @@ export function lookAlong(names) {
 
 /** Variables that the name of an effect speaks of: "reversal:EXX:dir_x:step" of dir_x. */
 export const variablesIn = (effectName) => String(effectName).split(/[^A-Za-z0-9_]+/).filter(has);
+
+/** What of the residuals shows an effect best: beams from several sides feel a shift along X with different signs. */
+export function shiftOf({ name = '', label = '', direction = null }) {
+  const axis = direction ?? `${name} ${label}`.match(/\bE([XYZ])[XYZABC]\b/)?.[1];
+  return /^[XYZ]$/.test(axis ?? '') ? axis.toLowerCase() : 'reading';
+}

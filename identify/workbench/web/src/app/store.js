@@ -23,6 +23,8 @@ export const shown = signal({ unit: null, setup: -1, alone: null });
 export const preview = signal(null);
 /** Answer to `rank`, with the model it belongs to. */
 export const ranking = signal(null);
+/** Answer to `unknown`: what stands out without a name. */
+export const unknowns = signal(null);
 export const rankingBusy = signal(false);
 export const surfaces = signal([]);
 export const exported = signal([]);
@@ -32,7 +34,7 @@ export const campaign = computed(() => state.value?.campaign ?? null);
 export const variables = computed(() => (campaign.value ? variablesOf(campaign.value) : []));
 /** A program that only reads does all but write files; one tab at a time changes the model. */
 export const isWriter = computed(() => Boolean(state.value) && (state.value.writer_tab === undefined ? state.value.writer !== false : ['', tab].includes(state.value.writer_tab)));
-export const mayWrite = computed(() => line.value === 'open' && isWriter.value);
+const mayWrite = computed(() => line.value === 'open' && isWriter.value);
 /** What runs behind the user's back gives way to what the user does. */
 export const mayAct = computed(() => mayWrite.value && state.value.phase === 'ready' && (busy.value === null || Boolean(busy.value.behind)));
 

@@ -32,15 +32,20 @@ export function meanOf(values, mask, lines) {
   }
   if (n === 0) return { mean: NaN, u: NaN };
   const mean = sum / n;
-  const groups = new Map();
+  const sums = new Float64Array(lines ? lines.count : 0);
+  const touched = new Uint8Array(sums.length);
   let scatter = 0;
   for (let i = 0; i < values.length; i += 1) {
     if (!mask[i] || values[i] !== values[i]) continue;
     const off = values[i] - mean;
     scatter += off * off;
-    if (lines) groups.set(lines.index[i], (groups.get(lines.index[i]) ?? 0) + off);
+    if (lines) {
+      sums[lines.index[i]] += off;
+      touched[lines.index[i]] = 1;
+    }
   }
-  const clustered = groups.size >= 3 ? ([...groups.values()].reduce((all, off) => all + off * off, 0) * groups.size) / (groups.size - 1) : 0;
+  const groups = touched.reduce((count, one) => count + one, 0);
+  const clustered = groups >= 3 ? (sums.reduce((all, off) => all + off * off, 0) * groups) / (groups - 1) : 0;
   return { mean, u: Math.sqrt(Math.max(clustered, scatter)) / n };
 }
 

@@ -2,12 +2,12 @@
 import { distinct } from './statistics.js';
 
 /** Unit of the program's files as it is printed. */
-export const unitText = (unit) => String(unit ?? '').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/\bdegC\b/g, '°C').replace(/\bdeg\b/g, '°');
+export const unitText = (unit) => String(unit ?? '').replace(/\bum\b/g, 'µm').replace(/\burad\b/g, 'µrad').replace(/m2\b/g, 'm²').replace(/m3\b/g, 'm³').replace(/\bdegC\b/g, '°C').replace(/\bdeg\b/g, '°');
 export const titleOf = (variable) => (variable.unit ? `${variable.label} [${unitText(variable.unit)}]` : variable.label);
 
 const isTime = (column) => column.kind === 'time' || /^time(_s)?$/.test(column.name);
 const isTemperature = (column) => column.kind === 'temperature' || ['degC', '°C', 'K'].includes(column.unit) || /^T_/.test(column.name);
-export const isDirection = (column) => column.kind === 'direction' || /^dir_/.test(column.name);
+const isDirection = (column) => column.kind === 'direction' || /^dir_/.test(column.name);
 
 export const timeOf = (columns) => columns.find(isTime) ?? null;
 export const temperaturesOf = (columns) => columns.filter(isTemperature);

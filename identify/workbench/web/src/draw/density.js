@@ -1,7 +1,7 @@
 // Readings as dots where they are few, as density where they are many.
 import { alpha, channels, hex } from './palette.js';
 
-export const kMostDots = 20000;
+const kMostDots = 20000;
 
 /** Places in pixels of a box: [column, row] of every reading, -1 outside. `shown` chooses. */
 export function places(x, y, box, sx, sy, shown, shift = null) {
@@ -27,7 +27,7 @@ export function places(x, y, box, sx, sy, shown, shift = null) {
 }
 
 /** How many readings lie in every pixel. */
-export function countPixels({ column, row, w, h }, mask = null) {
+function countPixels({ column, row, w, h }, mask = null) {
   const counts = new Uint16Array(w * h);
   let largest = 0;
   for (let i = 0; i < column.length; i += 1) {
@@ -49,7 +49,7 @@ function scratchOf(w, h) {
 }
 
 /** Draws density in the shade of `name`: stronger where more readings lie. */
-export function drawDensity(ctx, box, where, name, { mask = null, floor = 0.28 } = {}) {
+function drawDensity(ctx, box, where, name, { mask = null, floor = 0.28 } = {}) {
   const { w, h } = where;
   if (w < 1 || h < 1) return;
   const { counts, largest } = countPixels(where, mask);
@@ -68,7 +68,7 @@ export function drawDensity(ctx, box, where, name, { mask = null, floor = 0.28 }
 }
 
 /** Draws dots of `size` pixels in one path. */
-export function drawDots(ctx, box, { column, row }, name, { mask = null, opacity = 0.45, size = 3 } = {}) {
+function drawDots(ctx, box, { column, row }, name, { mask = null, opacity = 0.45, size = 3 } = {}) {
   ctx.fillStyle = alpha(name, opacity);
   const off = (size - 1) / 2;
   for (let i = 0; i < column.length; i += 1) {

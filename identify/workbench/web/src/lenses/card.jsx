@@ -12,10 +12,16 @@ import { circlesOf } from './polar.js';
 import { lenses } from './registry.js';
 import { kOf } from './values.js';
 
+/** A map is timed apart from the other pictures. */
+function beginChange() {
+  begin('variable');
+  begin('map');
+}
+
 function Menu({ label, name, value, options, onChoose }) {
   return (
     <label class="menu">{label && <span>{label}</span>}
-      <select value={value} aria-label={name} onChange={(event) => { begin('variable'); onChoose(event.currentTarget.value); }}>
+      <select value={value} aria-label={name} onChange={(event) => { beginChange(); onChoose(event.currentTarget.value); }}>
         {options.map(([name, words]) => <option key={name} value={name}>{words}</option>)}
       </select>
     </label>
@@ -34,7 +40,7 @@ const controls = {
   what: ({ config, set }) => <Menu label="of" value={config.what ?? 'residual'} options={[['residual', 'what remains'], ['readings', 'measured and predicted']]} onChoose={(what) => set({ what })} />,
   circle: ({ config, set }) => <Menu label="" name="Circle" value={config.circle ?? circlesOf(campaign.value.setups)[0]?.index} options={circlesOf(campaign.value.setups).map(({ index, name }) => [index, name])} onChoose={(circle) => set({ circle })} />,
   perSigma: ({ config, set }) => (
-    <label class="menu"><input type="checkbox" checked={config.perSigma} onChange={(event) => { begin('variable'); set({ perSigma: event.currentTarget.checked }); }} /><span title="The uncertainty that the campaign states, not the estimated noise: what the noise has swallowed stays visible">÷ stated σ</span></label>
+    <label class="menu"><input type="checkbox" checked={config.perSigma} onChange={(event) => { beginChange(); set({ perSigma: event.currentTarget.checked }); }} /><span title="The uncertainty that the campaign states, not the estimated noise: what the noise has swallowed stays visible">÷ stated σ</span></label>
   ),
   period: ({ config, set }) => (
     <label class="menu"><span>period</span><input type="number" min="0" step="any" value={config.period || (config.spectrum?.peak ?? '')} onChange={(event) => set({ period: Number(event.currentTarget.value) })} /></label>

@@ -56,7 +56,7 @@ function prepare(view, config, size) {
 const mix = (from, to, t) => from.map((v, k) => Math.round(v + (to[k] - v) * t));
 
 /** One hue below zero, another above, the page at zero. */
-export function shadeOf(value, limit) {
+function shadeOf(value, limit) {
   const t = Math.max(-1, Math.min(1, value / limit));
   const rgb = mix(channels(hex('page')), channels(hex(t < 0 ? 'series-0' : 'bad')), Math.abs(t));
   return `rgb(${rgb.join(',')})`;

@@ -44,7 +44,7 @@ function prepare(view, config, size) {
   const period = config.period > 0 ? config.period : spectrum.peak;
   const phase = folded(values, period);
   const sx = linear(0, 1, box.left, box.right);
-  const axis = { steps: null, bins: kPhases, index: binIndex(phase, 0, 1, kPhases), centres: Array.from({ length: kPhases }, (_, k) => (k + 0.5) / kPhases), title: `phase of ${significant(period, 4)} ${unitText(variable.unit)} in ${variable.label}` };
+  const axis = { steps: null, bins: kPhases, index: binIndex(phase, 0, 1, kPhases), centres: Array.from({ length: kPhases }, (_, k) => (k + 0.5) / kPhases), title: `phase within ${significant(period, 4)} ${unitText(variable.unit)} of ${variable.label}` };
   const reach = 1.15 * magnitudeQuantile(valuesOf(view, config, view.now).dots, 0.995, view.shown);
   const sy = linear(-reach, reach, second.bottom, second.top);
   const where = (residual) => places(phase, valuesOf(view, config, residual).dots, second, sx, sy, view.shown);
@@ -59,12 +59,12 @@ function drawPower(ctx, { box, power, spectrum, period, variable }) {
     line(ctx, Math.round(x) + 0.5, box.top, Math.round(x) + 0.5, box.bottom, 'grid');
     text(ctx, String(value), x, box.bottom + 14, { align: 'center' });
   }
-  text(ctx, `period [${unitText(variable.unit)}]`, (box.left + box.right) / 2, box.bottom + 28, { align: 'center' });
+  text(ctx, `period${variable.unit ? ` [${unitText(variable.unit)}]` : ''}`, (box.left + box.right) / 2, box.bottom + 28, { align: 'center' });
   curve(ctx, power.logs.map(power.sx), spectrum.power.map(power.sy), kNow, { width: 1.2 });
   if (Number.isFinite(spectrum.level)) {
     const y = power.sy(spectrum.level);
     curve(ctx, [box.left, box.right], [y, y], 'bad', { width: 1, dash: [4, 3] });
-    text(ctx, 'chance alone stays below', box.right - 4, y - 4, { align: 'right', name: 'bad' });
+    text(ctx, 'chance alone stays below', box.right - 4, y < box.top + 16 ? y + 13 : y - 4, { align: 'right', name: 'bad' });
   }
   const x = power.sx(Math.log10(period));
   curve(ctx, [x, x], [box.top, box.bottom], kMarked, { width: 1.4 });
@@ -116,7 +116,11 @@ function readout({ power, spectrum, box, strip, view, config, empty, sx, variabl
   return `phase ${fixed((k + 0.5) / kPhases, 2)}: mean ${fixed(strip.now.mean[k], 2)} ± ${significant(2 * strip.now.u[k], 2)} ${unitOf(view, config)}`;
 }
 
+const isPosition = ({ kind, name }) => kind === 'position' || kind === 'point' || ['x', 'y', 'z'].includes(name);
+
 export const periodogram = {
+  /** Periods along a position alone: others repeat nothing. */
+  adjust: (config, variables) => (variables.some((variable) => variable.name === config.x && isPosition(variable)) ? config : { ...config, x: variables.find(isPosition)?.name ?? config.x }),
   kind: 'periodogram', title: 'periods in', controls: ['x', 'period', 'of'], positionsOnly: true, asks: 'periodogram',
   needs: (config) => [config.x, ...namesOf(config)], prepare, drawBase, drawOverlay, brush, click, readout, brushBox: (scene) => scene.box && ({ ...scene.box, top: scene.second.top, bottom: scene.strip.box.bottom }),
 };

@@ -6,7 +6,7 @@ import { selection } from '../app/store.js';
 import { emptySelection, mark } from '../data/selection.js';
 import { alpha, hex, kMarked } from '../draw/palette.js';
 import { forget, nextFrame, whenDrawn } from '../draw/schedule.js';
-import { begin, painted } from '../draw/timing.js';
+import { abandon, begin, painted } from '../draw/timing.js';
 import { lenses } from './registry.js';
 
 const kClick = 4; // pixels: a shorter way of the pointer is a click
@@ -75,7 +75,9 @@ export class Picture {
     this.drawPlot();
     if (!this.scene || !this.changed) return;
     this.changed = false;
-    whenDrawn(() => painted('variable'));
+    const [mine, other] = this.config.kind === 'heat' ? ['map', 'variable'] : ['variable', 'map'];
+    abandon(other);
+    whenDrawn(() => painted(mine));
   }
 
   /** The part that the plot library draws. */

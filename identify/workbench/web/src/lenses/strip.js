@@ -8,13 +8,13 @@ import { valuesOf } from './values.js';
 
 const kSigmas = 2;
 
-export function meansOf(view, config, residual, axis, mask = view.shown) {
+function meansOf(view, config, residual, axis, mask = view.shown) {
   const { values, weight } = valuesOf(view, config, residual);
   return meansInBins(axis.index, axis.bins, values, view.lines, { mask, weight });
 }
 
 /** Range that holds zero, all means and, as far as they are of a size with these or `whole`, their bars. */
-export function meanRange(lists, whole) {
+function meanRange(lists, whole) {
   let [low, high] = [0, 0];
   for (const means of lists.filter(Boolean)) {
     for (let k = 0; k < means.mean.length; k += 1) {

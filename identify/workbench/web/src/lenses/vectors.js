@@ -18,11 +18,23 @@ function projection({ turn = -0.6, tilt = 0.45 }, low, high, box) {
   const scale = (0.92 * Math.min(box.right - box.left, 1.2 * (box.bottom - box.top))) / extent;
   const [cx, cy] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
   const [ct, st, cp, sp] = [Math.cos(turn), Math.sin(turn), Math.cos(tilt), Math.sin(tilt)];
-  return (p) => {
+  const project = (p) => {
     const [x, y, z] = p.map((v, k) => v - centre[k]);
     const [u, v] = [ct * x - st * y, st * x + ct * y];
     return [cx + scale * u, cy - scale * (cp * z + sp * v)];
   };
+  /** Places of all readings in the picture. */
+  const projectAll = ([px, py, pz]) => {
+    const [left, top] = [new Float32Array(px.length), new Float32Array(px.length)];
+    for (let i = 0; i < px.length; i += 1) {
+      const x = px[i] - centre[0];
+      const y = py[i] - centre[1];
+      left[i] = cx + scale * (ct * x - st * y);
+      top[i] = cy - scale * (cp * (pz[i] - centre[2]) + sp * (st * x + ct * y));
+    }
+    return { left, top };
+  };
+  return { project, projectAll };
 }
 
 function splits(view, config) {
@@ -48,7 +60,13 @@ function prepare(view, config, size) {
   const sizes = parts.flatMap(({ now, before }) => [now, before]).filter(Boolean).flatMap((cells) => cells.map(({ vector }) => Math.hypot(...vector))).sort((a, b) => a - b);
   const largest = sizes[Math.floor(0.98 * (sizes.length - 1))] || 1e-9;
   const extent = Math.max(...low.map((v, k) => high[k] - v), 1);
-  return { view, config, box, grid, of, parts, low, high, points, magnification: (kReach * extent) / largest, project: projection(config, low, high, box) };
+  return { view, config, box, grid, of, parts, low, high, points, magnification: (kReach * extent) / largest, ...projection(config, low, high, box) };
+}
+
+/** Where the readings lie in the picture, computed when it is first asked for. */
+function placesOf(scene) {
+  scene.places ??= scene.projectAll(scene.points);
+  return scene.places;
 }
 
 function drawVolume(ctx, { project, low, high, view }) {
@@ -97,22 +115,18 @@ function drawOverlay(ctx, scene, { selection, preview }) {
   if (!selection.mask) return;
   ctx.fillStyle = hex(kMarked);
   const step = Math.max(1, Math.floor(selection.count / 4000));
+  const { left, top } = placesOf(scene);
   let seen = 0;
   for (let i = 0; i < selection.mask.length; i += 1) {
     if (!selection.mask[i] || (seen += 1) % step !== 0) continue;
-    const [x, y] = scene.project(scene.points.map((values) => values[i]));
-    ctx.fillRect(x - 1.2, y - 1.2, 2.4, 2.4);
+    ctx.fillRect(left[i] - 1.2, top[i] - 1.2, 2.4, 2.4);
   }
 }
 
-function brush({ project, points, empty }, { x0, x1, y0, y1 }) {
-  if (empty) return null;
-  const point = [0, 0, 0];
-  return (i) => {
-    for (let k = 0; k < 3; k += 1) point[k] = points[k][i];
-    const [x, y] = project(point);
-    return x >= x0 && x <= x1 && y >= y0 && y <= y1;
-  };
+function brush(scene, { x0, x1, y0, y1 }) {
+  if (scene.empty) return null;
+  const { left, top } = placesOf(scene);
+  return (i) => left[i] >= x0 && left[i] <= x1 && top[i] >= y0 && top[i] <= y1;
 }
 
 function readout(scene, x, y) {

@@ -69,8 +69,8 @@ function Result({ answer, onAdd }) {
   return (
     <div class="result">
       <div class="is-preview-block">
-        {effect.amplitudes.map((each) => <p key={each.label}>Amplitude <b>~{amplitudeText(each)}</b> <AmplitudeBar amplitude={each} preview /></p>)}
-        <p>Gain in log-likelihood <b>~{significant(effect.gain, 3)}</b>; p <b>{chance(effect.log10_p)}</b>, counted over {tried} tried by hand: <b>{chance(counted)}</b>.</p>
+        {effect.amplitudes.map((each) => <p key={each.label}>Amplitude <b>~&#8201;{amplitudeText(each)}</b> <AmplitudeBar amplitude={each} preview /></p>)}
+        <p>Gain in log-likelihood <b>~&#8201;{significant(effect.gain, 3)}</b>; p <b>{chance(effect.log10_p)}</b>, counted over {tried} tried by hand: <b>{chance(counted)}</b>.</p>
         {effect.fall && Number.isFinite(effect.fall.to_um) && <p>RMS of held-out lines {significant(effect.fall.from_um, 3)} → <b>~{significant(effect.fall.to_um, 3)} µm</b>.</p>}
         {rivals.length > 0 && <p class="cosines">Alike (cosine of the angle between what both explain): {rivals.slice(0, 5).map(({ name, label, cosine }, k) => <span key={name ?? label} class={Math.abs(cosine) > 0.9 ? 'rivals' : ''}>{k > 0 ? ', ' : ''}{label} {significant(cosine, 2)}</span>)}.</p>}
         <button type="button" class="primary" disabled={!mayAct.value} onClick={onAdd}>Add this formula</button>

@@ -10,7 +10,7 @@ import { emptySelection, meanOf, sharedValue, standOut } from '../data/selection
 import { directionsOf, directionWords } from '../data/variables.js';
 
 /** "214 readings, mean +0.61 ± 0.05 µm, all with Y coming towards −". */
-export function markedSentence(now, chosen) {
+function markedSentence(now, chosen) {
   const { mean, u } = meanOf(now.now, chosen.mask, now.lines);
   const digits = decimalsFor(2 * u);
   const value = `${mean > 0 ? '+' : ''}${fixed(mean, digits)} ± ${significant(2 * u, 2)} ${now.unit}`;

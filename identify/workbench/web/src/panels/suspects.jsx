@@ -2,9 +2,10 @@
 import { useState } from 'preact/hooks';
 import { significant } from '../../../../report/web/src/dom.js';
 import { act, add, look, lookAway } from '../app/actions.js';
-import { lookAlong, variablesIn } from '../app/pictures.js';
+import { lookAlong, shiftOf, variablesIn } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
-import { busy, currentModel, mayAct, modelName, modelOf, preview, ranking, rankingBusy, state } from '../app/store.js';
+import { busy, currentModel, mayAct, modelName, modelOf, preview, ranking, rankingBusy, state, unknowns } from '../app/store.js';
+import { sketchOf } from '../data/sketch.js';
 import { unitText } from '../data/variables.js';
 import { AmplitudeBar, amplitudeText, partOf, Sketch, timesDetectable, words } from './parts.jsx';
 import { Drawn, Unknowns } from './unknowns.jsx';
@@ -31,9 +32,14 @@ function Fall({ fall }) {
   return <span class="fall">Held-out RMS {significant(fall.from_um, 3)} → <b>~{significant(fall.to_um, 3)} µm</b></span>;
 }
 
+const kNamed = 3;
+
+/** The first names, and how many more there are. */
+const listed = (names) => (names.length > kNamed + 1 ? `${names.slice(0, kNamed).join(', ')} and ${names.length - kNamed} more` : names.join(', '));
+
 function Suspect({ effect }) {
   const hovered = preview.value?.name === effect.name;
-  const usable = effect.can_be_added !== false && effect.visible !== 0;
+  const usable = effect.can_be_added !== false;
   const may = mayAct.value && usable;
   const along = effect.driver ? variablesIn(effect.driver) : variablesIn(effect.name);
   const look_ = () => look(effect.name, effect.label);
@@ -41,19 +47,22 @@ function Suspect({ effect }) {
   return (
     <li class={`suspect ${hovered ? 'looked-at' : ''} ${usable ? '' : 'unseen'}`}>
       <div class="row" onMouseEnter={look_} onMouseLeave={away} onClick={() => may && add(effect.name)}>
-        <Sketch points={effect.sketch} label={effect.label} />
+        <Sketch points={effect.sketch ?? sketchOf(effect)} label={effect.label} />
         <span class="body" id={`about-${effect.name}`}>
           <span class="title"><b>{effect.label}</b>{effect.shape ? <span class="muted">, {words(effect.shape)}</span> : ''}<span class="p muted" title="Probability of so much by chance">p {chance(effect.log10_p)}</span></span>
-          <span class="plain">{words(effect.words)}{effect.causes ? <span class="muted"> Usual causes: {words(effect.causes)}.</span> : ''}</span>
+          <span class="plain">{words(effect.words)}</span>
           <Amplitudes effect={effect} sign="~" />
           <Fall fall={effect.fall} />
-          {effect.rivals?.length > 0 && <span class="rivals">These readings hardly tell it from {effect.rivals.map((rival) => rival.label ?? rival).join(', ')}.</span>}
+          {effect.rivals?.length > 0 && <span class="rivals">These readings hardly tell it from {listed(effect.rivals.map((rival) => rival.label ?? rival))}.</span>}
           {effect.can_be_added === false && <span class="remedy">The error function needs more knots: give it more in the model file.</span>}
           {!usable && effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}
         </span>
         <button type="button" class="add" aria-label={`add ${effect.label}`} aria-describedby={`about-${effect.name}`} aria-disabled={!may} onFocus={look_} onBlur={away} onClick={(event) => { event.stopPropagation(); if (may) add(effect.name); }}>add</button>
       </div>
-      {along.length > 0 && <button type="button" class="along" onClick={() => lookAlong(along)}>Look along {along.join(', ')}</button>}
+      <div class="under">
+        {along.length > 0 && <button type="button" class="along" onClick={() => lookAlong(along, shiftOf(effect))}>Look along {along.join(', ')}</button>}
+        {effect.causes && <details><summary>usual causes</summary><p>{words(effect.causes)}.</p></details>}
+      </div>
     </li>
   );
 }
@@ -68,7 +77,7 @@ function InModel() {
       <h3 id="in-model-title">In this model</h3>
       <ul>{effects.map((effect) => (
         <li key={effect.name} class={`is-${model.standing}`}>
-          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.visible === 0 && <span class="remedy">These readings do not determine it. {words(effect.remedy)}</span>}</span>
+          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}</span>
           <button type="button" disabled={!mayAct.value} aria-label={`take out: ${effect.label}`} onClick={() => act('remove', { effect: effect.name })}>take out</button>
         </li>
       ))}</ul>
@@ -99,15 +108,18 @@ function Rank({ answer }) {
   const [all, setAll] = useState(false);
   const exceeding = answer.effects.filter((effect) => effect.log10_p + countedOver(answer) < kRisk);
   const below = answer.effects.slice(exceeding.length);
-  const unknown = <Unknowns list={answer.unknown ?? []} />;
+  const found = unknowns.value?.model === state.value.current ? unknowns.value : null;
+  const list = found?.unknown ?? [];
+  const unknown = <Unknowns list={list} />;
   return (
     <>
       <Drawn />
-      {answer.unknown_leads !== false && unknown}
-      {exceeding.length === 0 && (answer.unknown ?? []).length === 0 && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
+      {found?.unknown_leads && unknown}
+      {exceeding.length === 0 && list.length === 0 && found?.ready && <p class="nothing">No test of the catalogue exceeds what chance gives. What is smaller than the smallest detectable amplitude may still be there.</p>}
       <ol class="rows">{(all ? exceeding : exceeding.slice(0, kFirst)).map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>
       {exceeding.length > kFirst && <button type="button" onClick={() => setAll(!all)}>{all ? 'The first alone' : `All ${exceeding.length}`}</button>}
-      {answer.unknown_leads === false && unknown}
+      {!found?.unknown_leads && unknown}
+      {!found?.ready && <p class="muted">What has no name is being looked for.</p>}
       <Below effects={below} />
       <NotVisible effects={answer.not_visible} />
     </>

@@ -2,8 +2,8 @@
 import { useEffect, useState } from 'preact/hooks';
 import { significant } from '../../../../report/web/src/dom.js';
 import { surfaceFigures } from '../../../../report/web/src/lenses/surface.js';
-import { act, add, addFormula } from '../app/actions.js';
-import { lookAlong } from '../app/pictures.js';
+import { add, addFormula, draw } from '../app/actions.js';
+import { lookAlong, shiftOf } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
 import { busy, currentModel, mayAct, state, surfaces, variables } from '../app/store.js';
 import { surfaceData } from '../data/surface.js';
@@ -28,7 +28,7 @@ function Formula({ formula }) {
   );
 }
 
-export function Surface({ surface }) {
+function Surface({ surface }) {
   const [figures, setFigures] = useState([]);
   useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
   return (
@@ -49,8 +49,8 @@ function Unknown({ unknown }) {
       <p class="title"><b>{words(unknown.label)}</b> <span class="p muted">p {chance(unknown.log10_p ?? Math.log10(Number(unknown.p)))}</span></p>
       <p>No name of the catalogue explains it. It makes {significant(unknown.rms_um, 2)} µm of the residuals{unknown.period_mm ? `, with a period of ${significant(unknown.period_mm, 4)} mm` : ''}.</p>
       <p class="buttons">
-        <button type="button" class="primary" disabled={!mayAct.value} onClick={() => act('draw', { unknown: unknown.number })}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
-        <button type="button" onClick={() => lookAlong(unknown.variables)}>Look along {unknown.variables.join(', ')}</button>
+        <button type="button" class="primary" disabled={!mayAct.value} onClick={() => draw(unknown.number)}>{drawing ? 'Being drawn' : `Draw the ${thing}`}</button>
+        <button type="button" onClick={() => lookAlong(unknown.variables, shiftOf(unknown))}>Look along {unknown.variables.join(', ')}</button>
       </p>
     </li>
   );

@@ -36,7 +36,7 @@ export function Header() {
   return (
     <header class="head">
       <h1><strong>volcal</strong> workbench <span class="of">{campaign?.machine ?? campaign?.file ?? ''}</span></h1>
-      {campaign && <p class="muted">{[campaign.file, campaign.structure, `${count(campaign.observations)} readings in ${campaign.setups.length} set-ups`].filter(Boolean).join(', ')}</p>}
+      {campaign && <p class="muted" title={campaign.file}>{[String(campaign.file).split('/').slice(-2).join('/'), campaign.structure, `${count(campaign.observations)} readings in ${campaign.setups.length} set-ups`].filter(Boolean).join(', ')}</p>}
       <Notes />
       {now.phase === 'ready' && (
         <div class="buttons">

@@ -37,7 +37,7 @@ function Running({ value, show }) {
 }
 
 /** In which state the numbers of a model are. */
-export function standingOf(model) {
+function standingOf(model) {
   if (busy.value?.what === 'confirm' && (busy.value.model ?? state.value.current) === model.number && model.standing === 'preview') return 'confirming';
   if (line.value !== 'open') return 'stale';
   return model.standing;

@@ -65,7 +65,7 @@ export function Meaning() {
         <div class={`three ${stale ? 'is-stale' : ''}`}>
           <Volume got={got} />
           <Detectable effects={got.detectable ?? []} />
-          <div><h3>What to measure next</h3><ul class="plain-list">{(got.next ?? []).map((sentence) => <li key={sentence}>{words(sentence)}</li>)}</ul>{(got.next ?? []).length === 0 && <p class="muted">No further measurement is called for.</p>}</div>
+          {got.next && <div><h3>What to measure next</h3><ul class="plain-list">{got.next.map((sentence) => <li key={sentence}>{words(sentence)}</li>)}</ul>{got.next.length === 0 && <p class="muted">No further measurement is called for.</p>}</div>}
         </div>
       )}
     </section>

@@ -5,7 +5,7 @@ import { seconds } from '../app/sentences.js';
 import { busy, isWriter, line, state, trouble } from '../app/store.js';
 import { words } from '../panels/parts.jsx';
 
-const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
+const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', scan: 'Looking for what has no name', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
 
 export function Progress() {
   const now = busy.value;
@@ -13,7 +13,7 @@ export function Progress() {
   const share = Number.isFinite(now.share) ? Math.max(0, Math.min(1, now.share)) : null;
   const title = kDoing[now.what] ?? now.what;
   return (
-    <div class="progress" role="status">
+    <div class="progress" role="status" data-behind={now.behind ? "" : undefined}>
       <span><strong>{title}</strong>{now.stage ? `: ${now.stage}` : ''}</span>
       <progress aria-label={title} max="1" value={share ?? undefined} />
       <span class="muted">{share !== null ? `${Math.round(100 * share)} %` : ''}{now.left_s !== null && now.left_s !== undefined ? `, ${seconds(now.left_s)}` : ''}</span>

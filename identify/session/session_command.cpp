@@ -51,6 +51,12 @@ std::size_t whole_number(const std::string& text, const std::string& what) {
   return value;
 }
 
+std::size_t place_from_one(const std::string& text) {
+  const std::size_t number = whole_number(text, "finding");
+  if (number == 0) refuse_command("findings are counted from 1", "draw 1");
+  return number - 1;
+}
+
 /// "12-15,40"
 std::vector<std::size_t> observations_from(const std::string& text) {
   constexpr std::size_t kMost = 100'000'000;
@@ -123,7 +129,7 @@ void set_rest(const std::string& rest, SessionCommand& command) {
       if (!rest.empty()) command.number = whole_number(rest, "model");
       return;
     case Verb::Draw:
-      command.number = rest.empty() ? 0 : whole_number(rest, "finding") - 1;
+      command.number = rest.empty() ? 0 : place_from_one(rest);
       return;
     case Verb::Climb:
     case Verb::Undo:

@@ -18,6 +18,7 @@ constexpr std::size_t kLargestBody = 1 << 20;
 constexpr std::size_t kThreads = 24;  // every page that is open holds one for its events
 constexpr std::chrono::seconds kLonely{10};
 constexpr std::chrono::milliseconds kLookAround{100};
+constexpr std::chrono::milliseconds kStart{1};
 
 RequestHead head_of(const httplib::Request& request) {
   RequestHead head;
@@ -26,6 +27,12 @@ RequestHead head_of(const httplib::Request& request) {
   if (request.has_header("Origin")) head.origin = request.get_header_value("Origin");
   head.token = request.get_header_value("X-Volcal-Token");
   return head;
+}
+
+/// cpp-httplib would let another program listen on the same port.
+void take_the_port_alone(socket_t socket) {
+  const int yes = 1;
+  ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
 }
 
 void refuse(httplib::Response& response, int status, const std::string& reason) {
@@ -65,6 +72,7 @@ Server::Server(Workbench& workbench, ServerOptions options)
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http.set_payload_max_length(kLargestBody);
   http.set_tcp_nodelay(true);
+  http.set_socket_options(&take_the_port_alone);
   http.set_default_headers({{"Cache-Control", "no-store"},
                             {"X-Content-Type-Options", "nosniff"},
                             {"X-Frame-Options", "DENY"},
@@ -104,6 +112,7 @@ Server::~Server() {
 
 void Server::serve(const std::function<bool()>& ends) {
   network_->thread = std::thread([this] { network_->http.listen_after_bind(); });
+  while (!network_->http.is_running()) std::this_thread::sleep_for(kStart);
   const auto is_lonely = [this] {
     const auto lonely = workbench_.events().lonely_for();
     return !options_.keep && lonely && *lonely > kLonely;

@@ -247,6 +247,7 @@ std::optional<std::string> Workbench::look_framed(const std::string& request, co
 Json Workbench::act(const std::string& request, const Json& body, const std::string& tab) {
   if (request == "cancel") {
     cancelled_ = busy_.has_value();
+    waiting_.reset();
     return state(tab);
   }
   if (request == "take") {
@@ -261,8 +262,8 @@ Json Workbench::act(const std::string& request, const Json& body, const std::str
     ends_ = true;
     return Json::object();
   }
-  if (busy_ && !busy_->behind)
-    throw Refusal(409, "the program is at work: " + busy_->what, "wait for it, or cancel it");
+  if (const auto what = work_of_the_user())
+    throw Refusal(409, "the program is at work: " + *what, "wait for it, or cancel it");
   if (request == "export") {
     export_now(text_of(body, "what"));
   } else {
@@ -270,6 +271,13 @@ Json Workbench::act(const std::string& request, const Json& body, const std::str
   }
   publish_state();
   return state(tab);
+}
+
+/// What is under way and may not be stopped by the way.
+std::optional<std::string> Workbench::work_of_the_user() const {
+  if (waiting_ && !waiting_->behind) return waiting_->what;
+  if (busy_ && !busy_->behind) return busy_->what;
+  return std::nullopt;
 }
 
 /// At once, or started.
@@ -334,7 +342,9 @@ void Workbench::export_now(const std::string& what) {
 
 Json Workbench::state(const std::string& tab) const {
   Json busy = nullptr;
-  if (busy_) {
+  if (waiting_ && !waiting_->behind) {
+    busy = {{"what", waiting_->what}, {"behind", false}, {"stage", ""}, {"share", 0.0}, {"left_s", nullptr}};
+  } else if (busy_) {
     const double seconds = std::chrono::duration<double>(EventHub::Clock::now() - busy_->begun).count();
     constexpr double kToBeJudged = 0.03;
     busy = {{"what", busy_->what},

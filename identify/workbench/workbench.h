@@ -68,6 +68,7 @@ class Workbench {
   Json look(const std::string& request, const Json& body);
   std::optional<std::string> look_framed(const std::string& request, const Json& body);
   Json act(const std::string& request, const Json& body, const std::string& tab);
+  std::optional<std::string> work_of_the_user() const;
   void do_command(const SessionCommand& command);
   void export_now(const std::string& what);
   Json state(const std::string& tab) const;

@@ -49,6 +49,8 @@ TEST(ClosedLoopStudy, IntervalsHoldWithSharedSources) {
 }
 
 TEST(ClosedLoopStudy, DoesNotDependOnTheNumberOfThreads) {
+  VOLCAL_FOR_THE_NIGHT(
+      "CompensationStudy.DoesNotDependOnTheNumberOfThreads, by the same loop over campaigns");
   const auto one = run_program("study closed-loop -n 2 --small --json --threads 1");
   const auto two = run_program("study closed-loop -n 2 --small --json --threads 2");
   ASSERT_EQ(one.exit_code, 0) << one.errors;

@@ -68,6 +68,7 @@ TEST(CriticismStudy, NamesWhatIsTwentyTimesTheNoise) {
 /// A servo mismatch twenty times the noise, of which correlated drift of some seconds on the ball-bar leaves
 /// so little that it is above the noise by chi-squared and not by F.
 TEST(CriticismStudy, NamesWhatAShortDriftHasTakenUp) {
+  VOLCAL_FOR_THE_NIGHT("Search.FindsWhatTheNoiseHasTakenUp, the same on a smaller campaign");
   const testing::ScratchFolder folder;
   const std::string output = (folder.path() / "kept").string();
   const auto kept = run_program("study criticism --one listed:97 --seed 1947 -o " + output);

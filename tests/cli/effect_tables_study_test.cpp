@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 
 namespace volcal {
@@ -49,6 +50,8 @@ TEST(EffectTablesStudy, PrintsARowForEveryFormat) {
 }
 
 TEST(EffectTablesStudy, DoesNotDependOnTheNumberOfThreads) {
+  VOLCAL_FOR_THE_NIGHT(
+      "CompensationStudy.DoesNotDependOnTheNumberOfThreads, by the same loop over campaigns");
   const std::string study = "study effect-tables -n 2 --case coupled --format linuxcnc --json --threads ";
   const auto one = run_program(study + "1");
   ASSERT_EQ(one.exit_code, 0) << one.errors;

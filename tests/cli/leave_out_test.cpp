@@ -40,7 +40,7 @@ class LeaveOutProgram : public ::testing::Test {
   void SetUp() override {
     simulated_.simulate(11,
                         "[[measurements]]\nkind = \"laser-tracer\"\ngrid = [4, 4, 4]\n"
-                        "[validation]\npoints = 5\n",
+                        "[truth]\nkind = \"perfect\"\n[validation]\npoints = 5\n",
                         2, 1);
     name_ = first_setup();
   }

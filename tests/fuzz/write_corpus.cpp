@@ -78,6 +78,13 @@ int main(int count, char** arguments) {
   write(folder, "study", "sample", sample_study());
   write(folder, "diagnosis", "sample", volcal::diagnosis_json(hand_made_diagnosis()));
   write(folder, "points", "sample", sample_points());
+  write(folder, "workbench", "add", "add\n{\"effect\": \"reversal:EXX:dir_x:step\"}");
+  write(folder, "workbench", "leave-out",
+        "leave-out\n{\"observations\": [1, 2], \"reason\": \"cable moved\"}");
+  write(folder, "workbench", "formula", "formula\n{\"text\": \"EXX += x\", \"parameters\": [\"p=1\"]}");
+  write(folder, "workbench", "columns", "columns\n{\"names\": [\"x\", \"residual@0\"]}");
+  write(folder, "workbench", "line", "leave-out 3,7-9 cable moved");
+  write(folder, "workbench", "line-formula", "formula EXX += sin(x / p) with p=10+-1");
   const std::string state = sample_state();
   write(folder, "checkpoint", "state", state);
   write(folder, "checkpoint", "file", volcal::checkpoint_bytes(7, state));

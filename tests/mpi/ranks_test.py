@@ -43,14 +43,17 @@ def kill_last_rank(pid):
 
 
 class Ranks(unittest.TestCase):
-    def setUp(self):
-        self.scratch = tempfile.TemporaryDirectory()
-        self.alone = self.path("alone")
-        done = run(1, self.alone)
-        self.assertEqual(done.returncode, 0, done.stderr)
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.alone = cls.path("alone")
+        done = run(1, cls.alone)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
 
-    def tearDown(self):
-        self.scratch.cleanup()
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
 
     def assert_same_files(self, one, other):
         """By name: unittest would compare two reports letter by letter, for minutes."""
@@ -58,8 +61,9 @@ class Ranks(unittest.TestCase):
         self.assertEqual(sorted(one), sorted(other))
         self.assertEqual([name for name in one if one[name] != other[name]], [])
 
-    def path(self, name):
-        return str(pathlib.Path(self.scratch.name) / name)
+    @classmethod
+    def path(cls, name):
+        return str(pathlib.Path(cls.scratch.name) / name)
 
     def test_two_ranks_give_the_files_of_one_and_report_once(self):
         done = run(2, self.path("two"))

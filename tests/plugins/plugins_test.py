@@ -113,7 +113,8 @@ class Plugins(unittest.TestCase):
             register(cls.tree, plugin)
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             jobs = [(source, wrong) for file, registry, _, _ in PLUGINS.values()
-                    for source, wrong in ((file, False), (file, True), (registry, False))]
+                    for source, wrong in ((file, False), (file, True), (registry, False))
+                    if not (wrong and source == PLUGINS["command"][0])]
             list(pool.map(lambda job: cls.compile(*job), jobs))
 
     @classmethod

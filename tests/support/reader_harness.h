@@ -23,6 +23,7 @@
 #include "volcal/identify/montecarlo/draw_sums.h"
 #include "volcal/identify/montecarlo/state_bytes.h"
 #include "volcal/identify/text/csv_table.h"
+#include "volcal/identify/workbench/workbench.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/files/control_tables.h"
 #include "volcal/studies/files/run_points.h"
@@ -126,6 +127,27 @@ inline bool accepts_points(const std::string& text) {
       }
     }
   });
+}
+
+/// A line of a session reads back as it was written; a request, its first line the name, is answered or
+/// refused.
+inline bool accepts_workbench_request(const std::string& text) {
+  static workbench::Workbench bench([] {
+    workbench::WorkbenchOptions options;
+    options.campaign = "/nowhere/campaign.toml";
+    return options;
+  }());
+  accepts([&] {
+    const std::string line = to_string(session_command_from(text));
+    if (to_string(session_command_from(line)) != line)
+      throw std::logic_error("another command was read back");
+  });
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  const std::string name = text.substr(0, end);
+  if (name == "quit") return true;
+  const workbench::Answer answer = bench.answer(name, text.substr(std::min(end + 1, text.size())), "one");
+  if (answer.status >= 500) throw std::logic_error("the workbench failed: " + answer.body);
+  return answer.status == 200;
 }
 
 /// What an intact checkpoint holds, of a study of two quantities.

@@ -1,0 +1,275 @@
+// The workbench as its page speaks with it, against a session that does the same.
+
+#include "volcal/identify/workbench/workbench.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+#include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/workbench/session_json.h"
+
+namespace volcal::workbench {
+namespace {
+
+using testing::ScratchFolder;
+namespace fs = std::filesystem;
+
+constexpr const char* kReversal = "reversal:EXX:dir_x:step";
+
+/// JSON and columns of an answer.
+struct Framed {
+  Json json;
+  std::vector<std::vector<float>> columns;
+
+  explicit Framed(const std::string& body) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, body.data(), sizeof length);
+    EXPECT_EQ(length % 4, 0U);
+    json = Json::parse(body.substr(4, length));
+    const std::size_t count = json["columns"].size(), bytes = body.size() - 4 - length;
+    EXPECT_EQ(bytes % (4 * count), 0U);
+    for (std::size_t k = 0; k < count; ++k) {
+      columns.emplace_back(bytes / 4 / count);
+      std::memcpy(columns.back().data(), body.data() + 4 + length + k * (bytes / count), bytes / count);
+    }
+  }
+};
+
+/// A workbench on a copy of a campaign, and a page of it.
+struct Page {
+  ScratchFolder folder;
+  std::string campaign;
+  std::unique_ptr<Workbench> bench;
+
+  explicit Page(bool confirm = true, bool read_only = false) {
+    fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21", folder.path() / "campaign");
+    campaign = (folder.path() / "campaign/campaign.toml").string();
+    WorkbenchOptions options;
+    options.campaign = campaign;
+    options.output = (folder.path() / "out").string();
+    options.threads = 1;
+    options.confirm_behind = confirm;
+    options.read_only = read_only;
+    bench = std::make_unique<Workbench>(options);
+    bench->wait_until_idle();
+  }
+  Answer ask(const std::string& request, const Json& body = Json::object(), const std::string& tab = "one") {
+    return bench->answer(request, body.dump(), tab);
+  }
+  Json told(const std::string& request, const Json& body = Json::object()) {
+    const Answer answer = ask(request, body);
+    EXPECT_EQ(answer.status, 200) << request << ": " << answer.body;
+    return Json::parse(answer.body);
+  }
+  Json state() { return told("state"); }
+};
+
+/// Opened once; tests leave it at its first model.
+class WorkbenchOnACampaign : public ::testing::Test {
+ protected:
+  static Page& page() {
+    static Page opened(false);
+    return opened;
+  }
+  void TearDown() override { page().told("go", {{"model", 0}}); }
+};
+
+TEST_F(WorkbenchOnACampaign, TellsWhatItHolds) {
+  const Json state = page().state();
+  EXPECT_EQ(state["phase"], "ready");
+  EXPECT_EQ(state["campaign"]["observations"], 1536);
+  EXPECT_EQ(state["models"].size(), 1U);
+  EXPECT_EQ(state["models"][0]["standing"], "fitted");
+  EXPECT_GT(state["models"][0]["figures"]["rms_heldout_um"], 0.5);
+  EXPECT_TRUE(state["busy"].is_null());
+  EXPECT_FALSE(state["can_undo"]);
+}
+
+TEST_F(WorkbenchOnACampaign, SendsColumns) {
+  const Framed framed(
+      page().ask("columns", {{"names", {"x", "residual@0", "sigma@0", "heldout", "dir_x"}}}).body);
+  ASSERT_EQ(framed.columns.size(), 5U);
+  ASSERT_EQ(framed.columns[0].size(), 1536U);
+  double squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < 1536; ++i) {
+    EXPECT_EQ(std::abs(framed.columns[4][i]), 1.0F);
+    if (framed.columns[3][i] != 1.0F) continue;
+    squares += framed.columns[1][i] * framed.columns[1][i];
+    count += 1.0;
+  }
+  EXPECT_NEAR(count, 153.6, 20.0) << "a tenth is held out";
+  EXPECT_NEAR(std::sqrt(squares / count),
+              page().state()["models"][0]["figures"]["rms_heldout_um"].get<double>(), 1e-4);
+  EXPECT_EQ(page().ask("columns", {{"names", {"residual@7"}}}).status, 422);
+  EXPECT_EQ(page().ask("columns", {{"names", {"nothing"}}}).status, 422);
+  EXPECT_EQ(page().ask("columns", {{"names", 3}}).status, 400);
+}
+
+TEST_F(WorkbenchOnACampaign, RanksSuspectsInPlainWords) {
+  const Json ranking = page().told("rank");
+  const Json& first = ranking["effects"][0];
+  EXPECT_EQ(first["name"], kReversal);
+  EXPECT_THAT(first["words"].get<std::string>(), ::testing::HasSubstr("stops at two different places"));
+  EXPECT_FALSE(first["causes"].get<std::string>().empty());
+  EXPECT_GT(first["amplitudes"][0]["value"], 3.0 * first["amplitudes"][0]["u95"].get<double>());
+  EXPECT_LT(first["fall"]["to_um"], first["fall"]["from_um"]);
+  EXPECT_THAT(first["rivals"].dump(), ::testing::HasSubstr("pre-travel EXX"));
+  EXPECT_GT(ranking["tests"], 100);
+}
+
+TEST_F(WorkbenchOnACampaign, APreviewIsWhatAddingGives) {
+  const Framed preview(page().ask("preview", {{"effect", kReversal}}).body);
+  page().told("add", {{"effect", kReversal}});
+  const Json state = page().state();
+  const std::string model = std::to_string(state["current"].get<int>());
+  EXPECT_EQ(state["models"].back()["standing"], "preview");
+  EXPECT_TRUE(state["can_undo"]);
+  const Framed added(page().ask("columns", {{"names", {"residual@" + model}}}).body);
+  for (std::size_t i = 0; i < 1536; ++i) EXPECT_NEAR(added.columns[0][i], preview.columns[0][i], 1e-3);
+  EXPECT_EQ(page().ask("add", {{"effect", kReversal}}).status, 422) << "it is in the model";
+}
+
+TEST_F(WorkbenchOnACampaign, DrawsMapsWavesAndMeaning) {
+  const Framed map(page().ask("map", {{"x", "x"}, {"y", "z"}, {"bins", 10}}).body);
+  ASSERT_EQ(map.columns.size(), 3U);
+  ASSERT_EQ(map.columns[0].size(), 100U);
+  double readings = 0.0;
+  for (const float count : map.columns[2]) readings += count;
+  EXPECT_NEAR(readings, 1536.0, 16.0);
+  EXPECT_EQ(map.json["x_edges"].size(), 11U);
+  EXPECT_EQ(page().ask("map", {{"x", "x"}, {"y", "z"}, {"bins", 1000}}).status, 400);
+  const Json waves = page().told("periodogram", {{"variable", "x"}});
+  EXPECT_EQ(waves["period"].size(), waves["power"].size());
+  EXPECT_TRUE(page().told("polar")["circles"].empty()) << "no bar was in use";
+  const Json meaning = page().told("meaning");
+  double percent = 0.0;
+  for (const Json& cause : meaning["share"]) percent += cause["percent"].get<double>();
+  EXPECT_NEAR(percent, 100.0, 2.0);
+}
+
+TEST_F(WorkbenchOnACampaign, AFormulaNamesItsErrorAndItsPlace) {
+  const Answer wrong = page().ask("formula", {{"text", "EXX += dir_q * x"}});
+  EXPECT_EQ(wrong.status, 422);
+  const Json error = Json::parse(wrong.body);
+  EXPECT_EQ(error["column"], 8);
+  EXPECT_FALSE(error["remedy"].get<std::string>().empty());
+  const int tried = page().state()["tried"];
+  const Framed right(page().ask("formula", {{"text", "EXX += dir_x"}}).body);
+  EXPECT_EQ(right.json["tried"], tried + 1);
+  EXPECT_NEAR(right.json["rivals"][0]["cosine"].get<double>(), 1.0, 1e-6) << "it is the reversal";
+  EXPECT_EQ(right.columns.size(), 2U);
+  EXPECT_EQ(page().state()["commands"].back(), "formula EXX += dir_x");
+  const Json words = page().told("complete", {{"text", "EXX += dir"}, {"at", 10}});
+  EXPECT_EQ(words["from"], 7);
+  EXPECT_EQ(words["words"][0]["word"], "dir_x");
+}
+
+TEST_F(WorkbenchOnACampaign, OnePageWrites) {
+  page().told("add", {{"effect", kReversal}});
+  EXPECT_EQ(page().ask("undo", {}, "two").status, 409);
+  EXPECT_EQ(page().ask("take", {}, "two").status, 200);
+  EXPECT_EQ(page().ask("undo").status, 409);
+  EXPECT_EQ(page().ask("take").status, 200);
+  EXPECT_EQ(page().ask("undo").status, 200);
+}
+
+TEST_F(WorkbenchOnACampaign, RequestsThatAreNoneAreRefused) {
+  EXPECT_EQ(page().ask("jump").status, 404);
+  EXPECT_EQ(page().bench->answer("rank", "{", "one").status, 400);
+  EXPECT_EQ(page().bench->answer("add", "[]", "one").status, 400);
+  EXPECT_EQ(page().ask("add", {{"effect", "nothing"}}).status, 422);
+  EXPECT_EQ(page().ask("go", {{"model", 1000}}).status, 422);
+  EXPECT_EQ(page().ask("leave-out", {{"observations", {1}}, {"reason", " "}}).status, 400);
+  EXPECT_EQ(page().ask("leave-out", {{"observations", {9999999}}, {"reason", "why"}}).status, 422);
+  EXPECT_EQ(page().ask("export", {{"what", "../../etc"}}).status, 422);
+}
+
+/// The page, the library and the command line: the same numbers to the bit.
+TEST(WorkbenchDoors, GiveTheSameNumbers) {
+  Page page;
+  page.told("add", {{"effect", kReversal}});
+  page.bench->wait_until_idle();
+  ASSERT_EQ(page.ask("formula", {{"text", "EZX += x * z"}}).status, 200);
+  const Json state = page.state();
+  EXPECT_EQ(state["commands"][0], std::string("add ") + kReversal);
+  EXPECT_EQ(state["commands"][1], "confirm 1");
+  EXPECT_EQ(state["models"][1]["standing"], "fitted");
+  EXPECT_LT(state["models"][1]["figures"]["systematic_um"], state["models"][0]["figures"]["systematic_um"]);
+  page.told("export", {{"what", "commands"}});
+  const fs::path script = page.folder.path() / "out/session.sh";
+  ASSERT_TRUE(fs::exists(script));
+  const fs::path printed = page.folder.path() / "printed.json";
+  const std::string path = fs::path(VOLCAL_PROGRAM).parent_path().string();
+  const std::string command =
+      "PATH='" + path + "':\"$PATH\" " + script.string() + " --json --threads 2 > " + printed.string();
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(Json::parse(testing::content(printed))["models"], state["models"]);
+}
+
+TEST(WorkbenchDoors, LeaveOutAndCancelAndExport) {
+  Page page(false);
+  const Json begun = page.told("leave-out", {{"observations", {5, 6, 7}}, {"reason", "cable moved"}});
+  EXPECT_EQ(begun["busy"]["what"], "leave-out");
+  EXPECT_EQ(page.ask("undo").status, 409) << "one thing after another";
+  page.bench->wait_until_idle();
+  Json state = page.state();
+  ASSERT_EQ(state["models"].size(), 2U);
+  EXPECT_EQ(state["models"][1]["change"], "- 3 readings: cable moved");
+  EXPECT_EQ(state["left_out"][0]["readings"], 3);
+  EXPECT_EQ(state["commands"].back(), "leave-out 5-7 cable moved");
+  const Framed left(page.ask("columns", {{"names", {"left_out"}}}).body);
+  EXPECT_EQ(left.columns[0][6], 1.0F);
+  page.told("climb");
+  page.told("cancel");
+  page.bench->wait_until_idle();
+  EXPECT_EQ(page.state()["models"], state["models"]) << "a step that is stopped leaves the state before";
+  page.told("export", {{"what", "model"}});
+  EXPECT_TRUE(fs::exists(page.folder.path() / "out/model-1.toml"));
+  page.told("export", {{"what", "model"}});
+  EXPECT_TRUE(fs::exists(page.folder.path() / "out/model-1-1.toml")) << "nothing is overwritten";
+}
+
+TEST(WorkbenchDoors, AReaderWritesNothing) {
+  Page page(false, true);
+  EXPECT_EQ(page.ask("export", {{"what", "model"}}).status, 403);
+  EXPECT_EQ(page.ask("add", {{"effect", kReversal}}).status, 200) << "it may look and try";
+  EXPECT_FALSE(fs::exists(page.folder.path() / "out"));
+}
+
+TEST(WorkbenchDoors, GoesOnWhenAFileIsMended) {
+  ScratchFolder folder;
+  fs::copy(fs::path(VOLCAL_SOURCE_DIR) / "datasets/hidden/21", folder.path(), fs::copy_options::recursive);
+  const fs::path campaign = folder.path() / "campaign.toml";
+  const std::string right = testing::content(campaign);
+  std::ofstream(campaign) << "format = \"volcal-campaign-1\"\nmachin = \"machine.toml\"\n";
+  WorkbenchOptions options;
+  options.campaign = campaign.string();
+  options.threads = 1;
+  Workbench bench(options);
+  bench.wait_until_idle();
+  const Json wrong = Json::parse(bench.answer("state", "{}", "one").body);
+  EXPECT_EQ(wrong["phase"], "bad-input");
+  EXPECT_EQ(wrong["input_error"]["file"], campaign.string());
+  EXPECT_FALSE(wrong["input_error"]["remedy"].get<std::string>().empty());
+  EXPECT_EQ(wrong["input_error"]["text"][1]["text"], "machin = \"machine.toml\"");
+  EXPECT_EQ(bench.answer("rank", "{}", "one").status, 409);
+  std::ofstream(campaign) << right;
+  std::string phase = "bad-input";
+  for (int look = 0; look < 600 && phase != "ready"; ++look) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    phase = Json::parse(bench.answer("state", "{}", "one").body)["phase"];
+  }
+  EXPECT_EQ(phase, "ready");
+}
+
+}  // namespace
+}  // namespace volcal::workbench

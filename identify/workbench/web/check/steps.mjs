@@ -200,6 +200,7 @@ async function unknown(story, fault) {
   await page.locator('.chip .model').first().click();
   await until(page, () => document.querySelector('.chip.current')?.dataset.model === '0');
   await ranked(page);
+  await until(page, () => !document.querySelector('.suspects .looking'));
   if (await page.locator('.unknown').count() === 0) return console.log('  nothing without a name stands out here');
   const before = await headline(page);
   await page.locator('.unknown button.primary').last().click();

@@ -38,7 +38,8 @@ export async function open(browser, url, { width, height, scheme = 'light', moti
   const home = new URL(url).host;
   const quiet = { on: false }; // while the program is away, the browser itself says that it is
   page.on('pageerror', (error) => fault(`the page throws: ${error.message}`));
-  page.on('console', (message) => { if (message.type() === 'error' && !quiet.on && !/status of 4\d\d/.test(message.text())) fault(`the page says: ${message.text()}`); });
+  page.on('console', (message) => { if (message.type() === 'error' && !quiet.on && !/status of [45]\d\d/.test(message.text())) fault(`the page says: ${message.text()}`); });
+  page.on('response', async (response) => { if (response.status() >= 500) fault(`${response.url()} answers ${response.status()}: ${await response.text().catch(() => '')}, asked ${response.request().postData()}`); });
   page.on('request', (request) => { if (!request.url().startsWith(`http://${home}/`) && !/^(data|blob):/.test(request.url())) fault(`the page asks for ${request.url()}`); });
   await page.goto(url);
   return { context, page, quiet };

@@ -27,7 +27,12 @@ async function takeState(next) {
   if (sentence) said.value = sentence;
   if (former?.current !== next.current) preview.value = null;
   await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
-  if (ranking.value?.model !== next.current || ranking.value?.standing !== currentModel.value?.standing) await rank();
+  lookAgain();
+}
+
+/** What is missing now: asked for, not waited for. */
+async function lookAgain() {
+  if (ranking.value?.model !== state.value.current || ranking.value?.standing !== currentModel.value?.standing) await rank();
   if (busy.value === null || busy.value.behind) askUnknown();
 }
 

@@ -49,4 +49,8 @@ export const beforeModel = computed(() => {
   return modelOf(currentModel.value?.parent ?? null);
 });
 
-export const modelName = (model) => (model.change === '' || model.change === null || model.change === undefined ? 'as given' : model.change);
+/** "+ reversal EXX", "− 12 readings: cable moved". */
+export function modelName({ change }) {
+  if (!change) return 'as given';
+  return /^[+\-−]/.test(change) ? change.replace(/^-\s*/, '− ') : `+ ${change}`;
+}

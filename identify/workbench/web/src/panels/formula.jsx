@@ -104,9 +104,15 @@ export function FormulaBox() {
     setList(null);
     requestAnimationFrame(() => { input.current.focus(); input.current.setSelectionRange(next.at, next.at); });
   };
+  /** What is in the model is no longer a try. */
+  const addIt = () => {
+    const { name } = answer.head.effect;
+    setText('');
+    add(name);
+  };
   const key = (event) => {
     if (!list) {
-      if (event.key === 'Enter' && answer && of === text && mayAct.value) { event.preventDefault(); add(answer.head.effect.name); }
+      if (event.key === 'Enter' && answer && of === text && mayAct.value) { event.preventDefault(); addIt(); }
       return;
     }
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -126,7 +132,7 @@ export function FormulaBox() {
         </div>
         <label class="parameters">Start values <input type="text" spellcheck={false} autocomplete="off" placeholder="p=10 mm" value={parameters} onInput={(event) => setParameters(event.currentTarget.value)} /></label>
       </div>
-      {answer && <div class={of === text ? '' : 'is-stale'}><Result answer={answer} onAdd={() => add(answer.head.effect.name)} /></div>}
+      {answer && <div class={of === text ? '' : 'is-stale'}><Result answer={answer} onAdd={addIt} /></div>}
     </section>
   );
 }

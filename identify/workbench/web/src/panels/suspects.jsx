@@ -119,7 +119,7 @@ function Rank({ answer }) {
       <ol class="rows">{(all ? exceeding : exceeding.slice(0, kFirst)).map((effect) => <Suspect key={effect.name} effect={effect} />)}</ol>
       {exceeding.length > kFirst && <button type="button" onClick={() => setAll(!all)}>{all ? 'The first alone' : `All ${exceeding.length}`}</button>}
       {!found?.unknown_leads && unknown}
-      {!found?.ready && <p class="muted">What has no name is being looked for.</p>}
+      {!found?.ready && <p class="muted looking">What has no name is being looked for.</p>}
       <Below effects={below} />
       <NotVisible effects={answer.not_visible} />
     </>

@@ -89,7 +89,7 @@ function Chip({ model, depth, row, parentRow, most }) {
   return (
     <li class={`chip is-${standing} ${current ? 'current' : ''} ${grey ? 'before' : ''} ${branched ? 'branched' : ''}`} style={{ gridColumn: depth + 1, gridRow: row + 1 }} data-model={model.number}>
       <button type="button" class="model" aria-current={current ? 'true' : undefined} disabled={!mayAct.value && !current} onClick={() => !current && go(model.number)} title={kStandings[standing]}>
-        <span class="change">{branched && <span aria-label="branch of an earlier model">↳ </span>}{model.change ? `+ ${modelName(model)}`.replace('+ −', '− ').replace('+ +', '+') : 'as given'}</span>
+        <span class="change">{branched && <span aria-label="branch of an earlier model">↳ </span>}{modelName(model)}</span>
         <span class="numbers"><b>{about(standing)}{micrometres(figures.systematic_um, figures.systematic_low_um, figures.systematic_high_um)}</b> µm <span class="muted">{micrometres(figures.systematic_low_um, figures.systematic_low_um, figures.systematic_high_um)} … {micrometres(figures.systematic_high_um, figures.systematic_low_um, figures.systematic_high_um)}</span></span>
         <Whisker figures={figures} most={most} />
         <span class="muted small">χ²/dof {fixed(figures.reduced_chi2, 2)}, floor {significant(figures.noise_floor_um, 2)} µm</span>

@@ -61,9 +61,8 @@ TEST_F(ImportCommand, AFitFindsTheErrorWithItsSign) {
       "campaign/model.toml",
       "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\ndefault = { basis = \"zero\" }\n"
       "EXX = { basis = \"bspline\", degree = 1, knots = 1 }\n");
-  const ProgramRun fit =
-      run_program("fit " + path("campaign/campaign.toml") + " --model " + path("campaign/model.toml") +
-                  " --noise white --outliers keep -o " + path("result"));
+  const ProgramRun fit = run_program("fit " + path("campaign/campaign.toml") + " --model " +
+                                     path("campaign/model.toml") + " --noise white -o " + path("result"));
   ASSERT_LE(fit.exit_code, 1) << fit.errors;
   std::istringstream table(content(scratch_.path() / "result/error_tables.csv"));
   double found = 0.0;

@@ -61,6 +61,8 @@ class GenericCsv {
     add_fact("delimiter", delimiter_name(layout_.delimiter), layout_.delimiter == ',' ? "the rows" : "");
     add_fact("decimal sign", layout_.decimal == ',' ? "comma" : "point",
              layout_.decimal == '.' ? "the numbers" : "");
+    if (const std::string beside = lines_beside(layout_); !beside.empty())
+      add_fact("beside the table", beside, "not read");
     for (const TableRow& row : layout_.rows) readings_.source_line.push_back(row.line);
     for (std::size_t k = 0; k < layout_.header.size(); ++k) take_column(k);
     choose_instrument();

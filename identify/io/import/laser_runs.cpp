@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "volcal/identify/io/import/import_lines.h"
@@ -126,9 +127,9 @@ class LaserReadings {
                        "as EXX, EYX or ECX: the component first, the axis that moves last");
     if (stated && *stated != kind_of(*symbol))
       throw InputError({source_.path, 0},
-                       "--measures " + symbol->name() + " is a " + kind_name(kind_of(*symbol)) +
-                           " test, but by " + kind_said_by_ + " of the file it is a " + kind_name(*stated) +
-                           " one",
+                       "--measures " + symbol->name() + " asks for a test of the kind " +
+                           kind_name(kind_of(*symbol)) + "; by " + kind_said_by_ +
+                           " the file is of the kind " + kind_name(*stated),
                        "give the error that the file holds");
     kind_said_by_ = "--measures";
     require_axis(symbol->axis);
@@ -275,9 +276,10 @@ class LaserReadings {
 
   /// What the file says beside: kept as comments of the campaign.
   void add_words() {
+    std::set<std::string> known;
+    for (const ImportFact& fact : readings_.facts) known.insert(fact.what);
     for (const LaserEntry& entry : laser_.entries) {
-      const auto known = std::ranges::find(readings_.facts, entry.key, &ImportFact::what);
-      if (entry.value.empty() || known != readings_.facts.end()) continue;
+      if (entry.value.empty() || known.contains(entry.key)) continue;
       add_fact(entry.key.empty() ? lower_case(entry.section) : printable(entry.key), entry.value,
                said_by_line(entry.line));
     }

@@ -11,6 +11,7 @@
 namespace volcal {
 namespace {
 
+constexpr std::ptrdiff_t kMostColumns = 10000;
 constexpr std::array kDelimiters = {'\t', ';', ',', '|', ' '};
 
 std::vector<std::string> quoted_cells(std::string_view line, char delimiter) {
@@ -56,6 +57,7 @@ struct SplitTable {
 SplitTable split_table(const std::vector<TextLine>& lines, char delimiter) {
   std::map<std::size_t, std::pair<std::size_t, std::size_t>> by_count;  // rows, numbers
   for (const TextLine& line : lines) {
+    if (std::ranges::count(line.text, delimiter) > kMostColumns) continue;
     const auto cells = cells_of(line.text, delimiter);
     const std::size_t count = count_of_numbers(cells);
     if (count == 0) continue;
@@ -233,6 +235,12 @@ double TableLayout::number(const TableRow& row, std::size_t column) const {
 
 TableLayout guess_table_layout(const std::string& text, const std::string& file) {
   return LayoutGuess(text, file).guess();
+}
+
+std::string lines_beside(const TableLayout& layout) {
+  if (layout.above.empty()) return "";
+  return std::to_string(layout.above.size()) + (layout.above.size() == 1 ? " line" : " lines") +
+         ", first \"" + printable(std::string(layout.above.front().text)) + "\"";
 }
 
 std::string delimiter_name(char delimiter) {

@@ -32,6 +32,9 @@ struct TableLayout {
 /// points in one file.
 TableLayout guess_table_layout(const std::string& text, const std::string& file);
 
+/// "3 lines, first "..."" of what stands beside the header and the rows; empty = nothing.
+std::string lines_beside(const TableLayout& layout);
+
 /// The word for a delimiter, and the text that stands for it in messages.
 std::string delimiter_name(char delimiter);
 

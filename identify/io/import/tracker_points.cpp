@@ -168,6 +168,8 @@ class TrackerPoints {
                  delimiter_name(layout_.delimiter) + ", decimal " +
                  (layout_.decimal == ',' ? "comma" : "point"),
              "the numbers");
+    if (const std::string beside = lines_beside(layout_); !beside.empty())
+      add_fact("beside the list", beside, "units are looked for");
     const std::vector<Eigen::Vector3d> measured_s = polar_ ? from_polar() : from_cartesian();
     const std::vector<Eigen::Vector3d> commanded_w = commanded_points();
     const Eigen::Isometry3d pose_ws = best_fit(measured_s, commanded_w);

@@ -131,7 +131,8 @@ TEST(RtlFile, AnswersAgainstTheFileAreRefused) {
       HasSubstr("x.rtl:30: run 2 lists its targets from the last to the first, against --runs forward"));
   answers = rtl_answers();
   answers.measures = "ECX";
-  EXPECT_THAT(laser_refusal(rtl_text(), answers), HasSubstr("a angular test, but by line 3"));
+  EXPECT_THAT(laser_refusal(rtl_text(), answers),
+              HasSubstr("of the kind angular; by line 3 the file is of the kind linear"));
   answers = rtl_answers();
   answers.axis = "B";
   EXPECT_THAT(laser_refusal(rtl_text(), answers), HasSubstr("axis B is rotary"));

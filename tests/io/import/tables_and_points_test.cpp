@@ -111,6 +111,7 @@ TEST_F(TablesAndPoints, MeaningOfColumns) {
   const ImportedReadings report = import(tabs.bytes, tabs.answers);
   EXPECT_NEAR(column(report, "deviation_um")[2], 3.0, 1e-12);
   EXPECT_THAT(fact(report, "column \"comment\""), HasSubstr("not read"));
+  EXPECT_EQ(fact(report, "beside the table"), "1 line, first \"report of a test\" <not read>");
 }
 
 TEST_F(TablesAndPoints, WhatATableDoesNotSayIsAskedFor) {

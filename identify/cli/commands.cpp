@@ -7,6 +7,7 @@ namespace volcal::cli {
 // One line per command, in the order of the help.
 #define VOLCAL_COMMANDS(COMMAND) \
   COMMAND(init_command)          \
+  COMMAND(import_command)        \
   COMMAND(simulate_command)      \
   COMMAND(fit_command)           \
   COMMAND(compare_command)       \

@@ -153,9 +153,10 @@ struct Session::Node {
   ModelState state;                              ///< with what was added since
   std::vector<EffectFinding> effects;            ///< added to the given model
   std::optional<std::vector<FamilyTest>> tests;  ///< of the state, once asked for
-  std::optional<ModelState> scanned;             ///< the state with all tests, once asked for
-  std::vector<UnknownFinding> unknown;           ///< of that
-  std::vector<SurfaceFinding> drawn;             ///< for some of these
+  std::optional<std::vector<EffectFinding>> ranking;
+  std::optional<ModelState> scanned;    ///< the state with all tests, once asked for
+  std::vector<UnknownFinding> unknown;  ///< of that
+  std::vector<SurfaceFinding> drawn;    ///< for some of these
   std::optional<Eigen::VectorXd> residual;
 
   Node(std::shared_ptr<const Fitted> fitted, std::vector<EffectFinding> added)
@@ -164,6 +165,7 @@ struct Session::Node {
   void becomes(ModelState next) {
     state = std::move(next);
     tests.reset();
+    ranking.reset();
     scanned.reset();
     unknown.clear();
     drawn.clear();
@@ -286,10 +288,13 @@ void Session::renew_setting() {
   Node& here = node();
   const SearchSetting& known = here.state.setting();
   if (known.own == own_.size()) return;
+  const std::vector<EffectSpec> more(own_.begin() + static_cast<std::ptrdiff_t>(known.own), own_.end());
   here.state = here.state.with_setting(std::make_shared<const SearchSetting>(
       here.state.model(), known.heldout, std::vector<std::string>{}, options_.threads, own_));
-  here.tests.reset();
-  here.scanned.reset();
+  if (here.tests)
+    here.tests = with_tests_of_own(*std::move(here.tests), more, here.state.setting(), here.state.model(),
+                                   here.state.projector());
+  here.ranking.reset();
 }
 
 /// Tests of all effects at the current model.
@@ -345,10 +350,14 @@ std::vector<const FamilyTest*> Session::ranked() {
   return order;
 }
 
-std::vector<EffectFinding> Session::rank() {
-  std::vector<EffectFinding> ranking;
-  for (const FamilyTest* test : ranked()) ranking.push_back(finding(node().state.setting(), *test));
-  return ranking;
+const std::vector<EffectFinding>& Session::rank() {
+  const std::vector<const FamilyTest*> order = ranked();
+  Node& here = node();
+  if (!here.ranking) {
+    here.ranking.emplace();
+    for (const FamilyTest* test : order) here.ranking->push_back(finding(here.state.setting(), *test));
+  }
+  return *here.ranking;
 }
 
 std::vector<EffectFinding> Session::not_visible() {
@@ -428,6 +437,7 @@ EffectPreview Session::formula(const EffectSpec& custom) {
   if (kind == nullptr) throw std::invalid_argument(custom.kind + " is no kind of effect");
   const auto effect = kind->make(custom, {});
   effect->check(campaign(), {});
+  tests();  // so that the new one is tested after the others, whatever was asked before
   const EffectName name = effect->name();
   const auto is_it = [&](const EffectSpec& spec) {
     return find_effect(spec.kind)->make(spec, {})->name() == name;

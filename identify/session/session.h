@@ -135,7 +135,7 @@ class Session {
 
   /// Effects that are not in the current model, best first; with more of an error function, which cannot be
   /// added here.
-  std::vector<EffectFinding> rank();
+  const std::vector<EffectFinding>& rank();
   /// Effects of which nothing shows.
   std::vector<EffectFinding> not_visible();
   /// Of the first of the ranking, at most `most`.

@@ -305,9 +305,8 @@ class CsvTable::RowReader {
 };
 
 CsvTable CsvTable::read(const std::string& path, const CsvFormat& format, const SourcePlace& named_at) {
-  std::string text = read_text_file(path, named_at);
-  if (format.encoding != TextEncoding::Utf8) text = to_utf8(text, format.encoding);
-  return CsvTable(std::move(text), path, format);
+  return CsvTable(read_text_file(path, {format.encoding, format.encoding_only_if_not_utf8}, named_at), path,
+                  format);
 }
 
 CsvTable CsvTable::parse(std::string text, const std::string& file, const CsvFormat& format) {
@@ -359,7 +358,8 @@ std::optional<char> CsvTable::other_delimiter() const {
   return std::nullopt;
 }
 
-CsvTable CsvTable::of_columns(std::vector<NumberColumn> columns, const std::string& name) {
+CsvTable CsvTable::of_columns(std::vector<NumberColumn> columns, const std::string& name,
+                              std::vector<std::int64_t> lines) {
   if (columns.empty() || columns.front().values.empty())
     throw InputError({name, 0}, "there are no readings",
                      "give one array for each column, one value per reading");
@@ -375,7 +375,12 @@ CsvTable CsvTable::of_columns(std::vector<NumberColumn> columns, const std::stri
     }
     table.header_.push_back(column.name);
   }
+  if (lines.empty()) {
+    lines.resize(columns.front().values.size());
+    std::iota(lines.begin(), lines.end(), std::int64_t{1});
+  }
   table.in_memory_ = std::move(columns);
+  table.lines_ = std::move(lines);
   return table;
 }
 
@@ -387,14 +392,13 @@ CsvColumns CsvTable::numbers_in_memory(std::span<const std::size_t> columns) con
         std::ranges::find_if_not(column.values, [](double value) { return std::isfinite(value); });
     if (wrong != column.values.end()) {
       throw InputError(
-          {file_, static_cast<int>(wrong - column.values.begin()) + 1},
+          {file_, static_cast<int>(lines_.at(static_cast<std::size_t>(wrong - column.values.begin())))},
           "column " + printable(column.name) + " holds \"" + std::to_string(*wrong) + "\", no finite number",
           "leave out rows without a reading");
     }
     read.values.emplace_back(column.values.begin(), column.values.end());
   }
-  read.source_line.resize(in_memory_.front().values.size());
-  std::iota(read.source_line.begin(), read.source_line.end(), std::int64_t{1});
+  read.source_line = lines_;
   return read;
 }
 

@@ -24,7 +24,8 @@ struct CsvFormat {
   char delimiter = ',';
   char decimal = '.';
   TextEncoding encoding = TextEncoding::Utf8;
-  std::size_t skip_rows = 0;  ///< lines of the file before the header is looked for
+  std::size_t skip_rows = 0;               ///< lines of the file before the header is looked for
+  bool encoding_only_if_not_utf8 = false;  ///< of a file that is UTF-8 `encoding` says nothing
 };
 
 /// A column of numbers in memory, in the unit of its name.
@@ -46,9 +47,11 @@ class CsvTable {
   static CsvTable read(const std::string& path, const CsvFormat& format, const SourcePlace& named_at = {});
   static CsvTable parse(std::string text, const std::string& file, const CsvFormat& format);
 
-  /// Columns in memory in place of a file; rows count from 1. What they refer to must outlive the table.
-  /// Throws InputError for columns of different length and where there is none or no row.
-  static CsvTable of_columns(std::vector<NumberColumn> columns, const std::string& name);
+  /// Columns in memory in place of a file; rows count from 1, or stood in `lines` of a file. What they refer
+  /// to must outlive the table. Throws InputError for columns of different length and where there is none or
+  /// no row.
+  static CsvTable of_columns(std::vector<NumberColumn> columns, const std::string& name,
+                             std::vector<std::int64_t> lines = {});
 
   const std::string& file() const { return file_; }
   const std::vector<std::string>& header() const { return header_; }
@@ -74,6 +77,7 @@ class CsvTable {
   std::int64_t header_line_ = 0;
   std::size_t body_ = 0;  ///< offset of the first byte after the header
   std::vector<NumberColumn> in_memory_;
+  std::vector<std::int64_t> lines_;  ///< of the rows in memory, from 1 where there are none
 };
 
 }  // namespace volcal

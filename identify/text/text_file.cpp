@@ -45,11 +45,23 @@ std::string read_all(const std::string& path, const SourcePlace& place) {
   return text;
 }
 
+/// A text of lines, without its byte order mark, that is more than blanks.
+std::string checked_text(std::string text, const std::string& file) {
+  require_text(text, file);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    throw InputError({file, 0}, "the file is empty", "export it again or name another file");
+  }
+  return text;
+}
+
 }  // namespace
 
 void require_text(const std::string& text, const std::string& file) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    throw InputError({file, 1}, "the file is UTF-16 text", "save it again as UTF-8 or plain CSV");
+    throw InputError(
+        {file, 1}, "the file is UTF-16 text",
+        "save it again as UTF-8 or plain CSV; of readings encoding = \"utf-16\" in their setup does");
   }
   if (const auto zero = text.find('\0'); zero != std::string::npos) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
@@ -85,14 +97,38 @@ void require_file(const std::string& path, const SourcePlace& named_at) {
 }
 
 std::string read_text_file(const std::string& path, const SourcePlace& named_at) {
+  return read_text_file(path, FileEncoding{}, named_at);
+}
+
+std::string read_text_file(const std::string& path, const FileEncoding& encoding,
+                           const SourcePlace& named_at) {
   require_file(path, named_at);
   std::string text = read_all(path, place_of(path, named_at));
-  require_text(text, path);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    throw InputError({path, 0}, "the file is empty", "export it again or name another file");
+  if (encoding.encoding != TextEncoding::Utf8 && !(encoding.only_if_not_utf8 && is_utf8(text)))
+    text = to_utf8(text, encoding.encoding);
+  return checked_text(std::move(text), path);
+}
+
+std::string foreign_text(const std::string& bytes, const std::string& file,
+                         std::optional<TextEncoding> encoding, const std::string& option) {
+  if (!encoding && (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")))
+    encoding = TextEncoding::Utf16;
+  if (!encoding || *encoding == TextEncoding::Utf8) {
+    if (const int line = line_not_utf8(bytes); line > 0)
+      throw InputError({file, line}, "the file is not UTF-8 text", encoding_remedy(bytes, option, ""));
+    return checked_text(bytes, file);
   }
-  return text;
+  DecodedText decoded = decode(bytes, *encoding);
+  if (decoded.unknown_line > 0)
+    throw InputError({file, decoded.unknown_line}, "a byte here is no character of the encoding named",
+                     encoding_remedy(bytes, option, ""));
+  return checked_text(std::move(decoded.text), file);
+}
+
+std::string read_foreign_text(const std::string& path, std::optional<TextEncoding> encoding,
+                              const std::string& option) {
+  require_file(path);
+  return foreign_text(read_all(path, {path, 0}), path, encoding, option);
 }
 
 std::string missing_remedy(const std::string& path, const std::string& otherwise) {

@@ -2,8 +2,10 @@
 /// Whole text files, with the errors a user can mend: missing, a directory, a pipe or device, empty, binary,
 /// UTF-16, lines that end in CR alone.
 
+#include <optional>
 #include <string>
 
+#include "volcal/identify/text/text_encoding.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -12,6 +14,24 @@ namespace volcal {
 /// campaign's `data` key); errors about a missing file are reported there, or at the file itself when empty.
 /// Throws InputError.
 std::string read_text_file(const std::string& path, const SourcePlace& named_at = {});
+
+/// In which encoding a file is.
+struct FileEncoding {
+  TextEncoding encoding = TextEncoding::Utf8;
+  bool only_if_not_utf8 = false;  ///< a file that is UTF-8 is read as it is
+};
+/// The same of a file in any encoding, as UTF-8; bytes that the encoding leaves open are U+FFFD.
+std::string read_text_file(const std::string& path, const FileEncoding& encoding,
+                           const SourcePlace& named_at);
+
+/// A file of foreign origin, as UTF-8: in the encoding named; without a name UTF-8, or UTF-16 by its byte
+/// order mark. Throws InputError at the line of the first byte that the encoding leaves open; `option` is
+/// what names an encoding, as "--encoding ".
+std::string read_foreign_text(const std::string& path, std::optional<TextEncoding> encoding,
+                              const std::string& option);
+/// The same of bytes that were read from `file`.
+std::string foreign_text(const std::string& bytes, const std::string& file,
+                         std::optional<TextEncoding> encoding, const std::string& option);
 
 /// Throws InputError unless `path` leads to a regular file, also through links. A pipe is none, and opening
 /// one that nobody writes to would wait for ever. `named_at` as above.

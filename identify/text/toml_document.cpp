@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "volcal/identify/text/nearest_name.h"
+#include "volcal/identify/text/text_encoding.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/identify/text/toml_node.h"
 #include "volcal/model/description/units.h"
@@ -425,7 +426,10 @@ TomlDocument TomlDocument::read(const std::string& path, const SourcePlace& name
 }
 
 TomlDocument TomlDocument::parse(const std::string& text, const std::string& file) {
-  return TomlDocument(detail::parse_toml(text, file));
+  TomlDocument document(detail::parse_toml(text, file));
+  if (document.source_->root.find("encoding") != nullptr)
+    document.root().choice("encoding", encoding_names());
+  return document;
 }
 
 TomlTable TomlDocument::root() const { return TomlTable(source_, &source_->root, ""); }

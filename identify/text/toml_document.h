@@ -5,7 +5,8 @@
 /// `TomlDocument::reject_unknown()` throws for the first key that nobody asked for, with the nearest known
 /// key or, when only the unit differs (`station_m` for `station_mm`), with the conversion. Numbers come out
 /// in SI: the unit is the suffix of the key (model/description/units.h). Integers are accepted wherever a
-/// number is; nan and inf never are. All errors are InputError.
+/// number is; nan and inf never are. A file that is not UTF-8 is read where its root key `encoding` names a
+/// code page; every kind of file may have that key. All errors are InputError.
 
 #include <Eigen/Core>
 #include <cstdint>

@@ -3,6 +3,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <optional>
+#include <regex>
 
 #include "volcal/identify/text/nesting.h"
 #include "volcal/identify/text/text_encoding.h"
@@ -61,18 +63,35 @@ TomlNode convert(const toml::node& node, const std::string& file) {
   return converted;
 }
 
-void require_utf8_text(std::string_view text, const std::string& file) {
-  int line = 1;
+/// What a line `encoding = "NAME"` before the first table says.
+std::optional<TextEncoding> stated_encoding(std::string_view text) {
+  static const std::regex kLine(R"(^\s*encoding\s*=\s*["']([\w-]+)["'].*)");
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
-    if (length == 0) {
-      throw InputError({file, line},
-                       "the file is not UTF-8 text; it seems to be in a code page as cp1252 or latin1",
-                       "save it as UTF-8, or write names without accents");
-    }
-    if (text.front() == '\n') ++line;
-    text.remove_prefix(length);
+    const std::string line(text.substr(0, text.find_first_of("\r\n")));
+    std::smatch match;
+    if (line.starts_with('[')) return std::nullopt;
+    if (line.size() < 100 && std::regex_match(line, match, kLine)) return encoding_of_name(match[1].str());
+    text.remove_prefix(
+        std::min(text.size(), text.find('\n') == text.npos ? text.size() : text.find('\n') + 1));
   }
+  return std::nullopt;
+}
+
+/// The text as UTF-8: TOML is, or its key `encoding` says in which code page it stands.
+std::string text_as_utf8(const std::string& text, const std::string& file) {
+  const int line = line_not_utf8(text);
+  if (line == 0) return text;
+  const auto encoding = stated_encoding(text);
+  if (!encoding || *encoding == TextEncoding::Utf8) {
+    throw InputError({file, line}, "the file is not UTF-8 text; it seems to be in a code page",
+                     encoding_remedy(text, "write encoding = \"", "\" in its first line"));
+  }
+  DecodedText decoded = decode(text, *encoding);
+  if (decoded.unknown_line > 0) {
+    throw InputError({file, decoded.unknown_line}, "a byte here is no character of the file's encoding",
+                     encoding_remedy(text, "write encoding = \"", "\""));
+  }
+  return std::move(decoded.text);
 }
 
 std::string syntax_remedy(const std::string& description) {
@@ -97,8 +116,8 @@ TomlNode* TomlNode::find(std::string_view key) {
   return found == entries.end() ? nullptr : &found->node;
 }
 
-std::shared_ptr<TomlSource> parse_toml(const std::string& text, const std::string& file) {
-  require_utf8_text(text, file);
+std::shared_ptr<TomlSource> parse_toml(const std::string& bytes, const std::string& file) {
+  const std::string text = text_as_utf8(bytes, file);
   require_shallow(text, NestedText::Toml, file);
   try {
     const toml::table table = toml::parse(std::string_view(text), std::string_view(file));

@@ -270,7 +270,7 @@ Json detectable_json(const std::vector<EffectFinding>& ranking) {
 }  // namespace
 
 Json rank_json(Session& session) {
-  const std::vector<EffectFinding> ranking = session.rank();
+  const std::vector<EffectFinding>& ranking = session.rank();
   Json hidden = Json::array();
   for (const EffectFinding& effect : session.not_visible()) {
     if (hidden.size() < kHidden) hidden.push_back(effect_json(effect));

@@ -198,6 +198,8 @@ Answer Workbench::answer(const std::string& request, const std::string& body, co
     return refused(422, error_json(error.problem(), error.remedy()));
   } catch (const Refusal& refusal) {
     return refused(refusal.status, error_json(refusal.what(), refusal.remedy));
+  } catch (const std::invalid_argument& error) {
+    return refused(422, error_json(error.what(), "choose what the current model lets you choose"));
   } catch (const Json::exception&) {
     return refused(400, error_json("the request is no JSON of its kind", "load the page again"));
   } catch (const std::exception& error) {

@@ -74,6 +74,14 @@ enum class LaserLength {
   Displacement  ///< the displacement along its beam (key `direction`) from the first reading
 };
 
+/// What an instrument reads along a line of one axis.
+enum class LineReading {
+  None,
+  Along,    ///< displacement along the beam (key `direction`)
+  Across,   ///< deviation across the line, along the key `direction`
+  Rotation  ///< rotation about the key `axis`
+};
+
 /// An angle encoder that reads a channel.
 struct AngleEncoder {
   std::string name;  ///< "azimuth"
@@ -84,6 +92,7 @@ struct AngleEncoder {
 /// names one.
 struct InstrumentTraits {
   LaserLength laser_length = LaserLength::None;
+  LineReading line_reading = LineReading::None;
   /// Its first column is a length that counts from a zero, which a run may lose.
   bool length_from_zero = false;
   /// It reads the length of a bar between a ball on the table (key `centre_mm`) and one at the tool; the

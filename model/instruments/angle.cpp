@@ -23,7 +23,8 @@ const InstrumentSchema kAngleSchema = {
               .choices = {"relative", "tool", "table"}}},
     .column_sets = {{{.column = "angle_urad", .help = "angle", .plausible_max = 1e6}}},
     .noise_keys = {{.key = "constant_urad", .help = "standard deviation", .plausible_max = 1e3}},
-    .traits = {.stands_on_floor = [](const Options& options) { return body_of(options) != "relative"; }}};
+    .traits = {.line_reading = LineReading::Rotation,
+               .stands_on_floor = [](const Options& options) { return body_of(options) != "relative"; }}};
 
 class AngleSetup final : public EquationBase<AngleSetup> {
  public:

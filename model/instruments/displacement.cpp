@@ -34,7 +34,9 @@ const InstrumentSchema kDisplacementSchema = {
            .help = "displacement minus commanded displacement along the beam",
            .plausible_max = 1e5}}},
     .noise_keys = length_noise_keys(),
-    .traits = {.laser_length = LaserLength::Displacement, .length_from_zero = true}};
+    .traits = {.laser_length = LaserLength::Displacement,
+               .line_reading = LineReading::Along,
+               .length_from_zero = true}};
 
 class DisplacementSetup final : public EquationBase<DisplacementSetup> {
  public:

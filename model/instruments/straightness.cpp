@@ -23,7 +23,7 @@ const InstrumentSchema kStraightnessSchema = {
               "name of the artefact: setups that name it share its rotation (a square measures squareness)"}},
     .column_sets = {{{.column = "deviation_um", .help = "deviation along v", .plausible_max = 1e5}}},
     .noise_keys = length_noise_keys(),
-    .traits = {.length_from_zero = true}};
+    .traits = {.line_reading = LineReading::Across, .length_from_zero = true}};
 
 class StraightnessSetup final : public EquationBase<StraightnessSetup> {
  public:

@@ -33,7 +33,7 @@ TEST(CommandLine, NamesTheNearestCommand) {
 }
 
 TEST(CommandLine, ListsTheCommandsWhenNoneIsNear) {
-  expect_refusal("nosuch", "there is no command \"nosuch\"", "known commands: init, simulate, fit");
+  expect_refusal("nosuch", "there is no command \"nosuch\"", "known commands: init, import, simulate, fit");
 }
 
 TEST(CommandLine, AsksForACommand) { expect_refusal("", "subcommand is required", "volcal --help"); }

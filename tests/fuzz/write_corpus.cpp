@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/support/hand_made_diagnosis.h"
+#include "tests/support/import_files.h"
 #include "tests/support/program_harness.h"
 #include "tests/support/reader_harness.h"
 #include "tests/support/table_samples.h"
@@ -100,6 +101,13 @@ int main(int count, char** arguments) {
       write(folder, "csv", all[i]->schema().name + "-" + columns.front().column,
             choice + sample_csv(columns));
     }
+  }
+  for (const SampleImport& sample : sample_imports()) {
+    const char format = sample.format == "rtl" ? '\0' : sample.format == "tracker" ? '\1' : '\2';
+    const char said =
+        static_cast<char>(4 | (sample.format == "csv" ? 64 : 0) | (sample.answers.encoding ? 1 : 0) |
+                          (sample.answers.measures ? 0 : 8));
+    write(folder, "import", sample.name, std::string{format, said} + sample.bytes);
   }
   write(folder, "program", "modal", "\2" + sample_program());
   write(folder, "program", "offsets", std::string(1, '\0') + sample_local_program());

@@ -304,5 +304,33 @@ def studies():
     ]
 
 
+def imports():
+    use = ["import", "f", "--machine", "c/machine.toml", "--unit", "um", "--runs", "forward", "--axis", "X",
+           "--tool", "long", "-o", "o"]
+    head = b"HEADER::\nOwner: Linear\nTARGET DATA::\nTargets :\n"
+    deviations = b"DEVIATIONS::\nRun Target Data:\n"
+    many = b"".join(b"%d\n" % i for i in range(100000))
+    return [
+        bad("import of an empty file", put("f", b""), "empty", use),
+        bad("import of NUL bytes", put("f", bytes(1000)), "NUL", use),
+        bad("import of random bytes", put("f", random.Random(3).randbytes(5000)), ".", use),
+        bad("import of a picture", put("f", b"\x89PNG\r\n\x1a\n" + bytes(range(1, 256)) * 10), ".", use),
+        bad("import of half a UTF-16 character", put("f", b"\xff\xfeH"), ".", use),
+        bad("import of a line of 10 MB", put("f", b"1," * 5_000_000), ".", use),
+        bad("import of 10^5 lines without a table", put("f", b"word\n" * 100000), "not understood", use),
+        bad("import of 10^5 targets without deviations", put("f", head + many), "no deviations", use),
+        bad("import of a run beyond all numbers",
+            put("f", head + b"0 1\n" + deviations + b"9" * 30 + b" 1 0\n"), "f:8", use),
+        bad("import of a deviation of 1e400",
+            put("f", head + b"0 1\n" + deviations + b"1 1 1e400\n1 2 0\n"), "f:8", use),
+        bad("import of 10^5 words of a user",
+            put("f", head + b"USER-TEXT::\n" + b"Name: x\n" * 100000), "two positions", use),
+        bad("import of a folder", lambda folder: os.makedirs(os.path.join(folder, "f")), "directory", use),
+        bad("import of a name that is a command line", put("f", b"a;b\n1;2\n"), ".",
+            [*use, "--set", "noise = { constant_um = 1 }\n[x]"]),
+        bad("import over its own file", put("o/f", head), ".", ["import", "o/f", *use[2:]]),
+    ]
+
+
 def rows():
-    return [*toml(), *csv(), *results(), *programs(), *models(), *studies()]
+    return [*toml(), *csv(), *imports(), *results(), *programs(), *models(), *studies()]

@@ -125,7 +125,7 @@ inline const std::vector<BrokenCampaign>& broken_campaigns() {
       {"TomlDecimalComma", "campaign.toml", Replace, "repeatability_um = 0.5", "repeatability_um = 0,5",
        "campaign.toml", 5, "TOML", "decimal point"},
       {"TomlLatin1", "campaign.toml", Replace, "name = \"level\"", "name = \"niv\xE9\"", "campaign.toml", 35,
-       "is not UTF-8 text", "save it as UTF-8"},
+       "is not UTF-8 text", "save the file as UTF-8"},
       {"TomlControlCharacter", "campaign.toml", Replace, "name = \"level\"", "name = \"le\\u001bvel\"",
        "campaign.toml", 35, "\"le?vel\" holds a control character", "letters, figures and signs"},
       {"NameLikeAFormula", "campaign.toml", Replace, "name = \"level\"", "name = \"=1+1\"", "campaign.toml",

@@ -18,11 +18,13 @@
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
+#include "volcal/identify/io/import/imported_campaign.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/io/results/result_json.h"
 #include "volcal/identify/montecarlo/draw_sums.h"
 #include "volcal/identify/montecarlo/state_bytes.h"
 #include "volcal/identify/text/csv_table.h"
+#include "volcal/identify/text/text_file.h"
 #include "volcal/identify/workbench/workbench.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/files/control_tables.h"
@@ -198,6 +200,34 @@ inline bool accepts_readings(const std::string& text, std::size_t instrument_ind
     const InstrumentSchema& schema = find_instrument(setup.instrument)->schema();
     setup.readings = read_readings(CsvTable::parse(text, "data.csv", format), {}, declared.machine, schema);
     check_setup(declared, setup);
+  });
+}
+
+/// Files of instruments: the first byte chooses the format, the second what is said of the file.
+inline bool accepts_import(const std::string& bytes, unsigned format, unsigned said) {
+  return accepts([&] {
+    const auto encoding = (said & 1U) != 0 ? std::optional(TextEncoding::Cp1252) : std::nullopt;
+    const ImportSource source{"file", foreign_text(bytes, "file", encoding, "give --encoding ")};
+    const auto formats = import_formats();
+    if (format % (formats.size() + 1) == formats.size()) import_format_of(source, std::nullopt);
+    ImportAnswers answers;
+    answers.unit = (said & 2U) != 0 ? "mm" : "um";
+    if ((said & 4U) != 0) answers.runs = "alternating";
+    if ((said & 8U) != 0) answers.axis = "X";
+    if ((said & 16U) != 0) answers.measures = "EXX";
+    answers.columns = (said & 32U) != 0 ? "hz,v,distance" : "x,y,z";
+    if ((said & 64U) != 0) answers.instrument = "displacement";
+    answers.nominal = {
+        "nominal.csv",
+        "name,x_mm,y_mm,z_mm\nP1,0,0,0\nP2,200,0,0\nP3,200,200,0\nP4,0,200,0\nP5,100,100,100\n"};
+    answers.angle_unit = "gon";
+    answers.horizontal = "clockwise";
+    answers.vertical = "zenith";
+    for (const Axis& axis : harness_machine().axes) answers.at[axis.name] = 0.0;
+    ImportedFile file{"file", "S", 0,
+                      formats[format % formats.size()]->read(source, answers, harness_machine(), 0)};
+    file.readings.keys["noise"] = "{ constant_um = 1.0 }";
+    imported_campaign({file}, harness_machine());
   });
 }
 

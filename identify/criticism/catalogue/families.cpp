@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <numbers>
 #include <set>
 #include <utility>
@@ -166,9 +167,18 @@ EffectName Family::name() const {
   return resolution_name(*resolution);
 }
 
-std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own) {
+namespace {
+
+std::set<EffectName> effects_of(const LinearModel& model) {
   std::set<EffectName> present;
   for (const EffectBinding& effect : model.model().binding().effects) present.insert(effect.effect->name());
+  return present;
+}
+
+}  // namespace
+
+std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own) {
+  const std::set<EffectName> present = effects_of(model);
   std::vector<Family> all;
   for (const EffectKind* kind : effect_kinds()) {
     for (EffectSpec& spec : kind->candidates(model.campaign())) {
@@ -184,6 +194,13 @@ std::vector<Family> families(const LinearModel& model, std::span<const EffectSpe
   for (const ErrorSymbol symbol : model.model().layout().symbols()) {
     all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});
   }
+  std::ranges::move(own_families(model, own), std::back_inserter(all));
+  return all;
+}
+
+std::vector<Family> own_families(const LinearModel& model, std::span<const EffectSpec> own) {
+  std::set<EffectName> present = effects_of(model);
+  std::vector<Family> all;
   for (const EffectSpec& spec : own) {
     std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
     if (!present.insert(effect->name()).second) continue;

@@ -32,6 +32,9 @@ struct Family {
 /// effects that the user thinks of. Throws InputError where one of these cannot act in the campaign.
 std::vector<Family> families(const LinearModel& model, std::span<const EffectSpec> own = {});
 
+/// The last of these alone.
+std::vector<Family> own_families(const LinearModel& model, std::span<const EffectSpec> own);
+
 /// Columns at one of the shapes.
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape);
 

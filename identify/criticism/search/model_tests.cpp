@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
@@ -116,17 +117,41 @@ std::vector<const GenericTest*> ModelTests::exceeding_scans() const {
 
 bool ModelTests::any_scan_exceeds() const { return std::ranges::any_of(scan_exceeds, std::identity{}); }
 
-std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,
-                                      const Projector& projector) {
-  std::vector<FamilyTest> tests = test_families(model, setting.families, projector, setting.threads);
+namespace {
+
+/// From one place on.
+void refine_shapes(const SearchSetting& setting, const LinearModel& model, const Projector& projector,
+                   std::size_t from, std::vector<FamilyTest>& tests) {
   double best = 0.0;
   for (const FamilyTest& test : tests) best = std::max(best, test.gain);
-  for (FamilyTest& test : tests) {
+  for (FamilyTest& test : std::span(tests).subspan(from)) {
     if (test.gain > best - kThresholds.worth_refining_gain &&
         test.log10_p < kThresholds.worth_refining_log10_p)
       refine_shape(model, setting.families[test.family], projector, test);
   }
+}
+
+}  // namespace
+
+std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,
+                                      const Projector& projector) {
+  std::vector<FamilyTest> tests = test_families(model, setting.families, projector, setting.threads);
+  refine_shapes(setting, model, projector, 0, tests);
   return tests;
+}
+
+std::vector<FamilyTest> with_tests_of_own(std::vector<FamilyTest> known, std::span<const EffectSpec> own,
+                                          const SearchSetting& setting, const LinearModel& model,
+                                          const Projector& projector) {
+  const std::size_t count = known.size();
+  for (FamilyTest& test : test_families(model, own_families(model, own), projector, setting.threads)) {
+    test.family += count;
+    known.push_back(std::move(test));
+  }
+  if (known.size() != setting.families.size())
+    throw std::logic_error("the last families of the setting are other ones");
+  refine_shapes(setting, model, projector, count, known);
+  return known;
 }
 
 ModelTests tests_of(const ModelState& state) {

@@ -60,5 +60,9 @@ ModelTests tests_of(const ModelState& state, std::vector<FamilyTest> families);
 /// Tests of the families alone, shapes refined where they could matter.
 std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,
                                       const Projector& projector);
+/// The same where tests of a setting without the last effects of the user's are known, `known` their number.
+std::vector<FamilyTest> with_tests_of_own(std::vector<FamilyTest> known, std::span<const EffectSpec> own,
+                                          const SearchSetting& setting, const LinearModel& model,
+                                          const Projector& projector);
 
 }  // namespace volcal

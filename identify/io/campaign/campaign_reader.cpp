@@ -65,6 +65,8 @@ class CampaignReader {
     root_.know("machine");
     root_.text("name");
     campaign_.active_compensations = root_.text("active_compensations").value_or("");
+    if (const auto encoding = root_.choice("encoding", encoding_names()))
+      encoding_ = *encoding_of_name(*encoding);
     directions_as_recorded_ = as_recorded(root_).value_or(false);
     noise_ = root_.table("noise");
     if (noise_) repeatability_ = read_repeatability(*noise_).value_or(0.0);
@@ -259,7 +261,7 @@ class CampaignReader {
     }
   }
 
-  static CsvFormat read_format(const TomlTable& table) {
+  CsvFormat read_format(const TomlTable& table) const {
     CsvFormat format;
     if (const auto delimiter = table.text("delimiter")) {
       if (delimiter->size() != 1 ||
@@ -269,9 +271,11 @@ class CampaignReader {
       }
       format.delimiter = (*delimiter)[0];
     }
+    format.encoding = encoding_;
+    format.encoding_only_if_not_utf8 = true;
     if (const auto encoding = table.choice("encoding", encoding_names())) {
-      const auto found = std::ranges::find(encoding_names(), *encoding) - encoding_names().begin();
-      format.encoding = static_cast<TextEncoding>(found);
+      format.encoding = *encoding_of_name(*encoding);
+      format.encoding_only_if_not_utf8 = false;
     }
     if (const auto decimal = table.choice("decimal", {".", ","})) format.decimal = (*decimal)[0];
     if (format.decimal == format.delimiter) {
@@ -290,6 +294,7 @@ class CampaignReader {
   Campaign campaign_;
   std::optional<TomlTable> noise_;
   double repeatability_ = 0.0;
+  TextEncoding encoding_ = TextEncoding::Utf8;  ///< of readings that are not UTF-8
   bool directions_as_recorded_ = false;
   std::map<std::string, int> setup_line_;
   std::vector<DeclaredSetup> declared_;

@@ -136,6 +136,10 @@ TEST_F(NotesTest, AFileInACodePageIsRead) {
     EXPECT_NEAR(campaign.setups[0].readings.value[0][0], -49.2e-6, 1e-15) << encoding;
   }
   EXPECT_THROW(read(csv, keys), InputError);
+  const Campaign all = read(csv, keys, "encoding = \"cp1252\"\n");
+  EXPECT_NEAR(all.setups[0].readings.value[0][0], -49.2e-6, 1e-15) << "for all files that are not UTF-8";
+  const std::string utf8 = "Position;Y;Z;Abweichung [\xC2\xB5m]\n-0,0;0;0;-49,2\n100,0;0;0;48,1\n";
+  EXPECT_NO_THROW(read(utf8, keys, "encoding = \"cp1252\"\n")) << "a file that is UTF-8 is read as it is";
 }
 
 TEST_F(NotesTest, RowsThatRepeatAreTold) {

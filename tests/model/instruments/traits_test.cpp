@@ -52,6 +52,11 @@ TEST(InstrumentTraits, OfOurInstruments) {
     EXPECT_EQ(traits.reads_error_vectors, expected.reads_error_vectors) << name;
     EXPECT_EQ(traits.stands_on_floor({}), expected.stands_on_floor) << name;
     EXPECT_EQ(traits.encoders.size(), name == "laser-tracker" ? 2U : 0U) << name;
+    const LineReading line_reading = name == "displacement"   ? LineReading::Along
+                                     : name == "straightness" ? LineReading::Across
+                                     : name == "angle"        ? LineReading::Rotation
+                                                              : LineReading::None;
+    EXPECT_EQ(traits.line_reading, line_reading) << name;
   }
   EXPECT_EQ(instrument_with_bar(), "ball-bar");
 }

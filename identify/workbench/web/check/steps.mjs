@@ -203,7 +203,7 @@ async function unknown(story, fault) {
   await until(page, () => !document.querySelector('.suspects .looking'));
   if (await page.locator('.unknown').count() === 0) return console.log('  nothing without a name stands out here');
   const before = await headline(page);
-  await page.locator('.unknown button.primary').last().click();
+  await page.locator('.unknown button.primary').first().click();
   await page.locator('.surface-drawn button.primary, .banner.bad').first().waitFor({ timeout: kLong });
   if (await page.locator('.banner.bad').count() > 0) {
     console.log(`  ${await page.locator('.banner.bad').first().textContent()}`);

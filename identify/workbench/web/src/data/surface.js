@@ -3,6 +3,7 @@ import { titleOf, unitText } from './variables.js';
 
 const named = (driver, variables) => {
   const name = typeof driver === 'string' ? driver : driver.name;
+  if (name === 't') return { name, label: 'time', unit: 's' };
   return { name, label: name, unit: '', ...variables.find((variable) => variable.name === name) };
 };
 

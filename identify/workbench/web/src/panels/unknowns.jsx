@@ -33,9 +33,10 @@ function Surface({ surface }) {
   useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
   return (
     <div class="surface-drawn">
-      {figures.map((figure) => <Figure key={figure.caption} figure={figure} />)}
-      {surface.free?.length > 0 && <p class="muted">These readings leave open {surface.free.map(words).join('; ')}.</p>}
+      {figures.slice(0, 1).map((figure) => <Figure key={figure.caption} figure={figure} />)}
       <button type="button" class="primary" disabled={!mayAct.value} onClick={() => add(surface.name)}>Add the {surface.drivers.length > 1 ? 'surface' : 'curve'}</button>
+      {figures.slice(1).map((figure) => <Figure key={figure.caption} figure={figure} />)}
+      {surface.free?.length > 0 && <p class="muted">These readings leave open {surface.free.map(words).join('; ')}.</p>}
       {surface.formulas?.length > 0 && <><p>Laws that may stand behind it:</p><ul class="formulas">{surface.formulas.map((formula) => <Formula key={formula.text ?? formula.label} formula={formula} />)}</ul></>}
     </div>
   );

@@ -3,6 +3,8 @@
 #include <httplib.h>
 
 #include <chrono>
+#include <ctime>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -17,6 +19,7 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kLargestBody = 1 << 20;
 constexpr std::size_t kThreads = 24;  // every page that is open holds one for its events
 constexpr std::chrono::seconds kLonely{10};
+constexpr std::time_t kIdle = 3;  // s, that a connection stays open without a request
 constexpr std::chrono::milliseconds kLookAround{100};
 constexpr std::chrono::milliseconds kStart{1};
 
@@ -72,6 +75,8 @@ Server::Server(Workbench& workbench, ServerOptions options)
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http.set_payload_max_length(kLargestBody);
   http.set_tcp_nodelay(true);
+  http.set_keep_alive_max_count(std::numeric_limits<std::size_t>::max());
+  http.set_keep_alive_timeout(kIdle);
   http.set_socket_options(&take_the_port_alone);
   http.set_default_headers({{"Cache-Control", "no-store"},
                             {"X-Content-Type-Options", "nosniff"},

@@ -106,10 +106,22 @@ Json vector_json(const Eigen::VectorXd& values, double factor) {
   return json;
 }
 
+/// "p=120.3+-4": as a formula of the user's takes it.
+Json parameters_json(const Options& options) {
+  Json parameters = Json::array();
+  for (const std::string name : {"p", "q"}) {
+    const auto value = options.number(name), sigma = options.number(name + "_sigma");
+    if (value)
+      parameters.push_back(fmt::format("{}={}", name, *value) + (sigma ? fmt::format("+-{}", *sigma) : ""));
+  }
+  return parameters;
+}
+
 Json formula_json(const FormulaFinding& formula) {
   const double edge = 1.0 / formula.si_per_unit;
   return {{"label", formula.label},
           {"text", written_formula(formula.spec)},
+          {"parameters", parameters_json(formula.spec.options)},
           {"amplitude", number(formula.amplitude * edge)},
           {"u95", number(kCoverageFactor * formula.u * edge)},
           {"unit", formula.unit},

@@ -63,6 +63,7 @@ std::vector<UnknownFinding> rejected_findings(const ModelState& reached, const R
 }  // namespace
 
 void report_what_is_certain(std::vector<UnknownFinding>& unknown) {
+  if (unknown.empty()) return;
   UnknownFinding& leading = unknown.front();
   if (leading.variables.size() < 2) return;
   const double nearly = leading.log10_p + std::max(kThresholds.same_second_variable,

@@ -153,6 +153,8 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   const AmplitudeFigure& figure = confirmed.effects[0].amplitudes[0];
   EXPECT_NEAR(figure.value, previewed, 0.25 * kCoverageFactor * figure.u);
   EXPECT_NEAR(rms(own->residual()), residual, 0.1 * residual);
+  EXPECT_TRUE(own->unknown().empty()) << "nothing is left to be found";
+  EXPECT_FALSE(own->unknown_leads());
   const ModelSpec model = own->model();
   ASSERT_EQ(model.effects.size(), 2U);
   EXPECT_EQ(model.effects[0].options.number("amplitude"), figure.value);

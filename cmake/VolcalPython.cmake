@@ -41,7 +41,7 @@ target_compile_definitions(volcal_python PRIVATE VOLCAL_VERSION="${PROJECT_VERSI
 target_include_directories(volcal_python SYSTEM PRIVATE ${VOLCAL_PYBIND11_INCLUDE_DIR} ${python_include})
 # Of what it links it exports nothing: other modules of the process may hold other versions.
 target_link_options(volcal_python PRIVATE LINKER:--exclude-libs,ALL)
-target_link_libraries(volcal_python PRIVATE volcal_report nlohmann_json::nlohmann_json fmt::fmt)
+target_link_libraries(volcal_python PRIVATE volcal_session volcal_report nlohmann_json::nlohmann_json fmt::fmt)
 
 set(python_package __init__.py __init__.pyi py.typed)
 foreach(file IN LISTS python_package)

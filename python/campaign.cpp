@@ -12,9 +12,9 @@
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/findings.h"
-#include "volcal/python/long_work.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/findings.h"
+#include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {

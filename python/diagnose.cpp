@@ -19,11 +19,11 @@
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/findings.h"
-#include "volcal/python/long_work.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/findings.h"
+#include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {

@@ -13,7 +13,7 @@
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/written_target.h"
-#include "volcal/python/arrays.h"
+#include "volcal/python/shared/arrays.h"
 
 namespace volcal::python {
 namespace {

@@ -3,8 +3,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "volcal/python/arrays.h"
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 namespace {

@@ -8,10 +8,10 @@
 #include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit_words.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/long_work.h"
 #include "volcal/python/model.h"
 #include "volcal/python/result.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {

@@ -8,8 +8,8 @@
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/model/description/units.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 namespace {

@@ -11,8 +11,8 @@
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/effects/registry.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/long_work.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {

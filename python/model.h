@@ -6,7 +6,7 @@
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 

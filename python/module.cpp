@@ -1,6 +1,6 @@
 #include <glog/logging.h>
 
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/bindings.h"
 
 PYBIND11_MODULE(_volcal, module) {
   using namespace volcal::python;
@@ -20,4 +20,5 @@ PYBIND11_MODULE(_volcal, module) {
   define_tables(module);
   define_compensation(module);
   define_plan(module);
+  define_session(module);
 }

@@ -19,10 +19,10 @@
 #include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
-#include "volcal/python/arrays.h"
-#include "volcal/python/findings.h"
-#include "volcal/python/long_work.h"
 #include "volcal/python/model.h"
+#include "volcal/python/shared/arrays.h"
+#include "volcal/python/shared/findings.h"
+#include "volcal/python/shared/long_work.h"
 
 namespace volcal::python {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 

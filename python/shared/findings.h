@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "volcal/model/description/finding.h"
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 

@@ -1,8 +1,8 @@
-#include "volcal/python/findings.h"
+#include "volcal/python/shared/findings.h"
 
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/identify/words/sentences.h"
-#include "volcal/python/arrays.h"
+#include "volcal/python/shared/arrays.h"
 
 namespace volcal::python {
 

@@ -20,5 +20,6 @@ void define_montecarlo(py::module_& module);
 void define_tables(py::module_& module);
 void define_compensation(py::module_& module);
 void define_plan(py::module_& module);
+void define_session(py::module_& module);
 
 }  // namespace volcal::python

@@ -1,4 +1,4 @@
-#include "volcal/python/long_work.h"
+#include "volcal/python/shared/long_work.h"
 
 #include <dlfcn.h>
 

@@ -1,4 +1,4 @@
-#include "volcal/python/arrays.h"
+#include "volcal/python/shared/arrays.h"
 
 #include <algorithm>
 #include <utility>

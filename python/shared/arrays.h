@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/python/bindings.h"
+#include "volcal/python/shared/bindings.h"
 
 namespace volcal::python {
 

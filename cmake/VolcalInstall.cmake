@@ -7,6 +7,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/volcal)
 
 get_property(layers GLOBAL PROPERTY VOLCAL_LAYERS)
+list(REMOVE_ITEM layers volcal_workbench)  # a part of the program: who builds on the library needs no server
 install(TARGETS ${layers} volcal_volcal
         EXPORT volcal_targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -74,8 +74,7 @@ std::vector<std::size_t> observations_from(const std::string& text) {
     at = end + 1;
   }
   std::ranges::sort(observations);
-  const auto twice = std::ranges::unique(observations);
-  observations.erase(twice.begin(), twice.end());
+  observations.erase(std::unique(observations.begin(), observations.end()), observations.end());
   return observations;
 }
 

@@ -348,12 +348,12 @@ Json Workbench::state(const std::string& tab) const {
     busy = {{"what", waiting_->what}, {"behind", false}, {"stage", ""}, {"share", 0.0}, {"left_s", nullptr}};
   } else if (busy_) {
     const double seconds = std::chrono::duration<double>(EventHub::Clock::now() - busy_->begun).count();
-    constexpr double kToBeJudged = 0.03, kPatience = 0.5;
+    constexpr double kToBeJudged = 0.03, kLongEnough = 0.5;
     busy = {{"what", busy_->what},
             {"behind", busy_->behind},
             {"stage", busy_->stage},
             {"share", busy_->share},
-            {"left_s", busy_->share > kToBeJudged && seconds > kPatience
+            {"left_s", busy_->share > kToBeJudged && seconds > kLongEnough
                            ? Json(seconds * (1.0 - busy_->share) / busy_->share)
                            : Json()}};
   }

@@ -37,6 +37,15 @@ struct Answer {
   std::string body;
 };
 
+/// What is under way.
+struct Busy {
+  std::string what;
+  std::string stage;
+  double share = 0.0;
+  EventHub::Clock::time_point begun = EventHub::Clock::now();
+  bool behind = false;  ///< it may be stopped by whatever the user does next
+};
+
 class Workbench {
  public:
   /// Begins to load.
@@ -55,13 +64,6 @@ class Workbench {
 
  private:
   struct Job;
-  struct Busy {
-    std::string what;
-    std::string stage;
-    double share = 0.0;
-    EventHub::Clock::time_point begun = EventHub::Clock::now();
-    bool behind = false;  ///< it may be stopped by whatever the user does next
-  };
   enum class Phase { Loading, BadInput, Ready };
   using Lock = std::unique_lock<std::mutex>;
 

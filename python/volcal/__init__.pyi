@@ -21,6 +21,8 @@ __all__ = [
     "Plan",
     "Readings",
     "Result",
+    "Session",
+    "SessionModel",
     "Setup",
     "Tables",
     "__version__",

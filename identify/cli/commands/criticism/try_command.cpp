@@ -10,8 +10,8 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/parameter_option.h"
-#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/heldout_comparison.h"
 #include "volcal/identify/criticism/model_extension.h"
@@ -55,9 +55,9 @@ struct Tried {
 };
 
 /// What stands before the parts of the work on the progress bar.
-class Share {
+class ShareOfWork {
  public:
-  Share(ProgressBar& bar, std::string name, double from, double to)
+  ShareOfWork(ProgressBar& bar, std::string name, double from, double to)
       : bar_(bar), name_(std::move(name)), from_(from), to_(to) {}
   void operator()(const std::string& /*stage*/, double done) const {
     bar_.update(name_, from_ + (to_ - from_) * done);
@@ -104,7 +104,7 @@ std::string why_not_visible(const FitResult& result, const std::string& label) {
 }
 
 Comparison judged_lines(const Campaign& campaign, const ModelSpec& model,
-                        const std::vector<std::vector<bool>>& rows, int threads, const Share& share) {
+                        const std::vector<std::vector<bool>>& rows, int threads, const ShareOfWork& share) {
   return compare(campaign, heldout_residuals(campaign, model, rows, {threads, true, share}));
 }
 
@@ -113,14 +113,14 @@ Diagnosis what_remains(const Campaign& campaign, const ModelSpec& model, int thr
   options.threads = threads;
   options.outliers = OutlierPolicy::Remove;
   options.noise = NoisePolicy::White;  // the diagnosis estimates it, at every step anew
-  options.progress = Share(bar, "fit without suspect readings", 0.6, 0.7);
+  options.progress = ShareOfWork(bar, "fit without suspect readings", 0.6, 0.7);
   const FitResult result = fit(campaign, model, options);
   DiagnoseOptions diagnosis;
   diagnosis.threads = threads;
   diagnosis.climb = true;
   diagnosis.figures = false;
   diagnosis.compare = false;
-  diagnosis.progress = Share(bar, "what remains", 0.7, 1.0);
+  diagnosis.progress = ShareOfWork(bar, "what remains", 0.7, 1.0);
   return diagnose(campaign, result, diagnosis);
 }
 
@@ -129,7 +129,7 @@ Tried try_effect(const Campaign& campaign, const ModelSpec& without, const Model
   ProgressBar bar("try");
   FitOptions options;
   options.threads = threads;
-  options.progress = Share(bar, "fit", 0.0, 0.2);
+  options.progress = ShareOfWork(bar, "fit", 0.0, 0.2);
   const FitResult result = fit(campaign, with, options);
   Tried tried;
   tried.status = result.status;
@@ -139,9 +139,10 @@ Tried try_effect(const Campaign& campaign, const ModelSpec& without, const Model
   tried.judged =
       std::ranges::any_of(rows, [](const auto& setup) { return std::ranges::count(setup, true) > 0; });
   if (tried.judged) {
-    tried.without =
-        judged_lines(campaign, without, rows, threads, Share(bar, "held-out lines without it", 0.2, 0.4));
-    tried.with = judged_lines(campaign, with, rows, threads, Share(bar, "held-out lines with it", 0.4, 0.6));
+    tried.without = judged_lines(campaign, without, rows, threads,
+                                 ShareOfWork(bar, "held-out lines without it", 0.2, 0.4));
+    tried.with =
+        judged_lines(campaign, with, rows, threads, ShareOfWork(bar, "held-out lines with it", 0.4, 0.6));
   }
   tried.remains = what_remains(campaign, with, threads, bar);
   bar.finish();

@@ -12,10 +12,22 @@ export const ranked = async (page) => {
   await until(page, () => document.querySelector('.suspects') && !document.querySelector('.suspects.is-stale') && document.querySelector('.suspects .rows, .suspects .nothing'));
 };
 
-export const headline = (page) => page.evaluate(() => {
+const headlineNow = (page) => page.evaluate(() => {
   const node = document.querySelector('.headline');
   return { error: Number(node.querySelector('.value').textContent.replace(/[^\d.]/g, '')), standing: node.dataset.standing, current: document.querySelector('.chip.current').dataset.model };
 });
+
+/** Once its number, which moves to a new value, stands still. */
+export async function headline(page) {
+  let last = await headlineNow(page);
+  for (let look = 0; look < 50; look += 1) {
+    await page.waitForTimeout(200);
+    const now = await headlineNow(page);
+    if (now.error === last.error && now.current === last.current) return now;
+    last = now;
+  }
+  return last;
+}
 
 /** Share of the pixels of a canvas that are drawn on. */
 export const inked = (page, selector) => page.evaluate((which) => [...document.querySelectorAll(which)].map((canvas) => {

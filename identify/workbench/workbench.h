@@ -1,6 +1,6 @@
 #pragma once
 /// The workbench without its network: a campaign that is loaded, loaded again once a file is mended, a
-/// session on it, work that takes long in a thread of its own, exports, and what the page is told
+/// session on it, work that takes long in a thread of its own, exports, and what the page is sent
 /// (docs/workbench-protocol.md). For several threads at once.
 
 #include <filesystem>

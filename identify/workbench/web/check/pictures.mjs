@@ -1,6 +1,6 @@
 // Pictures of the guide: node pictures.mjs CHROMIUM MODULES OUT CAMPAIGN.toml COMMAND [ARGUMENT...]
-// Opens the campaign, adds the leading suspect twice, and leaves OUT/workbench.png (both added, the error fallen),
-// OUT/workbench-suspect.png (a suspect that is pointed at) and OUT/workbench-dark.png.
+// Opens the campaign, adds the leading suspect twice, and leaves OUT/workbench.png (both added, the error fallen) and
+// OUT/workbench-suspect.png (a suspect that is pointed at).
 import path from 'node:path';
 import { browserOf, open, start } from './browser.mjs';
 import { ranked, until } from './steps.mjs';
@@ -30,8 +30,5 @@ await page.mouse.move(5, 5);
 await page.waitForTimeout(1500);
 await toTop();
 await picture('workbench');
-await page.getByRole('button', { name: 'dark background' }).click();
-await page.waitForTimeout(800);
-await picture('workbench-dark');
 await browser.close();
 program.child.kill();

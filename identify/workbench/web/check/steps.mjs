@@ -125,7 +125,7 @@ async function add(story, fault) {
   await page.waitForTimeout(900);
   const after = await headline(page);
   if (!(after.error < before.error)) fault(`the error does not fall: ${before.error} to ${after.error}`);
-  if (!/systematic error/.test(await page.locator('#said').textContent())) fault('nobody is told that the error falls');
+  if (!/systematic error/.test(await page.locator('#said').textContent())) fault('no live region says that the error falls');
   await ranked(page);
   await shot(page, story, 'added');
 }

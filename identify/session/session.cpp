@@ -307,10 +307,14 @@ const std::vector<FamilyTest>& Session::tests() {
 }
 
 SessionWork Session::scan() {
-  return [state = node().state, families = tests(),
+  renew_setting();
+  return [state = node().state, known = node().tests,
           number = current_](const SessionProgress& progress) -> SessionChange {
-    report(progress, "scans without a catalogue", 0.1);
-    const ModelState scanned = state.with_tests(tests_of(state, families));
+    report(progress, "tests of the catalogue", 0.1);
+    std::vector<FamilyTest> families =
+        known ? *known : refined_tests(state.setting(), state.model(), state.projector());
+    report(progress, "scans without a catalogue", 0.3);
+    const ModelState scanned = state.with_tests(tests_of(state, std::move(families)));
     std::vector<UnknownFinding> unknown = unknown_findings(scanned, {});
     report_what_is_certain(unknown);
     report(progress, "done", 1.0);

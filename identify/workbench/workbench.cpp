@@ -284,9 +284,9 @@ std::optional<std::string> Workbench::work_of_the_user() const {
 
 /// At once, or started.
 void Workbench::do_command(const SessionCommand& command) {
-  if (busy_ && busy_->behind) cancelled_ = true;
   const std::string line = command_line_of(command, session().current().number);
   std::optional<SessionWork> long_work = begin(session(), command);
+  if (busy_ && busy_->behind) cancelled_ = true;
   if (!long_work) {
     commands_.push_back(line);
     waiting_.reset();
@@ -335,8 +335,8 @@ void Workbench::export_now(const std::string& what) {
   };
   if (what == "model") return tell({export_model(session(), place)});
   if (what == "commands") return tell({export_commands(commands_, place)});
-  if (busy_ && busy_->behind) cancelled_ = true;
   const ExportWork make = export_work(what, session(), place, options_.threads);
+  if (busy_ && busy_->behind) cancelled_ = true;
   start({"export", "", false, [make, tell](const SessionProgress& progress) -> std::function<void()> {
            return [files = make(progress), tell] { tell(files); };
          }});
@@ -448,6 +448,7 @@ void Workbench::run(Job& job, Lock& lock) {
     failed["what"] = job.what;
     hub_.publish("failed", json_text(failed, -1));
   }
+  if (!job.behind && !waiting_) confirm_what_is_linear();
   if (job.what != "scan") look_for_unknown();
   publish_state();
 }

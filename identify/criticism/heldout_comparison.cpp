@@ -37,6 +37,7 @@ Campaign without_rows(const Campaign& campaign, const std::vector<std::vector<bo
     const std::vector<bool>& marked = left_out[setup];
     for (auto& column : readings.position) drop(column, marked);
     for (auto& column : readings.value) drop(column, marked);
+    for (auto& column : readings.given) drop(column, marked);
     for (auto& column : readings.direction) drop(column, marked);
     for (auto& [channel, column] : readings.temperature) drop(column, marked);
     drop(readings.sigma, marked);
@@ -56,6 +57,7 @@ ModelSpec refittable_model(const FitResult& result) {
     const auto function = model.functions.find(summary.symbol);
     if (!summary.smoothed || function == model.functions.end()) continue;
     function->second.knots = KnotChoice::Automatic;
+    function->second.automatic_degree = function->second.basis == "fourier";
     function->second.breakpoints.clear();
   }
   return model;

@@ -160,7 +160,11 @@ std::vector<ReadingColumn> reading_columns(const Setup& setup, const Machine& ma
   if (!readings.sigma.empty()) columns.push_back(measured_column(sigma_column(schema), readings.sigma));
   const auto& set = schema.column_sets.at(readings.column_set);
   for (std::size_t k = 0; k < set.size(); ++k) {
-    columns.push_back(measured_column(set[k].column, readings.value.at(k)));
+    if (!set[k].derived) columns.push_back(measured_column(set[k].column, readings.value.at(k)));
+  }
+  const auto& given = schema.given_of(readings.column_set);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    columns.push_back(measured_column(given[k].column, readings.given.at(k)));
   }
   return columns;
 }

@@ -19,6 +19,7 @@ struct Readings {
       position;                            ///< commanded, m or rad; filled for the machine's axes
   std::vector<std::vector<double>> value;  ///< [channel][row], SI, order of the column set
   std::size_t column_set = 0;              ///< which of the instrument's column sets was found
+  std::vector<std::vector<double>> given;  ///< [given column of the set][row], SI; known, no observations
   std::vector<double> sigma;               ///< m or rad; replaces the setup's noise
   std::array<std::vector<std::int8_t>, kAxisCount> direction;  ///< -1, 0 (unknown), +1
   std::vector<double> time;                                    ///< s, campaign clock

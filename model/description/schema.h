@@ -30,7 +30,10 @@ struct ColumnSchema {
   std::string column;  ///< with unit: "length_mm"
   std::string help;
   double plausible_max = 1e300;  ///< largest |value| in the column's unit
+  bool derived = false;          ///< not in the file: follows from the given columns of its set
 };
+
+struct Readings;
 
 /// Values of a table's keys after reading: SI, under the key's stem ("station", not "station_mm"). Values of
 /// different type under one stem stand beside each other: `station = "P1"` and `station_mm = [...]`.
@@ -121,6 +124,25 @@ struct InstrumentSchema {
   std::vector<std::vector<ColumnSchema>> column_sets;
   std::vector<KeySchema> noise_keys;
   InstrumentTraits traits = {};
+  /// Per column set: columns that its readings rest on and that are taken as known, as the direction of a
+  /// contact. Empty = none.
+  std::vector<std::vector<ColumnSchema>> given_columns = {};
+  /// The reading of a set whose column is derived, from Readings::given; SI.
+  std::vector<double> (*derive_reading)(const Readings& readings) = nullptr;
+
+  const std::vector<ColumnSchema>& given_of(std::size_t set) const {
+    static const std::vector<ColumnSchema> none;
+    return set < given_columns.size() ? given_columns[set] : none;
+  }
+  /// Columns of a set that a file must have: readings, and what they rest on.
+  std::vector<ColumnSchema> file_columns(std::size_t set) const {
+    std::vector<ColumnSchema> columns;
+    for (const ColumnSchema& column : column_sets[set]) {
+      if (!column.derived) columns.push_back(column);
+    }
+    columns.insert(columns.end(), given_of(set).begin(), given_of(set).end());
+    return columns;
+  }
 };
 
 /// What an effect declares: keys of its `[[effects]]` table besides `kind`.

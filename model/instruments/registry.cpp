@@ -16,7 +16,9 @@ namespace volcal {
   INSTRUMENT(displacement)             \
   INSTRUMENT(straightness)             \
   INSTRUMENT(angle)                    \
-  INSTRUMENT(volumetric_points)
+  INSTRUMENT(volumetric_points)        \
+  INSTRUMENT(r_test)                   \
+  INSTRUMENT(probed_sphere)
 
 #define VOLCAL_DECLARE_INSTRUMENT(name) const Instrument& name();
 #define VOLCAL_ADDRESS_OF_INSTRUMENT(name) &(name)(),

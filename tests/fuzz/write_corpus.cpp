@@ -96,7 +96,8 @@ int main(int count, char** arguments) {
   write(folder, "errors", "metadata", "\2" + volcal::table_metadata_csv(small_result(), {}));
   const auto all = volcal::instruments();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    for (const auto& columns : all[i]->schema().column_sets) {
+    for (std::size_t set = 0; set < all[i]->schema().column_sets.size(); ++set) {
+      const auto columns = all[i]->schema().file_columns(set);
       const std::string choice = {static_cast<char>(i), '\0'};
       write(folder, "csv", all[i]->schema().name + "-" + columns.front().column,
             choice + sample_csv(columns));

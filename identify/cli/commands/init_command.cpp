@@ -83,7 +83,7 @@ std::string commented_setup(const InstrumentSchema& schema, const std::string& p
       "\n# {}\n# reading: {}\n#[[setups]]\n#name = \"{}-1\"\n#instrument = \"{}\"\n#data = \"{}-1.csv\"  # "
       "columns: {}",
       schema.summary, schema.equation, schema.name, schema.name, schema.name, positions);
-  for (const ColumnSchema& column : schema.column_sets.front()) text += "," + column.column;
+  for (const ColumnSchema& column : schema.file_columns(0)) text += "," + column.column;
   text += "\n#tool = \"short\"\n";
   for (const KeySchema& key : schema.keys) {
     const std::string value = key.type == KeyType::Vector3   ? "[0.0, 0.0, 0.0]"

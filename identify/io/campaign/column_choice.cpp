@@ -99,9 +99,11 @@ class ColumnChooser {
   }
 
   bool is_reading(const std::string& column) const {
-    return std::ranges::any_of(instrument_.column_sets, [&](const auto& set) {
-      return std::ranges::find(set, column, &ColumnSchema::column) != set.end();
-    });
+    for (std::size_t s = 0; s < instrument_.column_sets.size(); ++s) {
+      const auto set = instrument_.file_columns(s);
+      if (std::ranges::find(set, column, &ColumnSchema::column) != set.end()) return true;
+    }
+    return false;
   }
 
   std::string file_name(const std::string& column) const {
@@ -245,7 +247,7 @@ class ColumnChooser {
     std::size_t fullest = 0;
     std::size_t most = 0;
     for (std::size_t s = 0; s < instrument_.column_sets.size(); ++s) {
-      const auto& set = instrument_.column_sets[s];
+      const auto set = instrument_.file_columns(s);
       const auto present = [&](const ColumnSchema& column) { return find(column.column).has_value(); };
       const auto count = static_cast<std::size_t>(std::ranges::count_if(set, present));
       if (count == set.size()) complete.push_back(s);
@@ -258,16 +260,15 @@ class ColumnChooser {
     drop_parts_of_larger_sets(complete);
     if (complete.size() > 1) fail_two_readings(complete);
     choice_.column_set = complete.front();
-    const auto& set = instrument_.column_sets[complete.front()];
-    for (const ColumnSchema& column : set) require(column.column);
+    for (const ColumnSchema& column : instrument_.file_columns(choice_.column_set)) require(column.column);
   }
 
   /// Of the sets found, those whose columns all belong to another set found as well say nothing new.
   void drop_parts_of_larger_sets(std::vector<std::size_t>& complete) const {
     const auto is_part_of = [&](std::size_t part, std::size_t whole) {
-      const auto& columns = instrument_.column_sets[whole];
+      const auto columns = instrument_.file_columns(whole);
       return part != whole &&
-             std::ranges::all_of(instrument_.column_sets[part], [&](const ColumnSchema& column) {
+             std::ranges::all_of(instrument_.file_columns(part), [&](const ColumnSchema& column) {
                return std::ranges::find(columns, column.column, &ColumnSchema::column) != columns.end();
              });
     };
@@ -278,12 +279,12 @@ class ColumnChooser {
   }
 
   [[noreturn]] void fail_reading(std::size_t set, std::size_t present) const {
-    for (const ColumnSchema& column : instrument_.column_sets[set]) {
+    for (const ColumnSchema& column : instrument_.file_columns(set)) {
       if (find(column.column)) continue;
       if (present > 0 || instrument_.column_sets.size() == 1) fail_missing(column.column);
       std::vector<std::string> names;
-      for (const auto& alternative : instrument_.column_sets) {
-        const std::string& first = alternative.front().column;
+      for (std::size_t s = 0; s < instrument_.column_sets.size(); ++s) {
+        const std::string first = instrument_.file_columns(s).front().column;
         if (std::ranges::find(names, first) == names.end()) names.push_back(first);
       }
       throw InputError(table_.header_place(),
@@ -291,12 +292,12 @@ class ColumnChooser {
                            delimiter_hint(),
                        missing_remedy(column.column));
     }
-    fail_missing(instrument_.column_sets[set].front().column);
+    fail_missing(instrument_.file_columns(set).front().column);
   }
 
   [[noreturn]] void fail_two_readings(const std::vector<std::size_t>& complete) const {
-    const std::string first = instrument_.column_sets[complete[0]].front().column;
-    const std::string second = instrument_.column_sets[complete[1]].front().column;
+    const std::string first = instrument_.file_columns(complete[0]).front().column;
+    const std::string second = instrument_.file_columns(complete[1]).front().column;
     throw InputError(table_.header_place(), "the file has both " + first + " and " + second,
                      "keep one of them; " + instrument_.name + " takes one kind of reading per setup");
   }
@@ -346,8 +347,9 @@ class ColumnChooser {
   /// The column of a larger set than the one found that `column` may be meant to be.
   std::optional<std::string> missing_component(const std::string& column) const {
     std::vector<std::string> missing;
-    for (const auto& set : instrument_.column_sets) {
-      if (set.size() <= instrument_.column_sets[choice_.column_set].size()) continue;
+    for (std::size_t s = 0; s < instrument_.column_sets.size(); ++s) {
+      const auto set = instrument_.file_columns(s);
+      if (set.size() <= instrument_.file_columns(choice_.column_set).size()) continue;
       for (const ColumnSchema& part : set) {
         if (std::ranges::find(choice_.name, part.column) == choice_.name.end())
           missing.push_back(part.column);
@@ -402,8 +404,10 @@ std::vector<std::string> optional_columns(const Machine& machine, const Instrume
 std::vector<std::string> known_columns(const Machine& machine, const InstrumentSchema& instrument) {
   std::vector<std::string> names;
   for (const Axis& axis : machine.axes) names.push_back(axis_column(axis.name));
-  for (const auto& set : instrument.column_sets) {
-    for (const ColumnSchema& column : set) names.push_back(column.column);
+  for (std::size_t s = 0; s < instrument.column_sets.size(); ++s) {
+    for (const ColumnSchema& column : instrument.file_columns(s)) {
+      if (std::ranges::find(names, column.column) == names.end()) names.push_back(column.column);
+    }
   }
   for (const std::string& column : optional_columns(machine, instrument)) names.push_back(column);
   return names;

@@ -31,6 +31,7 @@ std::vector<double> values_of_row(const Readings& readings, std::size_t row) {
     if (!column.empty()) all.push_back(column[row]);
   }
   for (const auto& column : readings.value) all.push_back(column[row]);
+  for (const auto& column : readings.given) all.push_back(column[row]);
   for (const auto& column : readings.direction) {
     if (!column.empty()) all.push_back(column[row]);
   }
@@ -139,7 +140,8 @@ std::vector<Finding> doubts_of(const Setup& setup, const Machine& machine) {
 bool same_readings(const Setup& one, const Setup& other) {
   const Readings &a = one.readings, &b = other.readings;
   return one.instrument == other.instrument && one.tool == other.tool && a.size() > 1 &&
-         a.column_set == b.column_set && a.value == b.value && a.position == b.position && a.time == b.time;
+         a.column_set == b.column_set && a.value == b.value && a.given == b.given &&
+         a.position == b.position && a.time == b.time;
 }
 
 }  // namespace volcal

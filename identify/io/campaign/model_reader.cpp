@@ -123,10 +123,20 @@ class ModelReader {
         table.fail("degree", table.path() + ": the basis \"" + spec.basis + "\" has no degree",
                    "remove degree");
       }
-      spec.degree = static_cast<int>(*table.integer("degree", kind.degree_min, kind.degree_max));
+      read_degree(table, kind, spec);
     }
     if (table.has("knots")) read_knots(table, kind, spec);
     return spec;
+  }
+
+  /// "auto": as many harmonics as the readings tell apart, smoothed by evidence.
+  static void read_degree(const TomlTable& table, const BasisKind& kind, FunctionSpec& spec) {
+    spec.automatic_degree = kind.has_automatic_degree && table.kind("degree") == TomlKind::Text;
+    if (spec.automatic_degree) {
+      table.choice("degree", {"auto"});
+      return;
+    }
+    spec.degree = static_cast<int>(*table.integer("degree", kind.degree_min, kind.degree_max));
   }
 
   static void require_knots(const TomlTable& table, const std::string& key, const BasisKind& kind) {
@@ -188,6 +198,8 @@ class ModelReader {
     if (!table.has(key)) return;
     spec.coefficients = *table.numbers(key);
     const std::string name = table.path() + "." + key;
+    if (spec.automatic_degree)
+      table.fail(key, name + " needs a fixed degree", "write the highest harmonic, as degree = 6");
     if (kind.uses_knots && spec.knots == KnotChoice::Automatic) {
       table.fail(key, name + " needs fixed knots", "add knots_mm (knots_deg), or knots = INTERVALS");
     }

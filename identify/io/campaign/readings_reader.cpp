@@ -29,6 +29,7 @@ class ReadingsReader {
   Readings read() {
     readings_.column_set = choice_.column_set;
     readings_.value.resize(instrument_.column_sets[choice_.column_set].size());
+    readings_.given.resize(instrument_.given_of(choice_.column_set).size());
     CsvColumns columns = table_.numbers(choice_.index);
     line_ = std::move(columns.source_line);
     for (std::size_t i = 0; i < choice_.name.size(); ++i) {
@@ -38,6 +39,8 @@ class ReadingsReader {
     in_constants_ = true;
     for (const auto& [column, value] : mapping_.constant) store(column, std::vector(line_.size(), value));
     readings_.source_line = std::move(line_);
+    if (instrument_.column_sets[choice_.column_set].front().derived)
+      readings_.value.front() = instrument_.derive_reading(readings_);
     return std::move(readings_);
   }
 
@@ -92,7 +95,9 @@ class ReadingsReader {
 
   void store_reading(const std::string& column, std::vector<double> values) {
     const auto& set = instrument_.column_sets[readings_.column_set];
-    const auto schema = std::ranges::find(set, column, &ColumnSchema::column);
+    const auto& given = instrument_.given_of(readings_.column_set);
+    const auto own = std::ranges::find(set, column, &ColumnSchema::column);
+    const auto schema = own != set.end() ? own : std::ranges::find(given, column, &ColumnSchema::column);
     const double most = schema->plausible_max;
     for (std::size_t row = 0; row < values.size(); ++row) {
       if (std::abs(values[row]) <= most) continue;
@@ -105,7 +110,9 @@ class ReadingsReader {
       }
       fail(row, column + " = " + number_text(values[row]) + " is too large", remedy);
     }
-    readings_.value[static_cast<std::size_t>(schema - set.begin())] = in_si(column, std::move(values));
+    auto& store = own != set.end() ? readings_.value[static_cast<std::size_t>(own - set.begin())]
+                                   : readings_.given[static_cast<std::size_t>(schema - given.begin())];
+    store = in_si(column, std::move(values));
   }
 
   void store_sigma(const std::string& column, std::vector<double> values) {

@@ -67,7 +67,11 @@ std::string knots_toml(const FunctionSpec& spec, std::optional<AxisName> axis) {
 std::string function_toml(const FunctionSpec& spec, std::optional<ErrorSymbol> symbol) {
   const BasisKind* kind = find_basis(spec.basis);
   std::string text = "{ basis = " + toml_text(spec.basis);
-  if (kind && kind->degree_max > 0) text += fmt::format(", degree = {}", spec.degree);
+  if (spec.automatic_degree) {
+    text += ", degree = \"auto\"";
+  } else if (kind && kind->degree_max > 0) {
+    text += fmt::format(", degree = {}", spec.degree);
+  }
   if (kind && kind->uses_knots) text += knots_toml(spec, symbol ? std::optional(symbol->axis) : std::nullopt);
   if (symbol && !spec.coefficients.empty()) {
     text +=

@@ -172,8 +172,7 @@ class GenericCsv {
     for (const Instrument* instrument : instruments()) {
       const InstrumentSchema& schema = instrument->schema();
       if (answers_.instrument && schema.name != *answers_.instrument) continue;
-      const bool fits =
-          std::ranges::any_of(schema.column_sets, [&](const auto& set) { return has_all(set); });
+      const bool fits = has_a_set(schema);
       if (!fits && !answers_.instrument) continue;
       fitting.push_back(schema.name);
       readings_.instrument = &schema;
@@ -192,6 +191,13 @@ class GenericCsv {
     if (fitting.size() > 1)
       ask_for(source_, "which instrument measured", "--instrument NAME: " + join_names(fitting));
     add_fact("instrument", fitting.front(), answers_.instrument ? "--instrument" : "its columns");
+  }
+
+  bool has_a_set(const InstrumentSchema& schema) const {
+    for (std::size_t set = 0; set < schema.column_sets.size(); ++set) {
+      if (has_all(schema.file_columns(set))) return true;
+    }
+    return false;
   }
 
   bool has_all(const std::vector<ColumnSchema>& set) const {

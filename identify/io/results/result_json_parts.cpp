@@ -105,18 +105,21 @@ Axis axis_from(const Json& json) {
 }
 
 Json function_json(const FunctionSpec& spec) {
-  return {{"basis", spec.basis},
-          {"degree", spec.degree},
-          {"knots", name_in(kKnotChoices, spec.knots)},
-          {"intervals", spec.intervals},
-          {"breakpoints", numbers(spec.breakpoints)},
-          {"coefficients", numbers(spec.coefficients)}};
+  Json json = {{"basis", spec.basis},
+               {"degree", spec.degree},
+               {"knots", name_in(kKnotChoices, spec.knots)},
+               {"intervals", spec.intervals},
+               {"breakpoints", numbers(spec.breakpoints)},
+               {"coefficients", numbers(spec.coefficients)}};
+  if (spec.automatic_degree) json["automatic_degree"] = true;
+  return json;
 }
 
 FunctionSpec function_from(const Json& json) {
   FunctionSpec spec;
   spec.basis = json.at("basis").get<std::string>();
   spec.degree = json.at("degree").get<int>();
+  spec.automatic_degree = json.value("automatic_degree", false);
   spec.knots = value_in(kKnotChoices, json.at("knots"));
   spec.intervals = json.at("intervals").get<int>();
   spec.breakpoints = numbers_from(json.at("breakpoints"));

@@ -69,7 +69,7 @@ struct Sample {
 std::vector<Sample> samples() {
   std::vector<Sample> all;
   for (const EffectKind* kind : effect_kinds()) {
-    const EffectSpec spec = kind->examples(testing_support::effect_campaign()).front();
+    const EffectSpec spec = kind->examples(testing_support::five_axis_effect_campaign()).front();
     const std::unique_ptr<Effect> effect = kind->make(spec, {});
     const bool list = effect->amplitudes().front().element >= 0;
     all.push_back({kind, effect_toml(spec), effect->amplitudes().front().key,

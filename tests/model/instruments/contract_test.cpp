@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "volcal/model/description/units.h"
@@ -44,6 +45,12 @@ Setup setup_from(const InstrumentSchema& schema, bool all_keys, std::size_t choi
     std::vector<double> column(kRows);
     for (double& value : column) value = uniform(random, 0.5, 1.0);
     setup.readings.value.push_back(column);
+  }
+  for (const ColumnSchema& given : schema.given_of(column_set)) {
+    std::vector<double> column(kRows);
+    for (double& value : column) value = uniform(random, 0.5, 1.0);
+    if (unit_of_key(given.column).suffix.empty()) column.assign(kRows, 1.0 / std::sqrt(3.0));
+    setup.readings.given.push_back(column);
   }
   for (int row = 0; row < kRows; ++row) {
     setup.readings.source_line.push_back(row + 2);

@@ -38,7 +38,9 @@ TEST(InstrumentTraits, OfOurInstruments) {
       {"displacement", {LaserLength::Displacement, true, false, false, false, false}},
       {"straightness", {LaserLength::None, true, false, false, false, false}},
       {"angle", {LaserLength::None, false, false, false, false, false}},
-      {"volumetric-points", {LaserLength::None, false, false, false, true, false}}};
+      {"volumetric-points", {LaserLength::None, false, false, false, true, false}},
+      {"r-test", {LaserLength::None, false, false, false, false, false}},
+      {"probed-sphere", {LaserLength::None, false, false, false, false, false}}};
   EXPECT_EQ(truth.size(), instruments().size());
   for (const Instrument* instrument : instruments()) {
     const std::string& name = instrument->schema().name;

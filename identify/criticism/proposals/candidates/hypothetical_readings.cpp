@@ -109,6 +109,7 @@ ExtraMeasurement taken_again(const CandidateContext& context, const Setup& setup
     to.direction[axis] = picked(from.direction[axis], rows);
   }
   for (const auto& channel : from.value) to.value.push_back(picked(channel, rows));
+  for (const auto& column : from.given) to.given.push_back(picked(column, rows));
   to.column_set = from.column_set;
   to.sigma = picked(from.sigma, rows);
   to.line = picked(from.line, rows);

@@ -32,7 +32,14 @@ void give_back(const ModelToExtend& extended, const EffectSpec& spec, const Exte
   const bool lacks_one = std::ranges::any_of(
       symbols, [&](const std::string& name) { return is_left_out(name, extended.model); });
   if (!lacks_one) refuse_known(extended.model, 0, *spec.options.text("symbol"), words);
-  restore_left_out(spec, extended.model);
+  restore_left_out(spec, extended.machine, extended.model);
+}
+
+/// Of an error left out alone and of several left out together one can be given back by the other.
+bool is_given_back(const EffectSpec& spec, const ModelSpec& model) {
+  return spec.kind == kLeftOut &&
+         std::ranges::none_of(left_out_symbols(spec),
+                              [&](const std::string& name) { return is_left_out(name, model); });
 }
 
 }  // namespace
@@ -100,6 +107,7 @@ std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
 ModelSpec extended_model(ModelSpec model, const Campaign& campaign,
                          const std::vector<EffectFinding>& effects) {
   for (const EffectFinding& effect : effects) {
+    if (is_given_back(effect.spec, model)) continue;
     extend_model({model, campaign.machine, &campaign}, effect.spec,
                  {.label = effect.label,
                   .remedy_if_known = "diagnose the campaign with a model without it",

@@ -69,7 +69,7 @@ class Expectation {
   }
 
   void find_prior(const FunctionRoughnessGuess& roughness) {
-    base_prior_ = stated_priors(model_.layout(), datum_);
+    base_prior_ = stated_priors(model_, datum_);
     const GaussianPrior wide = wide_prior(model_, datum_, z_, sigma_);
     rank_ = analyse_rank(model_, datum_, information_ + base_prior_.precision, wide);
     hold_undetermined(rank_, wide, base_prior_);

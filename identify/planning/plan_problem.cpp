@@ -187,7 +187,7 @@ void PlanProblem::learn_machine() {
   }
   GaussianPrior prior = wide_prior(at.model, at.datum, at.datum.reduced(at.parameters), {});
   add_smoothing(assumed_smoothing(at.model, at.datum, settings_.roughness), prior);
-  prior.precision += stated_priors(at.model.layout(), at.datum).precision;
+  prior.precision += stated_priors(at.model, at.datum).precision;
   machine_precision_ = prior.precision.topLeftCorner(machine_size_, machine_size_);
   const auto functionals = [&]() -> Eigen::MatrixXd {
     switch (settings_.target) {
@@ -323,7 +323,7 @@ Eigen::MatrixXd PlanProblem::effect_functionals(const Linearised& at) const {
 
 /// Precision of everything without readings of the plan.
 Eigen::MatrixXd PlanProblem::known(const Linearised& at) const {
-  Eigen::MatrixXd precision = stated_priors(at.model.layout(), at.datum).precision;
+  Eigen::MatrixXd precision = stated_priors(at.model, at.datum).precision;
   if (machine_precision_.size() > 0) {
     precision.topLeftCorner(machine_size_, machine_size_) = machine_precision_;
   }

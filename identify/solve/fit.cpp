@@ -155,7 +155,7 @@ class Identification {
         model_.layout(), campaign_.machine, parameters_, [](ErrorSymbol) { return false; },
         [](const ParameterBlock& block) { return block.kind == ParameterKind::Nuisance; });
     Eigen::VectorXd z = datum.reduced(parameters_);
-    GaussianPrior prior = stated_priors(model_.layout(), datum);
+    GaussianPrior prior = stated_priors(model_, datum);
     // On the nominal machine a direction may be free (one station, one line): the guess holds it.
     for (int i = 0; i < datum.size(); ++i) {
       if (prior.precision(i, i) > 0.0) continue;
@@ -182,7 +182,7 @@ class Identification {
     NormalAccumulator accumulator(index_, weight, nullptr, threads_);
     const NormalEquations& sums = accumulator.accumulate(parameters_);
     result_.initial_cost = sums.cost;
-    base_prior_ = stated_priors(model_.layout(), *datum_);
+    base_prior_ = stated_priors(model_, *datum_);
     const GaussianPrior wide = wide_prior(model_, *datum_, z_, stated_sigma_);
     rank_ = analyse_rank(model_, *datum_, datum_->reduce_matrix(sums.matrix) + base_prior_.precision, wide);
     hold_undetermined(rank_, wide, base_prior_);

@@ -1,12 +1,14 @@
 #include "volcal/identify/solve/rank_causes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/tool_tips.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 namespace {
@@ -48,6 +50,50 @@ std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const st
   const auto symbol = ErrorSymbol::parse(name);
   if (!symbol || automatic_intervals(campaign, symbol->axis) > 1) return std::nullopt;
   return symbol->axis;
+}
+
+constexpr double kSidewaysTool = 0.06;  // m
+constexpr double kTurned = 1e-3;        // rad, from home
+constexpr std::size_t kEnoughSpheres = 3;
+
+std::optional<AxisName> rotary_axis_of(const std::string& name) {
+  if (const auto symbol = ErrorSymbol::parse(name); symbol && is_rotary(symbol->axis)) return symbol->axis;
+  const auto location = LocationSymbol::parse(name);
+  return location && is_rotary(location->axis) ? std::optional(location->axis) : std::nullopt;
+}
+
+/// Does some reading stand with two rotary axes turned away from home?
+bool turns_two_at_once(const Campaign& campaign, const std::vector<AxisName>& moving) {
+  for (const Setup& setup : campaign.setups) {
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      const auto turned = std::ranges::count_if(moving, [&](AxisName axis) {
+        const double from_home =
+            setup.readings.position[index_of(axis)][row] - campaign.machine.axis(axis).home;
+        return std::abs(from_home) > kTurned;
+      });
+      if (turned > 1) return true;
+    }
+  }
+  return false;
+}
+
+std::size_t spheres(const ParameterLayout& layout) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      layout.blocks, [](const ParameterBlock& block) { return block.name.starts_with("sphere "); }));
+}
+
+/// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side.
+std::vector<std::string> rotary_remedies(const MeasurementModel& model) {
+  const Campaign& campaign = model.campaign();
+  std::vector<std::string> remedies;
+  const std::vector<AxisName> moving = moving_rotary_axes(campaign);
+  if (moving.size() > 1 && !turns_two_at_once(campaign, moving)) remedies.emplace_back("combined-poses");
+  const std::size_t sphere_count = spheres(model.layout());
+  if (sphere_count > 0 && sphere_count < kEnoughSpheres) remedies.emplace_back("spheres");
+  if (tools_in_use(campaign) < 2) remedies.emplace_back("second-tool");
+  if (largest_sideways_offset(campaign, direction_of(AxisName::Z)) < kSidewaysTool)
+    remedies.emplace_back("mandrel");
+  return remedies;
 }
 
 }  // namespace
@@ -106,7 +152,11 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
     cause.data["axis"] = letter(*axis);
   }
   if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
-  if (tools_in_use(model.campaign()) < 2) remedies.emplace_back("second-tool");
+  if (rotary_axis_of(name)) {
+    for (std::string& remedy : rotary_remedies(model)) remedies.push_back(std::move(remedy));
+  } else if (tools_in_use(model.campaign()) < 2) {
+    remedies.emplace_back("second-tool");
+  }
   if (const auto across = third_tool_across(model.campaign(), name, partners)) {
     remedies.emplace_back("third-tool");
     cause.data["third_tool_across"] = std::string(1, *across);

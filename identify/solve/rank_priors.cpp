@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "volcal/identify/solve/priors/basis_prior.h"
+#include "volcal/identify/solve/priors/rotary_gauge.h"
 #include "volcal/identify/solve/rank.h"
 
 namespace volcal {
@@ -76,7 +77,8 @@ GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum,
   return prior;
 }
 
-GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& datum) {
+GaussianPrior stated_priors(const MeasurementModel& model, const DatumSpace& datum) {
+  const ParameterLayout& layout = model.layout();
   GaussianPrior prior = GaussianPrior::none(datum.size());
   for (const auto& block : datum.blocks()) {
     const ParameterBlock& source = layout.blocks[block.block];
@@ -87,6 +89,7 @@ GaussianPrior stated_priors(const ParameterLayout& layout, const DatumSpace& dat
       prior.mean[block.offset + k] = source.prior_mean[k];
     }
   }
+  prior.precision += rotary_gauge(model, datum);
   return prior;
 }
 

@@ -79,6 +79,7 @@ ModelSpec identified_model(const ModelSpec& spec, const ParameterLayout& layout,
   for (const ErrorSymbol symbol : layout.symbols()) {
     FunctionSpec& function = identified.functions[symbol];
     function.knots = KnotChoice::Explicit;
+    function.automatic_degree = false;
     const Eigen::VectorXd coefficients = layout.coefficients(symbol, parameters);
     function.coefficients.assign(coefficients.begin(), coefficients.end());
   }

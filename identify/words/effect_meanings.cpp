@@ -71,6 +71,15 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
     {"tool-load", "An error motion differs between tools: the machine gives way under a heavy or long one.",
      "a heavy tool, head or reflector holder; a spindle or quill that sags when it is out; weak clamping of "
      "the head"},
+    {"tilt-load",
+     "An error motion changes as a table or head tilts: its weight pulls on what carries it in another "
+     "direction.",
+     "a cradle or head whose centre of gravity is off its axis; a column or ram that yields; a balance that "
+     "is weak or out of adjustment"},
+    {"cradle-coupling",
+     "An error motion of a rotary axis, once per turn, grows as another rotary axis tilts it.",
+     "a table bearing that yields under its weight when it stands on edge; a workpiece out of balance; a "
+     "clamp that lets go"},
     {"length-scale", "All lengths of an instrument are too long or too short in proportion.",
      "a wrong air temperature, pressure or humidity in the wavelength's compensation; a sensor that is not "
      "where the beam is; a wavelength or scale entered wrongly"},

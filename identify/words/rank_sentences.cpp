@@ -71,6 +71,12 @@ std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
     return "add an instrument that holds position or direction over the whole travel (tracer, straightness, "
            "square)";
   }
+  if (remedy == "combined-poses")
+    return "turn both rotary axes at once, over a grid of their positions: one at a time they exchange "
+           "errors";
+  if (remedy == "spheres") return "measure at three places on the table that lie on no line";
+  if (remedy == "mandrel")
+    return "add a mandrel whose tip lies 60 mm or more to the side of the spindle's axis";
   if (remedy == "other-lines")
     return "add lines at other offsets, straightness or angle readings that tell them apart";
   throw std::invalid_argument("a remedy \"" + remedy + "\" is not known");

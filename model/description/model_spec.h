@@ -18,6 +18,7 @@ enum class KnotChoice { Automatic, IntervalCount, Explicit };
 struct FunctionSpec {
   std::string basis = "bspline";  ///< a registered basis: bspline, legendre, fourier, zero
   int degree = 3;                 ///< bspline 1..3; legendre: highest degree; fourier: highest harmonic
+  bool automatic_degree = false;  ///< fourier: `degree` follows from the readings, and smoothing decides
   KnotChoice knots = KnotChoice::Automatic;
   int intervals = 0;                 ///< for IntervalCount
   std::vector<double> breakpoints;   ///< for Explicit: m or rad, ascending, ends included

@@ -44,6 +44,10 @@ struct ErrorSymbol {
   std::string name() const;
   /// Positioning error: EXX, EYY, EZZ, EAA, EBB, ECC.
   constexpr bool is_positioning() const { return index_of(component) == index_of(axis); }
+  /// Displacement or tilt of a rotary axis across its line: EXC, EYC, EAC, EBC.
+  constexpr bool is_transverse() const {
+    return is_rotary(axis) && direction_of(component) != direction_of(axis);
+  }
   /// Straightness of a linear axis: displacement component other than its own.
   constexpr bool is_straightness() const {
     return !is_rotary(axis) && !is_rotation(component) && !is_positioning();
@@ -65,9 +69,17 @@ struct LocationSymbol {
   friend auto operator<=>(const LocationSymbol&, const LocationSymbol&) = default;
 };
 
-/// What the datum fixes of an error function beside its value at home, which is zero: of the straightness of
-/// a linear axis the slope, which the squareness holds; of other motions, and of rotary axes, nothing.
-constexpr bool has_free_slope(const ErrorSymbol& symbol) { return !symbol.is_straightness(); }
+/// What the datum makes zero of an error function. Of the straightness of a linear axis: the value at home
+/// and the slope, which the squareness holds. Of a transverse motion of a rotary axis: the mean over the
+/// travel, which the location of the axis average line holds. Of others: the value at home.
+enum class FunctionDatum { Home, HomeAndSlope, Mean };
+constexpr FunctionDatum datum_of(const ErrorSymbol& symbol) {
+  if (symbol.is_straightness()) return FunctionDatum::HomeAndSlope;
+  return symbol.is_transverse() ? FunctionDatum::Mean : FunctionDatum::Home;
+}
+constexpr bool has_free_slope(const ErrorSymbol& symbol) {
+  return datum_of(symbol) != FunctionDatum::HomeAndSlope;
+}
 
 /// Unit in which a component is printed: "um" or "urad".
 std::string_view edge_unit(Component component);

@@ -1,9 +1,29 @@
 #include "volcal/model/description/unknowns.h"
 
 #include <algorithm>
+#include <limits>
+#include <numbers>
 
 namespace volcal {
 namespace {
+
+constexpr double kNearlyAFullTurn = 350.0 / 180.0 * std::numbers::pi;
+constexpr double kLeastMoved = 1e-3;  // of the travel
+
+/// Difference of the largest and the least position of readings that are not left out.
+double measured_travel(const Campaign& campaign, AxisName axis) {
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const Setup& setup : campaign.setups) {
+    const std::vector<bool> left_out = setup.rows_left_out();
+    const std::vector<double>& position = setup.readings.position[index_of(axis)];
+    for (std::size_t row = 0; row < position.size(); ++row) {
+      if (left_out[row]) continue;
+      least = std::min(least, position[row]);
+      most = std::max(most, position[row]);
+    }
+  }
+  return most - least;
+}
 
 void add_motions(AxisName axis, std::vector<ErrorSymbol>& symbols) {
   for (const Component component : kAllComponents) symbols.push_back({component, axis});
@@ -47,6 +67,46 @@ std::vector<LocationSymbol> possible_locations(const Machine& machine) {
     }
   }
   return symbols;
+}
+
+bool turns_fully(const Axis& axis) { return is_rotary(axis.name) && axis.travel() > kNearlyAFullTurn; }
+
+FunctionSpec usual_function(const Axis& axis) {
+  FunctionSpec function;
+  if (!turns_fully(axis)) return function;
+  function.basis = "fourier";
+  function.automatic_degree = true;
+  return function;
+}
+
+std::vector<AxisName> moving_rotary_axes(const Campaign& campaign) {
+  std::vector<AxisName> moving;
+  for (const Axis& axis : campaign.machine.axes) {
+    if (is_rotary(axis.name) && measured_travel(campaign, axis.name) > kLeastMoved * axis.travel())
+      moving.push_back(axis.name);
+  }
+  return moving;
+}
+
+std::vector<ErrorSymbol> motions_in_campaign(const Campaign& campaign) {
+  std::vector<ErrorSymbol> symbols = linear_axis_motions(campaign.machine);
+  for (const AxisName axis : moving_rotary_axes(campaign)) add_motions(axis, symbols);
+  return symbols;
+}
+
+ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std::vector<AxisName>& moving,
+                             const std::vector<LocationSymbol>& locations) {
+  if (model.default_function.basis == "zero") return model;
+  for (const AxisName axis : moving) {
+    for (const Component component : kAllComponents)
+      model.functions.try_emplace({component, axis}, usual_function(machine.axis(axis)));
+  }
+  for (const LocationSymbol& symbol : locations) {
+    const bool is_moving = std::ranges::find(moving, symbol.axis) != moving.end();
+    const bool is_off = std::ranges::find(model.locations_off, symbol) != model.locations_off.end();
+    if (is_moving && !is_off) model.locations.try_emplace(symbol, 0.0);
+  }
+  return model;
 }
 
 std::vector<ErrorSymbol> modelled_motions(const Machine& machine, const ModelSpec& model) {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "volcal/model/description/campaign.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
 #include "volcal/model/description/symbols.h"
@@ -19,6 +20,22 @@ std::vector<LocationSymbol> squareness_errors(const Machine& machine);
 /// Location errors that the machine can have: squareness, and of each rotary axis all but the displacement
 /// along it.
 std::vector<LocationSymbol> possible_locations(const Machine& machine);
+
+/// Rotary axes that the readings move by more than a thousandth of their travel; readings that are left out
+/// do not count.
+std::vector<AxisName> moving_rotary_axes(const Campaign& campaign);
+/// linear_axis_motions(), and the six error motions of every rotary axis that moves.
+std::vector<ErrorSymbol> motions_in_campaign(const Campaign& campaign);
+/// A full turn, or nearly: its functions are periodic.
+bool turns_fully(const Axis& axis);
+/// What an error motion of an axis is unless the model says otherwise: a spline, of a rotary axis that turns
+/// fully a Fourier series; both as fine as the readings allow.
+FunctionSpec usual_function(const Axis& axis);
+/// The model with the six error motions and the `locations` of every rotary axis in `moving` that it does not
+/// name: Fourier series where the axis turns fully, splines where it does not. Nothing is added to a model
+/// whose default is that there are no functions.
+ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std::vector<AxisName>& moving,
+                             const std::vector<LocationSymbol>& locations);
 
 /// Error motions with a function: of a linear axis all, of a rotary one those that the model names. The
 /// function may be the basis "zero", which has no parameters.

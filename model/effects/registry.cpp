@@ -26,6 +26,8 @@ namespace volcal {
   EFFECT(product_coupling_effect)     \
   EFFECT(triple_coupling_effect)      \
   EFFECT(tool_load_effect)            \
+  EFFECT(tilt_load_effect)            \
+  EFFECT(cradle_coupling_effect)      \
   EFFECT(length_scale_effect)         \
   EFFECT(dead_path_effect)            \
   EFFECT(station_drift_effect)        \

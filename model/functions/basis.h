@@ -28,6 +28,8 @@ class Basis {
   virtual std::vector<double> pieces() const = 0;
   /// Degree of the polynomials that all functions are on these pieces; none where they are no polynomials.
   virtual std::optional<int> degree() const { return std::nullopt; }
+  /// Highest harmonic of a Fourier series 1, cos q, sin q, cos 2q ...; 0 for other bases.
+  virtual int harmonics() const { return 0; }
   /// Gauss-Legendre points per piece that integrate products of two functions to rounding.
   virtual int quadrature_order() const = 0;
   /// Order of the derivative that a smoothing prior penalises; 0 = the basis takes no prior.

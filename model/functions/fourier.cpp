@@ -18,6 +18,7 @@ class Fourier final : public Basis {
   int size() const override { return 2 * harmonics_ + 1; }
   int support() const override { return size(); }
   int roughness_order() const override { return 0; }
+  int harmonics() const override { return harmonics_; }
 
   /// A piece holds at most half a wave of the product of the two highest harmonics; on it 16 points
   /// integrate to rounding.
@@ -78,13 +79,16 @@ std::unique_ptr<Basis> make_fourier(const FunctionSpec& spec, const Axis& axis) 
 
 extern const BasisKind kFourierBasis = {
     .name = "fourier",
-    .summary = "1, cos kq, sin kq for k = 1 to `degree`, for rotary axes",
+    .summary =
+        "1, cos kq, sin kq for k = 1 to `degree`, for rotary axes; \"auto\": as many as the readings tell "
+        "apart",
     .source = "M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, 1964, ch. 4",
     .degree_min = 1,
     .degree_max = kMaxHarmonic,
     .linear_axes = false,
     .rotary_axes = true,
     .uses_knots = false,
+    .has_automatic_degree = true,
     .make = make_fourier,
 };
 

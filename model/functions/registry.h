@@ -22,6 +22,7 @@ struct BasisKind {
   bool linear_axes;
   bool rotary_axes;
   bool uses_knots;
+  bool has_automatic_degree = false;  ///< `degree = "auto"`: follows from the readings
   /// `spec` must be resolved: with `uses_knots`, `breakpoints` holds the pieces. Throws
   /// std::invalid_argument.
   std::unique_ptr<Basis> (*make)(const FunctionSpec& spec, const Axis& axis);

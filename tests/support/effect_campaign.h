@@ -76,4 +76,7 @@ inline Campaign effect_campaign(const std::string& structure = "w X' b Y Z t") {
   return campaign;
 }
 
+/// The same on a table that turns on a cradle.
+inline Campaign five_axis_effect_campaign() { return effect_campaign("w C' A' X' b Y Z t"); }
+
 }  // namespace volcal::testing_support

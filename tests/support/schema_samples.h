@@ -19,11 +19,12 @@
 namespace volcal::testing {
 
 inline std::string sample_machine() {
-  return "format = \"volcal-machine-1\"\nname = \"sample\"\nstructure = \"w C' X' b Y Z (C) t\"\n"
+  return "format = \"volcal-machine-1\"\nname = \"sample\"\nstructure = \"w C' A' X' b Y Z t\"\n"
          "[datum]\nprimary = \"X\"\nsecondary = \"Y\"\n"
          "[axes.X]\ntravel_mm = [0, 500]\nhome_mm = 0\nreference_point_mm = [0, -200, 0]\n"
          "expansion_um_per_m_K = 11.5\nexpansion_sigma_um_per_m_K = 0.5\ntemperature = \"X\"\n"
          "[axes.Y]\ntravel_mm = [0, 400]\nhome_mm = 0\n[axes.Z]\ntravel_mm = [-300, 0.0]\nhome_mm = 0\n"
+         "[axes.A]\ntravel_deg = [-110, 30]\nhome_deg = 0\ncentre_mm = [250, 200, -350]\n"
          "[axes.C]\ntravel_deg = [0, 360]\nhome_deg = 0\ncentre_mm = [250, 200, -400]\n"
          "[tools.long]\noffset_mm = [0, 0, -150.5]\noffset_sigma_um = 2\n[tools.none]\noffset_mm = [0, 0, "
          "0]\n";
@@ -162,7 +163,7 @@ inline std::string sample_model() {
     ++next;
   }
   text += "[locations]\nEC0Y_urad = 12.5\nEA0Z = \"zero\"\nEX0C_um = 3\n";
-  const Campaign campaign = testing_support::effect_campaign();
+  const Campaign campaign = testing_support::five_axis_effect_campaign();
   for (const EffectKind* kind : effect_kinds()) {
     text += sample_effect(*kind, kind->examples(campaign).front());
   }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
 namespace {
@@ -24,19 +26,30 @@ Polynomials legendre(double x) {
   return values;
 }
 
-/// Polynomials of an axis' position over its measured range, zero at home.
+/// cos q, sin q, cos 2q ... as number 1, 2, 3 ...
+Polynomials harmonics(double angle) {
+  Polynomials values{1.0};
+  for (int k = 1; k <= kDegrees; ++k) {
+    const double multiple = (k + 1) / 2 * angle;
+    values[static_cast<std::size_t>(k)] = k % 2 == 1 ? std::cos(multiple) : std::sin(multiple);
+  }
+  return values;
+}
+
+/// Polynomials of an axis' position over its measured range, of one that turns fully harmonics; zero at home.
 class OwnPosition {
  public:
   OwnPosition(const Campaign& campaign, AxisName axis)
       : axis_(axis),
+        periodic_(turns_fully(campaign.machine.axis(axis))),
         range_(measured_range(campaign, axis)),
-        home_(legendre(range_.scaled(campaign.machine.axis(axis).home))) {}
+        home_(values(campaign.machine.axis(axis).home)) {}
 
   bool varies() const { return range_.max > range_.min; }
   void fill(const SetupView& view, Eigen::Ref<Eigen::MatrixXd> columns) const {
     const auto& position = view.setup.readings.position[index_of(axis_)];
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
-      const Polynomials values = legendre(range_.scaled(position[static_cast<std::size_t>(row)]));
+      const Polynomials values = this->values(position[static_cast<std::size_t>(row)]);
       for (Eigen::Index k = 0; k < columns.cols(); ++k) {
         const auto degree = static_cast<std::size_t>(k) + 1;
         columns(row, k) = values[degree] - home_[degree];
@@ -45,7 +58,12 @@ class OwnPosition {
   }
 
  private:
+  Polynomials values(double position) const {
+    return periodic_ ? harmonics(position) : legendre(range_.scaled(position));
+  }
+
   AxisName axis_;
+  bool periodic_;
   MeasuredRange range_;
   Polynomials home_;
 };
@@ -97,9 +115,36 @@ std::unique_ptr<Effect> squareness(LocationSymbol location) {
       [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
 }
 
+/// A location error of a rotary axis: a constant motion of it (chain.h).
+std::unique_ptr<Effect> axis_location(const Machine& machine, LocationSymbol location) {
+  const auto joint = std::ranges::find(machine.structure.joints, location.axis, &Joint::axis);
+  const bool turned =
+      joint->workpiece_side && direction_of(location.component) != direction_of(location.axis);
+  return std::make_unique<FormulaEffect>(
+      EffectName{kLeftOut, location.name(), std::string(1, lower_letter_of(location.axis)), "location"},
+      std::vector<EffectAmplitude>{
+          {.label = location.name() + " left out",
+           .target = {.kind = TargetKind::Motion, .symbol = {location.component, location.axis}},
+           .key = "amplitude_" + std::string(edge_unit(location.component))}},
+      [sign = turned ? -1.0 : 1.0](const SetupView& view, const Eigen::VectorXd& /*shape*/)
+          -> Eigen::MatrixXd { return constant(view, sign); },
+      [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
+}
+
+/// Squareness, and of rotary axes that move the locations that readings can tell.
+std::vector<LocationSymbol> locations_in_campaign(const Campaign& campaign) {
+  std::vector<LocationSymbol> symbols = squareness_errors(campaign.machine);
+  const std::vector<AxisName> moving = moving_rotary_axes(campaign);
+  if (moving.empty()) return symbols;
+  for (const LocationSymbol& symbol : independent_locations(campaign.machine)) {
+    if (std::ranges::find(moving, symbol.axis) != moving.end()) symbols.push_back(symbol);
+  }
+  return symbols;
+}
+
 std::vector<ErrorSymbol> lacking_functions(const MeasurementModel& model) {
   std::vector<ErrorSymbol> symbols;
-  for (const ErrorSymbol symbol : linear_axis_motions(model.campaign().machine)) {
+  for (const ErrorSymbol symbol : motions_in_campaign(model.campaign())) {
     const bool moved = OwnPosition(model.campaign(), symbol.axis).varies();
     if (moved && !model.layout().find(symbol)) symbols.push_back(symbol);
   }
@@ -118,40 +163,55 @@ std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
   const Campaign& campaign = model.campaign();
   std::vector<LeftOutError> errors;
   std::vector<ErrorSymbol> rotations;
+  std::map<AxisName, std::vector<ErrorSymbol>> of_rotary_axis;
   for (const ErrorSymbol symbol : lacking_functions(model)) {
+    if (is_rotary(symbol.axis)) of_rotary_axis[symbol.axis].push_back(symbol);
     if (is_rotation(symbol.component)) rotations.push_back(symbol);
     const EffectName name{kLeftOut, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "function"};
     errors.push_back({left_out_spec(symbol.name()),
                       functions(campaign, {symbol}, kDegrees, name, symbol.name() + " left out")});
   }
-  if (rotations.size() > 1) {
-    const std::string names = joined_names(rotations);
-    errors.push_back(
-        {left_out_spec(names), functions(campaign, rotations, kSharedDegrees,
-                                         {kLeftOut, names, "position", "functions"}, "rotations left out")});
+  const auto add_together = [&](const std::vector<ErrorSymbol>& symbols, const std::string& driver,
+                                const std::string& label) {
+    if (symbols.size() < 2) return;
+    const std::string names = joined_names(symbols);
+    errors.push_back({left_out_spec(names), functions(campaign, symbols, kSharedDegrees,
+                                                      {kLeftOut, names, driver, "functions"}, label)});
+  };
+  add_together(rotations, "position", "rotations left out");
+  for (const auto& [axis, symbols] : of_rotary_axis) {
+    add_together(symbols, std::string(1, lower_letter_of(axis)),
+                 std::string("error motions of ") + letter_of(axis) + " left out");
   }
-  for (const LocationSymbol& location : squareness_errors(campaign.machine)) {
+  for (const LocationSymbol& location : locations_in_campaign(campaign)) {
     if (model.layout().find_location(location)) continue;
-    errors.push_back({left_out_spec(location.name()), squareness(location)});
+    errors.push_back({left_out_spec(location.name()), is_rotary(location.axis)
+                                                          ? axis_location(campaign.machine, location)
+                                                          : squareness(location)});
   }
   return errors;
 }
 
 bool is_left_out(const std::string& symbol, const ModelSpec& model) {
   if (const auto location = LocationSymbol::parse(symbol))
-    return std::ranges::find(model.locations_off, *location) != model.locations_off.end();
+    return std::ranges::find(model.locations_off, *location) != model.locations_off.end() ||
+           (is_rotary(location->axis) && model.default_function.basis == kHeldAtZero &&
+            !model.locations.contains(*location));
   const auto function = ErrorSymbol::parse(symbol);
   return function && model.function(*function).basis == kHeldAtZero;
 }
 
-bool restore_left_out(const EffectSpec& spec, ModelSpec& model) {
+bool restore_left_out(const EffectSpec& spec, const Machine& machine, ModelSpec& model) {
   if (spec.kind != kLeftOut) return false;
   for (const std::string& name : left_out_symbols(spec)) {
-    if (const auto location = LocationSymbol::parse(name)) std::erase(model.locations_off, *location);
+    if (const auto location = LocationSymbol::parse(name)) {
+      std::erase(model.locations_off, *location);
+      if (is_rotary(location->axis)) model.locations.try_emplace(*location, 0.0);
+    }
     const auto symbol = ErrorSymbol::parse(name);
     if (!symbol || !is_left_out(name, model)) continue;
     if (model.default_function.basis == kHeldAtZero) {
-      model.functions[*symbol] = FunctionSpec{};
+      model.functions[*symbol] = usual_function(machine.axis(symbol->axis));
     } else {
       model.functions.erase(*symbol);
     }

@@ -14,11 +14,12 @@ namespace volcal {
 
 struct LeftOutError {
   EffectSpec spec;
-  std::unique_ptr<Effect> effect;  ///< polynomials of the axis' own position; amplitudes m or rad
+  std::unique_ptr<Effect> effect;  ///< functions of the axis' own position; amplitudes m or rad
 };
 
-/// One for every error motion of a linear axis and every squareness that the model lacks, and one for all
-/// lacking rotations together when there are several.
+/// One for every error motion and location error that the model lacks, of linear axes and of rotary axes that
+/// move, and one for all lacking rotations together, and for all lacking motions of a
+/// rotary axis, when there are several.
 std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
 
 /// Whether the model holds this function or location error ("EAX", "EC0Y") at zero.
@@ -26,6 +27,6 @@ bool is_left_out(const std::string& symbol, const ModelSpec& model);
 
 /// Gives what `spec` names, and the model leaves out, back to the model; false when it is an effect of the
 /// catalogue.
-bool restore_left_out(const EffectSpec& spec, ModelSpec& model);
+bool restore_left_out(const EffectSpec& spec, const Machine& machine, ModelSpec& model);
 
 }  // namespace volcal

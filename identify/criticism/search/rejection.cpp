@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
+#include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/model/description/finding_codes.h"
 
@@ -26,6 +27,17 @@ ConstancyTest constancy_of(const ModelState& state, const Family& family, const 
   const Eigen::Index count = family.amplitudes();
   const Eigen::VectorXd moved = columns.leftCols(count) * projector.solution().segment(first, count);
   return least_constant(family, moved, state.setting().constancy_variables, projector);
+}
+
+/// The model that was given has no errors of a rotary axis that moves. Until every axis has its errors an
+/// error of the rigid body is not to be judged by what the others leave.
+bool lacks_rotary_errors(const ModelState& state) {
+  return std::ranges::any_of(state.setting().families, [](const Family& family) {
+    const EffectName name = family.name();
+    if (name.kind != kLeftOut) return false;
+    const auto symbol = ErrorSymbol::parse(name.target.substr(0, name.target.find(' ')));
+    return symbol && is_rotary(symbol->axis);
+  });
 }
 
 }  // namespace
@@ -69,6 +81,7 @@ std::optional<Finding> Rejection::rejection_reason(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
   const Family& family = state_.family_of(effect);
   if (leaves_more(effect)) return rejected(FindingCode::RejectedLeavesMore, family);
+  if (family.name().kind == kLeftOut && lacks_rotary_errors(state_)) return std::nullopt;
   const auto drivers = scan_variables_of(family.name());
   if (still_moves(drivers)) {
     Finding moved = rejected(FindingCode::RejectedDriverStillMoves, family);

@@ -8,10 +8,11 @@
 namespace volcal {
 
 Eigen::MatrixXd datum_constraints(const Basis& basis, ErrorSymbol symbol, const Axis& axis) {
-  const int rows = has_free_slope(symbol) ? 1 : 2;
-  Eigen::MatrixXd constraints(rows, basis.size());
+  const FunctionDatum datum = datum_of(symbol);
+  if (datum == FunctionDatum::Mean) return moments(basis).zeroth.transpose() / axis.travel();
+  Eigen::MatrixXd constraints(datum == FunctionDatum::Home ? 1 : 2, basis.size());
   constraints.row(0) = basis.row(axis.home).transpose();
-  if (!has_free_slope(symbol)) {
+  if (datum == FunctionDatum::HomeAndSlope) {
     const BasisMoments moment = moments(basis);
     const double middle = 0.5 * (axis.travel_min + axis.travel_max);
     constraints.row(1) =

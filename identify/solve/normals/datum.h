@@ -1,6 +1,7 @@
 #pragma once
-/// The datum: what keeps anything from being counted twice. Every function is zero at home; straightness has
-/// no least-squares slope over the travel (continuous, uniformly weighted, exact from the basis). The
+/// The datum: what keeps anything from being counted twice. Functions are zero at home; straightness has no
+/// least-squares slope over the travel (continuous, uniformly weighted, exact from the basis); transverse
+/// motions of a rotary axis have in place of a zero at home no mean over the travel. The
 /// constraints are linear and hold exactly: the solver works in orthonormal coordinates z of the constrained
 /// space, raw = base + Z z, with one block of Z per function. Parameters can also be frozen at `base`.
 

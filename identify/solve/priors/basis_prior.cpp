@@ -11,7 +11,7 @@ constexpr double kCurvatureShare = 1e-3;
 }  // namespace
 
 bool is_smoothed(const FunctionSpec& spec, const Basis& basis) {
-  return spec.knots == KnotChoice::Automatic && basis.roughness_order() > 0;
+  return spec.automatic_degree || (spec.knots == KnotChoice::Automatic && basis.roughness_order() > 0);
 }
 
 Eigen::MatrixXd wide_precision(const Basis& basis, const Axis& axis) {

@@ -10,7 +10,8 @@
 namespace volcal {
 
 /// Whether a function is smoothed (function_prior.h): its knots are the program's choice, and its basis has a
-/// roughness. Fixed knots, Legendre polynomials and Fourier series say themselves how smooth it is.
+/// roughness, or the highest harmonic of its Fourier series is. Fixed knots, Legendre polynomials and Fourier
+/// series of a stated degree say themselves how smooth it is.
 bool is_smoothed(const FunctionSpec& spec, const Basis& basis);
 
 /// Precision of the coefficients of a function whose standard deviation over the travel is 1, and which is

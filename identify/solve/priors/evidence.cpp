@@ -20,7 +20,8 @@ constexpr int kSettlingSteps = 30;
 constexpr int kAmplitudeSteps = 4;
 constexpr int kSweeps = 10;
 constexpr double kRounding = 1e-10;  // of a precision that holds what a surface may not imitate at zero
-constexpr double kSettled = 0.02;    // of log evidence in one step
+constexpr double kMostRounding = 1e-6;
+constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
@@ -123,8 +124,8 @@ class AxisEvidence {
     const Eigen::MatrixXd across = all.precision(others, mine);
     Eigen::MatrixXd precision = all.precision(others, others);
     auto factor = cholesky_lower(precision);
-    if (!factor) {
-      precision.diagonal() *= 1.0 + kRounding;
+    for (double rounding = kRounding; !factor && rounding <= kMostRounding; rounding *= 100.0) {
+      precision.diagonal() *= 1.0 + rounding;
       factor = cholesky_lower(precision);
     }
     if (!factor)
@@ -234,6 +235,16 @@ struct CoefficientSquares {
   }
 };
 
+/// Functions of an axis that share a shape: their series are of one kind.
+struct AxisFunctions {
+  AxisName axis = AxisName::X;
+  bool periodic = false;
+
+  friend auto operator<=>(const AxisFunctions&, const AxisFunctions&) = default;
+};
+
+AxisFunctions functions_of(const SmoothingTerm& term) { return {term.symbol.axis, term.prior->periodic}; }
+
 class EvidenceSearch {
  public:
   EvidenceSearch(const std::vector<NoiseGroupEquations>& equations, const Eigen::VectorXd& z0,
@@ -243,12 +254,15 @@ class EvidenceSearch {
     for (std::size_t t = 0; t < terms.size(); ++t) {
       stretches_.push_back({&terms[t], terms[t].offset});
       if (terms[t].is_function()) {
-        axes_[terms[t].symbol.axis].push_back(t);
+        axes_[functions_of(terms[t])].push_back(t);
       } else {
         surfaces_.push_back(t);
       }
     }
-    for (const auto& [axis, own] : axes_) groups_[is_rotary(axis) ? axis : AxisName::X].push_back(axis);
+    for (const auto& [functions, own] : axes_) {
+      const bool alone = is_rotary(functions.axis);
+      groups_[alone ? functions : AxisFunctions{}].push_back(functions);
+    }
   }
 
   /// Returns log evidence.
@@ -326,11 +340,11 @@ class EvidenceSearch {
     return at.shape != before.shape;
   }
 
-  void choose_shapes(const std::vector<AxisName>& group, const Hyperparameters& before,
+  void choose_shapes(const std::vector<AxisFunctions>& group, const Hyperparameters& before,
                      Hyperparameters& at) const {
     std::vector<AxisShapes> axes;
-    for (const AxisName name : group) {
-      const std::vector<std::size_t>& terms = axes_.at(name);
+    for (const AxisFunctions& functions : group) {
+      const std::vector<std::size_t>& terms = axes_.at(functions);
       std::vector<double> lambda(terms.size());
       std::ranges::transform(terms, lambda.begin(), [&](std::size_t t) { return before.lambda[t]; });
       axes.emplace_back(axis_evidence(terms, before), before.shape[terms.front()], lambda);
@@ -371,9 +385,9 @@ class EvidenceSearch {
 
   void correct_spectra(const Posterior& now, const Hyperparameters& from, Hyperparameters& at) const {
     for (const auto& [first, group] : groups_) {
-      std::map<AxisName, CoefficientSquares> of_axis;
+      std::map<AxisFunctions, CoefficientSquares> of_axis;
       CoefficientSquares common, of_shapes;
-      for (const AxisName axis : group) {
+      for (const AxisFunctions& axis : group) {
         for (const std::size_t t : axes_.at(axis)) {
           const Eigen::VectorXd squares = expected_squares(t, now, from);
           of_axis[axis].add(squares);
@@ -382,7 +396,7 @@ class EvidenceSearch {
         }
       }
       const Eigen::VectorXd expected = common.variances(of_shapes.sum / of_shapes.functions, kWorthOfShape);
-      for (const AxisName axis : group)
+      for (const AxisFunctions& axis : group)
         set_spectrum(axis, of_axis.at(axis).variances(expected, kWorthOfCommonSpectrum), at);
     }
   }
@@ -394,7 +408,7 @@ class EvidenceSearch {
                                           now.covariance.block(offset, offset, n, n));
   }
 
-  void set_spectrum(AxisName axis, const Eigen::VectorXd& variances, Hyperparameters& at) const {
+  void set_spectrum(const AxisFunctions& axis, const Eigen::VectorXd& variances, Hyperparameters& at) const {
     std::map<const FunctionPriors*, Prior> made;
     for (const std::size_t t : axes_.at(axis)) {
       const auto& family = stretches_[t].term->family;
@@ -426,8 +440,8 @@ class EvidenceSearch {
   const EvidenceOptions& options_;
   std::vector<Stretch> stretches_;  ///< one per term
   std::vector<std::size_t> surfaces_;
-  std::map<AxisName, std::vector<std::size_t>> axes_;
-  std::map<AxisName, std::vector<AxisName>> groups_;  ///< linear axes under X, rotary ones each
+  std::map<AxisFunctions, std::vector<std::size_t>> axes_;
+  std::map<AxisFunctions, std::vector<AxisFunctions>> groups_;  ///< linear axes under X, rotary ones each
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 
@@ -196,6 +197,47 @@ Eigen::MatrixXd contrasts_of_neighbours(const Eigen::MatrixXd& straight) {
   return contrasts;
 }
 
+/// Variance of cosine and sine of a harmonic, up to a factor.
+double harmonic_variance(Roughness roughness, double length, int harmonic) {
+  const double k = harmonic, w = 2.0 * std::numbers::pi * harmonic * length;
+  switch (roughness) {
+    case Roughness::Geometric:
+      return std::exp(-2.0 * k * length);
+    case Roughness::Heat:
+      return std::exp(-2.0 * k * length * k * length);
+    case Roughness::SquaredExponential:
+      return std::exp(-0.5 * w * w);
+    case Roughness::Matern52:
+      return std::pow(1.0 + w * w / 5.0, -3.0);
+  }
+  return 0.0;
+}
+
+/// Of cos q, sin q, cos 2q, ...; their sum over one of each pair is 1.
+Eigen::VectorXd periodic_spectrum(Roughness roughness, double length, int harmonics) {
+  Eigen::VectorXd variances(2 * harmonics);
+  for (int k = 1; k <= harmonics; ++k)
+    variances.segment<2>(2 * (k - 1)).setConstant(harmonic_variance(roughness, length, k));
+  return variances * (2.0 / variances.sum());
+}
+
+/// Cosine and sine of a harmonic with their mean variance, scaled as periodic_spectrum().
+Eigen::VectorXd paired(const Eigen::VectorXd& variances) {
+  Eigen::VectorXd result(variances.size());
+  for (Eigen::Index i = 0; i < variances.size(); i += 2)
+    result.segment<2>(i).setConstant(0.5 * variances.segment<2>(i).sum());
+  return result * (2.0 / result.sum());
+}
+
+double periodic_correlation_length(const Eigen::VectorXd& spectrum) {
+  double slope = 0.0;
+  for (Eigen::Index i = 0; i < spectrum.size(); ++i) {
+    const double k = static_cast<double>(i / 2 + 1);
+    slope += spectrum[i] * k * k;
+  }
+  return std::sqrt(spectrum.sum() / slope) / (2.0 * std::numbers::pi);
+}
+
 }  // namespace
 
 std::string_view to_string(Roughness roughness) {
@@ -213,6 +255,7 @@ std::string_view to_string(Roughness roughness) {
 }
 
 double PriorShape::correlation_length() const {
+  if (periodic) return periodic_correlation_length(spectrum);
   double slope = 0.0;
   for (Eigen::Index i = 0; i < spectrum.size(); ++i) {
     const double n = static_cast<double>(i) + 2.0;
@@ -226,7 +269,11 @@ FunctionPriors::FunctionPriors(const Basis& basis, const Axis& axis, const Eigen
 
 FunctionPriors::FunctionPriors(const Basis& basis, const ResolvedStretch& stretch,
                                const Eigen::MatrixXd& datum_basis)
-    : stretch_length_(stretch.max - stretch.min) {
+    : stretch_length_(stretch.max - stretch.min), periodic_(basis.harmonics() > 0) {
+  if (periodic_) {
+    add_periodic_shapes(basis, datum_basis);
+    return;
+  }
   const Eigen::VectorXd points = collocation_points(basis);
   const Eigen::ArrayXd t = (2.0 * points.array() - stretch.min - stretch.max) / stretch_length_;
   reaches_beyond_ = t.unaryExpr([](double each) { return beyond(each); }).maxCoeff() > kEdge;
@@ -239,7 +286,7 @@ FunctionPriors::FunctionPriors(const Basis& basis, const ResolvedStretch& stretc
   if (contrasts.cols() == 0) return;
   const Eigen::MatrixXd of_values = contrasts.transpose() * project;
   of_reduced_ = contrasts.transpose() * datum_basis;
-  of_legendre_ = of_values * legendre_columns(t).rightCols(kDegrees);
+  of_series_ = of_values * legendre_columns(t).rightCols(kDegrees);
   if (reaches_beyond_) of_outside_ = of_values * free_outside(t) * of_values.transpose();
   for (int kind = 0; kind < kRoughnessKinds; ++kind) {
     const auto roughness = static_cast<Roughness>(kind);
@@ -251,6 +298,23 @@ FunctionPriors::FunctionPriors(const Basis& basis, const ResolvedStretch& stretc
       shape.length = length;
       shape.spectrum = spectra()[shapes_.size()];
       shapes_.push_back(std::make_shared<const PriorShape>(std::move(shape)));
+    }
+  }
+}
+
+void FunctionPriors::add_periodic_shapes(const Basis& basis, const Eigen::MatrixXd& datum_basis) {
+  const int harmonics = basis.harmonics();
+  stretch_length_ = 2.0 * std::numbers::pi;
+  of_reduced_ = datum_basis.bottomRows(2 * harmonics);
+  of_series_ = Eigen::MatrixXd::Identity(2 * harmonics, 2 * harmonics);
+  for (int kind = 0; kind < kRoughnessKinds; ++kind) {
+    const auto roughness = static_cast<Roughness>(kind);
+    for (int place = 0; place < kPriorLengths; ++place) {
+      PriorShape like;
+      like.roughness = roughness;
+      like.length = length_at(roughness, place);
+      const Eigen::VectorXd spectrum = periodic_spectrum(roughness, like.length, harmonics);
+      shapes_.push_back(std::make_shared<const PriorShape>(with_spectrum(like, spectrum)));
     }
   }
 }
@@ -277,21 +341,23 @@ PriorShape FunctionPriors::with_covariance(const Eigen::MatrixXd& of_contrasts) 
 }
 
 PriorShape FunctionPriors::with_spectrum(const PriorShape& like, const Eigen::VectorXd& variances) const {
-  const Eigen::VectorXd spectrum = variances / variances.sum();
-  Eigen::MatrixXd covariance = of_legendre_ * spectrum.asDiagonal() * of_legendre_.transpose();
+  const Eigen::VectorXd spectrum =
+      periodic_ ? paired(variances) : Eigen::VectorXd(variances / variances.sum());
+  Eigen::MatrixXd covariance = of_series_ * spectrum.asDiagonal() * of_series_.transpose();
   if (reaches_beyond_) covariance += of_outside_;
   PriorShape shape = with_covariance(covariance);
   shape.roughness = like.roughness;
   shape.length = like.length;
   shape.spectrum = spectrum;
+  shape.periodic = periodic_;
   return shape;
 }
 
 Eigen::VectorXd FunctionPriors::expected_squares(const PriorShape& prior, double lambda,
                                                  const Eigen::VectorXd& mean,
                                                  const Eigen::Ref<const Eigen::MatrixXd>& covariance) const {
-  const Eigen::MatrixXd across = prior.spectrum.asDiagonal() * of_legendre_.transpose();
-  Eigen::MatrixXd of_contrasts = of_legendre_ * across;
+  const Eigen::MatrixXd across = prior.spectrum.asDiagonal() * of_series_.transpose();
+  Eigen::MatrixXd of_contrasts = of_series_ * across;
   if (reaches_beyond_) of_contrasts += of_outside_;
   of_contrasts = with_nugget(std::move(of_contrasts));
   const Eigen::MatrixXd gain = solve_positive_definite(of_contrasts, across.transpose()).transpose();

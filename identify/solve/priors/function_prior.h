@@ -19,6 +19,10 @@
 /// length there: what they did not resolve would be averaged away, and the uncertainty would fall with the
 /// distance.
 ///
+/// A Fourier series on an axis that turns fully has a periodic prior: constant parts are free, cosine and
+/// sine of harmonic k have the variance e^(-2 k l) (geometric), e^(-2 (k l)^2) (heat), e^(-(2 pi k l)^2 / 2)
+/// (squared exponential) or (1 + (2 pi k l)^2 / 5)^-3 (Matern 5/2), l a share of the turn in the last two.
+///
 /// The spectrum of the chosen one, the variance of each Legendre coefficient, is then corrected degree by
 /// degree by the functions that share it, and the corrected one is taken where its evidence is higher
 /// (smoothing.h).
@@ -49,9 +53,11 @@ struct PriorShape {
   Eigen::MatrixXd precision;     ///< of unit amplitude, reduced coordinates, singular for the straight part
   double log_determinant = 0.0;  ///< of its regular part, up to a constant common to all shapes of a function
   int rank = 0;
+  bool periodic = false;  ///< the spectrum is of cos q, sin q, cos 2q, sin 2q, ...
 
   /// Standard deviation of the deviation from a straight line over that of its slope, weighted by 1 - t^2, a
-  /// share of the stretch: about the length of a squared exponential covariance, less where that is long.
+  /// share of the stretch: about the length of a squared exponential covariance, less where that is long. Of
+  /// a periodic one, standard deviation over that of the slope, a share of the turn.
   double correlation_length() const;
 };
 
@@ -77,14 +83,16 @@ class FunctionPriors {
                                    const Eigen::Ref<const Eigen::MatrixXd>& covariance) const;
 
  private:
+  void add_periodic_shapes(const Basis& basis, const Eigen::MatrixXd& datum_basis);
   /// Precision, determinant and rank alone.
   PriorShape with_covariance(const Eigen::MatrixXd& of_contrasts) const;
   Eigen::MatrixXd with_nugget(Eigen::MatrixXd of_contrasts) const;
 
   double stretch_length_ = 0.0;
+  bool periodic_ = false;
   bool reaches_beyond_ = false;  ///< the basis, beyond the stretch
   Eigen::MatrixXd of_reduced_;   ///< contrasts (combinations that vanish for straight lines) x reduced
-  Eigen::MatrixXd of_legendre_;  ///< contrasts x degrees
+  Eigen::MatrixXd of_series_;    ///< contrasts x Legendre degrees or Fourier terms
   Eigen::MatrixXd of_outside_;   ///< covariance of contrasts by what is free outside the stretch; or empty
   std::vector<std::shared_ptr<const PriorShape>> shapes_;
 };

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
@@ -17,17 +19,8 @@ namespace {
 constexpr double kDistinctShare = 1.0 / 200.0;  // of the stretch
 constexpr double kLeastMoved = 1e-3;            // of the travel: less is an axis that stands still
 constexpr double kLeastRange = 1e-12;           // m or rad: an axis that did not move
-constexpr double kGrowth = 2.0;                 // of a piece outside the measured part, to the next
-
-FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign& campaign) {
-  const BasisKind* kind = find_basis(function.basis);
-  if (kind == nullptr || !kind->uses_knots || function.knots == KnotChoice::Explicit) return function;
-  const Axis& axis = campaign.machine.axis(symbol.axis);
-  function.breakpoints = function.knots == KnotChoice::IntervalCount
-                             ? uniform_breakpoints(axis, function.intervals)
-                             : resolved_stretch(campaign, symbol.axis).breakpoints(axis);
-  return function;
-}
+constexpr int kMaxAutomaticHarmonic = 12;
+constexpr double kGrowth = 2.0;  // of a piece outside the measured part, to the next
 
 /// Of readings that are not left out.
 template <class Visit>
@@ -46,6 +39,34 @@ int distinct_intervals(const Campaign& campaign, AxisName axis, double stretch) 
   std::set<long> distinct;
   for_each_measured_position(campaign, axis, [&](double q) { distinct.insert(std::lround(q / resolution)); });
   return std::clamp(static_cast<int>(distinct.size()) - 1, 1, kMaxAutomaticIntervals);
+}
+
+/// Positions that differ by more than a share of a turn, whole turns apart being the same.
+int distinct_angles(const Campaign& campaign, AxisName axis) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const long steps = std::lround(1.0 / kDistinctShare);
+  std::set<long> distinct;
+  for_each_measured_position(campaign, axis, [&](double q) {
+    const long step = std::lround((q / kTurn - std::floor(q / kTurn)) * static_cast<double>(steps));
+    distinct.insert(step % steps);
+  });
+  return static_cast<int>(distinct.size());
+}
+
+/// As many harmonics as angles can tell apart.
+int automatic_harmonics(const Campaign& campaign, AxisName axis) {
+  return std::clamp((distinct_angles(campaign, axis) - 1) / 2, 1, kMaxAutomaticHarmonic);
+}
+
+FunctionSpec resolved(FunctionSpec function, ErrorSymbol symbol, const Campaign& campaign) {
+  if (function.automatic_degree) function.degree = automatic_harmonics(campaign, symbol.axis);
+  const BasisKind* kind = find_basis(function.basis);
+  if (kind == nullptr || !kind->uses_knots || function.knots == KnotChoice::Explicit) return function;
+  const Axis& axis = campaign.machine.axis(symbol.axis);
+  function.breakpoints = function.knots == KnotChoice::IntervalCount
+                             ? uniform_breakpoints(axis, function.intervals)
+                             : resolved_stretch(campaign, symbol.axis).breakpoints(axis);
+  return function;
 }
 
 /// Ends of pieces from `edge` on towards `end`, that included; the first is longer than `piece`.
@@ -121,9 +142,12 @@ void resolve_effects(const Campaign& campaign, ModelSpec& spec) {
 }  // namespace
 
 ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
+  const Machine& machine = campaign.machine;
+  const std::vector<AxisName> moving = moving_rotary_axes(campaign);
   ModelSpec result = spec;
-  for (const ErrorSymbol symbol : modelled_motions(campaign.machine, spec))
-    result.functions[symbol] = resolved(spec.function(symbol), symbol, campaign);
+  if (!moving.empty()) result = with_rotary_errors(machine, spec, moving, independent_locations(machine));
+  for (const ErrorSymbol symbol : modelled_motions(machine, result))
+    result.functions[symbol] = resolved(result.function(symbol), symbol, campaign);
   resolve_effects(campaign, result);
   return result;
 }

@@ -31,8 +31,9 @@ ResolvedStretch resolved_stretch(const Campaign& campaign, AxisName axis,
                                  const std::vector<double>& breakpoints);
 int automatic_intervals(const Campaign& campaign, AxisName axis);
 
-/// The spec with breakpoints for every function that uses knots, and with the ranges of effects that leave
-/// them to the readings. `smoothed` functions keep KnotChoice::Automatic.
+/// The spec with the errors of rotary axes that move, with breakpoints for every function that uses knots,
+/// and with the ranges of effects that leave them to the readings. `smoothed` functions keep
+/// KnotChoice::Automatic.
 ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign);
 
 /// Range of commanded positions of an axis in the campaign, m or rad; rows that are left out do not count.

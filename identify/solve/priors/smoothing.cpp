@@ -22,13 +22,13 @@ constexpr double kSameLogLength = 0.2;
 
 std::vector<SmoothingTerm> smoothing_terms(const MeasurementModel& model, const DatumSpace& datum) {
   std::vector<SmoothingTerm> terms;
-  std::map<std::pair<int, bool>, std::shared_ptr<const FunctionPriors>> family_of;
+  std::map<std::pair<int, FunctionDatum>, std::shared_ptr<const FunctionPriors>> family_of;
   for (const auto& function : datum.functions()) {
     const FunctionSpec& spec = model.spec().function(function.symbol);
     const int group = model.layout().find(function.symbol)->group;
     const Basis& basis = *model.layout().groups[static_cast<std::size_t>(group)].basis;
     if (!is_smoothed(spec, basis) || function.size() == 0) continue;
-    auto& family = family_of[{group, has_free_slope(function.symbol)}];
+    auto& family = family_of[{group, datum_of(function.symbol)}];
     if (!family) {
       const ResolvedStretch stretch =
           resolved_stretch(model.campaign(), function.symbol.axis, spec.breakpoints);

@@ -1,5 +1,6 @@
 #include "volcal/identify/solve/priors/surface_prior.h"
 
+#include <Eigen/QR>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -115,38 +116,72 @@ std::vector<double> SurfacePriors::lengths(std::size_t shape) const {
   return lengths;
 }
 
+namespace {
+
+/// Of a precision P, what acts along the columns I: pull pull^T = P I (I^T P I)^-1 I^T P, by orthogonal
+/// columns, so that it is positive semidefinite however near to dependent the columns are; log det of I^T P
+/// I.
+struct HeldDirections {
+  Eigen::MatrixXd pull;
+  double log_determinant = 0.0;
+};
+
+HeldDirections held_directions(const Eigen::MatrixXd& precision, const Eigen::MatrixXd& columns) {
+  const SymmetricEigen eigen = eigen_decomposition(precision);
+  const Eigen::VectorXd root = eigen.values.cwiseMax(0.0).cwiseSqrt();
+  const Eigen::MatrixXd half = root.asDiagonal() * (eigen.vectors.transpose() * columns);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(half);
+  const Eigen::MatrixXd orthogonal = qr.householderQ() * Eigen::MatrixXd::Identity(half.rows(), half.cols());
+  const Eigen::ArrayXd diagonal = qr.matrixQR().diagonal().cwiseAbs();
+  return {eigen.vectors * (root.asDiagonal() * orthogonal), 2.0 * diagonal.log().sum()};
+}
+
+}  // namespace
+
 SurfacePriors SurfacePriors::without(const Eigen::MatrixXd& imitated) const {
   SurfacePriors other = *this;
   other.imitated_ = imitated;
   if (imitated.cols() == 0) return other;
   for (auto& shape : other.shapes_) {
     PriorShape held = *shape;
-    const Eigen::MatrixXd pull = held.precision * imitated;
-    const PrecisionInverse inner = invert_precision(imitated.transpose() * pull);
-    held.precision += kHeldWeight * (pull * inner.covariance * pull.transpose());
-    held.log_determinant -= inner.log_determinant;
+    const HeldDirections directions = held_directions(held.precision, imitated);
+    held.precision += kHeldWeight * (directions.pull * directions.pull.transpose());
+    held.log_determinant -= directions.log_determinant;
     held.rank -= static_cast<int>(imitated.cols());
     shape = std::make_shared<const PriorShape>(std::move(held));
   }
   return other;
 }
 
+namespace {
+
+/// L with L L^T the covariance, whose smallest eigenvalues may be rounding.
+Eigen::MatrixXd root_of_covariance(const Eigen::MatrixXd& covariance) {
+  if (const auto factor = cholesky_lower(covariance)) return factor->triangularView<Eigen::Lower>();
+  const SymmetricEigen eigen = eigen_decomposition(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+/// precision^-1 columns
+Eigen::MatrixXd explained_by(const Eigen::MatrixXd& precision, const Eigen::MatrixXd& columns) {
+  if (precision.rows() == 0) return columns;
+  return invert_precision(precision).covariance * columns;
+}
+
+}  // namespace
+
 /// In units of the prior, information M = L^T (own) L that the readings have, and the part that the rest
 /// explains, coupling^T rest^-1 coupling: directions of which the rest explains nearly all.
 Eigen::MatrixXd imitated_coefficients(const Eigen::MatrixXd& own, const Eigen::MatrixXd& coupling,
                                       const Eigen::MatrixXd& rest, const Eigen::MatrixXd& prior) {
-  const auto rest_factor = cholesky_lower(rest);
-  const auto prior_factor = cholesky_lower(prior);
-  if (!rest_factor || !prior_factor)
-    throw std::runtime_error("imitated_coefficients: a precision is not positive definite");
-  const Eigen::MatrixXd root = prior_factor->triangularView<Eigen::Lower>();
+  const Eigen::MatrixXd root = root_of_covariance(prior);
   const SymmetricEigen seen = eigen_decomposition(root.transpose() * own * root);
   const Eigen::Index count = (seen.values.array() > kSeen).count();
   if (count == 0) return Eigen::MatrixXd(own.rows(), 0);
   const Eigen::MatrixXd unit =
       root * seen.vectors.rightCols(count) * seen.values.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-  const Eigen::MatrixXd half = rest_factor->triangularView<Eigen::Lower>().solve(coupling * unit);
-  const SymmetricEigen share = eigen_decomposition(half.transpose() * half);
+  const Eigen::MatrixXd across = coupling * unit;
+  const SymmetricEigen share = eigen_decomposition(across.transpose() * explained_by(rest, across));
   const Eigen::Index imitated = (share.values.array() > kImitatedShare).count();
   return unit * share.vectors.rightCols(imitated);
 }

@@ -18,7 +18,7 @@
 namespace volcal {
 namespace {
 
-using testing_support::effect_campaign;
+using testing_support::five_axis_effect_campaign;
 
 struct Candidate {
   const EffectKind* kind;
@@ -44,7 +44,7 @@ ModelSpec model_without_functions() {
 
 class EffectContract : public ::testing::Test {
  protected:
-  Campaign campaign_ = effect_campaign();
+  Campaign campaign_ = five_axis_effect_campaign();
   std::vector<Candidate> candidates_ = candidates_of(campaign_);
 };
 

@@ -39,7 +39,7 @@ std::unique_ptr<FormulaEffect> make_reversal(const EffectTable& table) {
 
 std::vector<EffectSpec> reversals(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+  for (const ErrorSymbol symbol : motions_in_campaign(campaign)) {
     specs.push_back(effect_spec("reversal", {{"symbol", symbol.name()}}));
   }
   return specs;

@@ -83,7 +83,7 @@ std::unique_ptr<FormulaEffect> make_thermal_drift(const EffectTable& table) {
 
 std::vector<EffectSpec> thermal_drifts(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
+  for (const ErrorSymbol symbol : motions_in_campaign(campaign)) {
     if (symbol.is_positioning() || symbol.is_straightness()) continue;
     for (const std::string& channel : temperature_channels(campaign)) {
       specs.push_back(effect_spec("thermal-drift", {{"symbol", symbol.name()}, {"temperature", channel}}));

@@ -63,7 +63,7 @@ TEST(LeftOut, IsNamedAndGivenBack) {
   EXPECT_LT(found.log10_p, -20.0);
   EXPECT_EQ(left_out_symbols(found.spec), (std::vector<std::string>{"EBX"}));
   ModelSpec extended = model;
-  ASSERT_TRUE(restore_left_out(found.spec, extended));
+  ASSERT_TRUE(restore_left_out(found.spec, campaign_of_tracking().machine, extended));
   EXPECT_TRUE(extended.functions.empty());
   EXPECT_LT(fit(campaign_of_tracking(), extended).chi2, 0.8 * result.chi2);
 }
@@ -75,11 +75,11 @@ TEST(LeftOut, GoesBackToTheModelItCameFrom) {
   ModelSpec model;
   model.default_function.basis = "zero";
   model.locations_off = {*LocationSymbol::parse("EC0Y")};
-  EXPECT_TRUE(restore_left_out(spec, model));
+  EXPECT_TRUE(restore_left_out(spec, campaign_of_tracking().machine, model));
   EXPECT_EQ(model.functions.at(*ErrorSymbol::parse("EAX")).basis, "bspline");
   EXPECT_TRUE(model.locations_off.empty());
   spec.kind = "reversal";
-  EXPECT_FALSE(restore_left_out(spec, model));
+  EXPECT_FALSE(restore_left_out(spec, campaign_of_tracking().machine, model));
 }
 
 }  // namespace

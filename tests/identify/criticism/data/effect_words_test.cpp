@@ -29,7 +29,7 @@ void expect_known(const EffectName& name, std::set<const EffectWord*>& used) {
 
 TEST(EffectWords, CoverEveryRegisteredEffectAndNothingElse) {
   std::set<const EffectWord*> used;
-  for (const char* structure : {"w X' b Y Z t", "w C' X' b Y Z t"}) {
+  for (const char* structure : {"w X' b Y Z t", "w C' X' b Y Z t", "w C' A' X' b Y Z t"}) {
     const Campaign campaign = testing_support::effect_campaign(structure);
     for (const EffectKind* kind : effect_kinds()) {
       for (const EffectSpec& spec : kind->examples(campaign))

@@ -1,0 +1,27 @@
+#pragma once
+/// What no reading of tool against workpiece can tell of the locations of axes, whatever the poses: of errors
+/// that all poses exchange, one stands for all.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "volcal/model/description/machine.h"
+#include "volcal/model/kinematics/chain.h"
+
+namespace volcal {
+
+/// Poses spread over the travel of every axis, the same at every call (Halton sequence).
+std::vector<AxisPosition> spread_poses(const Machine& machine, int count);
+
+/// Displacements of the functional point that are no error of an axis: of the workpiece (shift, rotation),
+/// and of a tool whose offset is uncertain. 3 rows, workpiece coordinates.
+Eigen::Matrix<double, 3, Eigen::Dynamic> frame_columns(const Machine& machine, const KinematicChain& chain,
+                                                       const AxisPosition& position, std::size_t tool);
+
+/// Location errors of which none is a combination of the others, the place of the workpiece and, where the
+/// machine states an uncertainty, the offsets of its tools: squareness, then of the rotary axes from the bed
+/// outwards the tilts of the axis line, its displacements and the zero position. An error that follows from
+/// earlier ones is left out: it is zero by convention, as EC0C of a table, which the workpiece's place holds.
+std::vector<LocationSymbol> independent_locations(const Machine& machine);
+
+}  // namespace volcal

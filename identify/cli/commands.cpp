@@ -23,6 +23,7 @@ namespace volcal::cli {
   COMMAND(budget_command)        \
   COMMAND(tables_command)        \
   COMMAND(compensate_command)    \
+  COMMAND(export_command)        \
   COMMAND(study_command)
 
 #define VOLCAL_DECLARE_COMMAND(name) const Command& name();

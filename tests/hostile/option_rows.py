@@ -67,6 +67,8 @@ def usage():
         bad("export onto its result", ["export", "r", "--npz", "r/result.json"], "is read"),
         bad("export onto a folder", ["export", "r", "--npz", "c"], "cannot be written"),
         bad("export below a file", ["export", "r", "--gtc", "c/S1.csv/x"], "cannot be written"),
+        bad("reference onto the campaign's folder", ["help", "-o", "c"], "holds|files"),
+        bad("help of nothing", ["help", "fit", "fit", "fit"], "there is no command"),
         bad("negative file names", ["fit", "-1", "-o", "o"], "."),
         Row("help with rubbish", ["fit", "--help", "--rubbish"], (0, 2), "."),
         Row("version", ["--version"], 0, r"^\d+\.\d+"),

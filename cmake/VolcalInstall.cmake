@@ -1,6 +1,6 @@
 # Installs the libraries, their public headers under include/volcal/{model,identify,sim}, those that these need
 # under include/volcal-internal, the program, and a package for find_package(volcal), which defines
-# volcal::volcal and one target per layer.
+# volcal::volcal and one target per layer. What the program writes of itself is in VolcalReference.cmake.
 
 include(CMakePackageConfigHelpers)
 

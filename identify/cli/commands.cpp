@@ -23,7 +23,9 @@ namespace volcal::cli {
   COMMAND(budget_command)        \
   COMMAND(tables_command)        \
   COMMAND(compensate_command)    \
-  COMMAND(study_command)
+  COMMAND(export_command)        \
+  COMMAND(study_command)         \
+  COMMAND(help_command)
 
 #define VOLCAL_DECLARE_COMMAND(name) const Command& name();
 #define VOLCAL_ADDRESS_OF_COMMAND(name) &(name)(),

@@ -270,7 +270,7 @@ int run_tables(const TablesArguments& arguments) {
 
 void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
   app.add_option("-f,--format", arguments.format, format_help())
-      ->check(CLI::Validator(check_format_name, "FORMAT"));
+      ->check(CLI::Validator(check_format_name, fmt::format("{{{}}}", fmt::join(table_format_names(), ","))));
   app.add_option("--type", arguments.type,
                  "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG joined by +, or L-VOL; "
                  "default: all that the format can do");

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"

@@ -9,15 +9,15 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/output_file.h"
 #include "volcal/identify/cli/options/parameter_option.h"
-#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
+#include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
-#include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/text/diagnosis_text.h"
 #include "volcal/identify/report/text/findings_text.h"
@@ -146,14 +146,6 @@ std::string path_from(const std::string& from, const std::string& file) {
   return std::filesystem::proximate(std::filesystem::absolute(file), folder).generic_string();
 }
 
-void require_no_input(const std::string& output, const std::vector<std::string>& inputs) {
-  for (const std::string& input : inputs) {
-    if (input.empty() || !same_file(output, input)) continue;
-    throw InputError({output, 0}, "the output is a file that is read, and would be overwritten",
-                     "name another file with -o, or overwrite it with --force");
-  }
-}
-
 void report(const Changes& changes, const std::string& output, std::size_t effects,
             const std::vector<Finding>& notes, bool as_json) {
   if (as_json) {
@@ -186,7 +178,9 @@ int run_extend(const ExtendArguments& arguments) {
     for (const EffectFinding& effect : chosen(arguments)) add_found(effect, arguments, extended, changes);
   }
   const std::string output = arguments.output.empty() ? next_name(arguments.model) : arguments.output;
-  if (!arguments.force) require_no_input(output, {arguments.model, machine.file, arguments.campaign});
+  if (!arguments.force)
+    require_no_input(output, {arguments.model, machine.file, arguments.campaign},
+                     "name another file with -o, or overwrite it with --force");
   write_text_file(output, model_toml(model, path_from(output, machine.file)));
   report(changes, output, model.effects.size(), campaign.notes, arguments.json);
   return kDone;

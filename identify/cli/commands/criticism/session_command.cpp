@@ -8,6 +8,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/output_file.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
@@ -72,10 +73,17 @@ void do_line(Session& session, const std::string& line) {
   }
 }
 
+std::vector<std::string> files_read(const SessionArguments& arguments, const Campaign& campaign) {
+  std::vector<std::string> files = {arguments.campaign, arguments.model, campaign.machine.file};
+  for (const Setup& setup : campaign.setups) files.push_back(setup.data);
+  return files;
+}
+
 int run_session(const SessionArguments& arguments) {
   Campaign campaign = read_campaign(arguments.campaign);
   const ModelSpec model = read_starting_model(arguments.model, campaign.machine);
   for (const std::string& line : arguments.lines) session_command_from(line);
+  require_no_input(arguments.output, files_read(arguments, campaign), "name another file with -o");
   ProgressBar bar("session");
   const auto progress = [&bar](const std::string& stage, double done) {
     bar.update(stage, done);

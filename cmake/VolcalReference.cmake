@@ -1,0 +1,82 @@
+# Manual pages, completions for shells and volcal.pc, made when they are installed: the program writes the first two of
+# its own table of commands, so that they cannot be of another version.
+
+set(VOLCAL_ZSH_DIR share/zsh/site-functions CACHE STRING "Folder of completions for zsh, below the prefix")
+mark_as_advanced(VOLCAL_ZSH_DIR)
+
+if(TARGET volcal_cli AND NOT CMAKE_CROSSCOMPILING)
+  install(CODE "
+    string(RANDOM LENGTH 8 mark)  # several installations may run at once
+    set(reference \"${PROJECT_BINARY_DIR}/reference-\${mark}\")
+    execute_process(COMMAND \"$<TARGET_FILE:volcal_cli>\" help -o \"\${reference}\"
+                    OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+    file(GLOB pages \"\${reference}/*.1\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\" TYPE FILE FILES \${pages})
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/share/bash-completion/completions\" TYPE FILE
+         FILES \"\${reference}/volcal.bash\" RENAME volcal)
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${VOLCAL_ZSH_DIR}\" TYPE FILE FILES \"\${reference}/_volcal\")
+    file(INSTALL DESTINATION \"\${CMAKE_INSTALL_PREFIX}/share/fish/vendor_completions.d\" TYPE FILE
+         FILES \"\${reference}/volcal.fish\")
+    file(REMOVE_RECURSE \"\${reference}\")")
+endif()
+
+# volcal_link_name(OUT PATH): /usr/lib/libfmt.so as -lfmt.
+function(volcal_link_name out path)
+  get_filename_component(name ${path} NAME)
+  string(REGEX REPLACE "^lib(.*)\\.(so|a)([.0-9]*)$" "-l\\1" name ${name})
+  set(${out} ${name} PARENT_SCOPE)
+endfunction()
+
+# volcal_collect_links(OUT ITEM): what links an item of link libraries, behind what is in OUT, a library behind those
+# that it needs; the list is turned round in the end, as static libraries want it.
+function(volcal_collect_links out item)
+  string(REGEX REPLACE "^\\$<LINK_ONLY:(.*)>$" "\\1" item "${item}")
+  if(item MATCHES "^\\$<|^::@" OR item IN_LIST ${out})
+    set(${out} ${${out}} PARENT_SCOPE)
+    return()
+  endif()
+  set(found ${${out}})
+  if(NOT TARGET ${item})
+    if(IS_ABSOLUTE ${item})
+      volcal_link_name(item ${item})
+    elseif(NOT item MATCHES "^-")
+      set(item -l${item})
+    endif()
+    list(APPEND found ${item})
+    set(${out} ${found} PARENT_SCOPE)
+    return()
+  endif()
+  get_target_property(needed ${item} INTERFACE_LINK_LIBRARIES)
+  foreach(each IN LISTS needed)
+    if(each)
+      volcal_collect_links(found "${each}")
+    endif()
+  endforeach()
+  get_target_property(type ${item} TYPE)
+  get_target_property(imported ${item} IMPORTED)
+  if(item STREQUAL "Threads::Threads")
+    list(APPEND found -pthread)
+  elseif(imported AND NOT type STREQUAL "INTERFACE_LIBRARY")
+    get_target_property(configurations ${item} IMPORTED_CONFIGURATIONS)
+    list(GET configurations 0 configuration)
+    get_target_property(location ${item} IMPORTED_LOCATION_${configuration})
+    if(NOT location)
+      get_target_property(location ${item} IMPORTED_LOCATION)
+    endif()
+    volcal_link_name(name ${location})
+    list(APPEND found ${name})
+  elseif(NOT imported AND type STREQUAL "STATIC_LIBRARY" AND NOT -l${item} IN_LIST found)
+    list(APPEND found -l${item})
+  endif()
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+set(links)
+volcal_collect_links(links volcal_volcal)
+list(REMOVE_DUPLICATES links)
+list(REVERSE links)
+list(JOIN links " " VOLCAL_PC_LIBS)
+file(RELATIVE_PATH VOLCAL_PC_UP /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" VOLCAL_PC_UP ${VOLCAL_PC_UP})
+configure_file(cmake/volcal.pc.in ${PROJECT_BINARY_DIR}/volcal.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/volcal.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

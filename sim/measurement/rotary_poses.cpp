@@ -6,6 +6,7 @@
 #include <functional>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace volcal::sim {
 namespace {
@@ -97,6 +98,26 @@ void append_singly(const Machine& machine, const std::vector<RotaryNodes>& nodes
   }
 }
 
+/// Direction of approach of one axis, as approach() has it of all.
+void approach_axis(std::size_t k, const CommandedPoint& from, CommandedPoint& to) {
+  const double move = to.position[k] - from.position[k];
+  to.direction[k] = move == 0.0 ? from.direction[k] : static_cast<std::int8_t>(move > 0.0 ? 1 : -1);
+}
+
+/// The second half of the points has the rotary positions of the first in reverse order, from the other side.
+void return_rotary_axes(const Machine& machine, std::vector<CommandedPoint>& points) {
+  for (std::size_t i = 0; i < points.size() / 2; ++i) {
+    const CommandedPoint& forward = points[i];
+    CommandedPoint& back = points[points.size() - 1 - i];
+    for (const Axis& axis : machine.axes) {
+      if (!is_rotary(axis.name)) continue;
+      const std::size_t k = index_of(axis.name);
+      back.position[k] = forward.position[k];
+      back.direction[k] = static_cast<std::int8_t>(-forward.direction[k]);
+    }
+  }
+}
+
 }  // namespace
 
 std::array<double, 2> rotary_range(const RotaryGrid& grid, const Axis& axis) {
@@ -144,8 +165,8 @@ Eigen::Matrix3d axes_of_frame(const TruthMachine& machine, const MachineState& s
   throw std::invalid_argument("\"" + frame + "\" is no frame of readings");
 }
 
-Follower::Follower(const TruthMachine& nominal, const Eigen::Vector3d& tool_offset)
-    : nominal_(nominal), tool_offset_(tool_offset) {}
+Follower::Follower(const TruthMachine& nominal, Eigen::Vector3d tool_offset)
+    : nominal_(nominal), tool_offset_(std::move(tool_offset)) {}
 
 /// Workpiece directions in which X, Y, Z move the tool point, by columns.
 Eigen::Matrix3d Follower::directions(const CommandedPoint& rotary) const {
@@ -202,26 +223,11 @@ void add_rotary_motion(const Machine& machine, RotaryMotion motion, const Rotary
       if (!is_rotary(axis.name)) continue;
       const std::size_t k = index_of(axis.name);
       const auto [low, high] = rotary_range(grid, axis);
-      CommandedPoint& point = points[i];
-      point.position[k] =
-          motion == RotaryMotion::Grid ? nodes[i % nodes.size()].position[k] : random.uniform(low, high);
-      if (i == 0) continue;
-      const double move = point.position[k] - points[i - 1].position[k];
-      if (move != 0.0) point.direction[k] = move > 0.0 ? std::int8_t{1} : std::int8_t{-1};
-      if (move == 0.0) point.direction[k] = points[i - 1].direction[k];
+      points[i].position[k] = nodes.empty() ? random.uniform(low, high) : nodes[i % nodes.size()].position[k];
+      if (i > 0) approach_axis(k, points[i - 1], points[i]);
     }
   }
-  if (!there_and_back) return;
-  for (std::size_t i = 0; i < half; ++i) {
-    const CommandedPoint& forward = points[i];
-    CommandedPoint& back = points[points.size() - 1 - i];
-    for (const Axis& axis : machine.axes) {
-      if (!is_rotary(axis.name)) continue;
-      const std::size_t k = index_of(axis.name);
-      back.position[k] = forward.position[k];
-      back.direction[k] = static_cast<std::int8_t>(-forward.direction[k]);
-    }
-  }
+  if (there_and_back) return_rotary_axes(machine, points);
 }
 
 }  // namespace volcal::sim

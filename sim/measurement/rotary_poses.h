@@ -44,7 +44,7 @@ Eigen::Matrix3d axes_of_frame(const TruthMachine& machine, const MachineState& s
 /// Linear axes follow: which positions bring the nominal tool point to a place.
 class Follower {
  public:
-  Follower(const TruthMachine& nominal, const Eigen::Vector3d& tool_offset);
+  Follower(const TruthMachine& nominal, Eigen::Vector3d tool_offset);
 
   struct Pose {
     CommandedPoint point;

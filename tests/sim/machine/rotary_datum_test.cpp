@@ -14,8 +14,8 @@
 namespace volcal::sim {
 namespace {
 
-constexpr double kMicro = 1e-6;
-constexpr double kPi = std::numbers::pi;
+constexpr double kMicroUnit = 1e-6;
+constexpr double kHalfTurn = std::numbers::pi;
 
 ErrorSymbol motion(const char* name) { return *ErrorSymbol::parse(name); }
 LocationSymbol place(const char* name) { return *LocationSymbol::parse(name); }
@@ -29,16 +29,16 @@ TEST(RotaryDatum, AConstantIsALocationErrorOfTheSideItStandsOn) {
     TruthMachine truth(rotary_machine(workpiece_side ? "w C' b X Y Z t" : "w b X Y Z C t"));
     int size = 0;
     for (const char* name : {"EXC", "EYC", "EZC", "EAC", "EBC", "ECC"})
-      truth.set_error(motion(name), [c = ++size * kMicro](double) { return c; });
-    truth.set_location(place("EX0C"), 10.0 * kMicro);
+      truth.set_error(motion(name), [c = ++size * kMicroUnit](double) { return c; });
+    truth.set_location(place("EX0C"), 10.0 * kMicroUnit);
     const TruthInDatum tables(truth);
     const double s = workpiece_side ? -1.0 : 1.0;
-    EXPECT_NEAR(tables.location(place("EX0C")), (10.0 + s * 1.0) * kMicro, 1e-18);
-    EXPECT_NEAR(tables.location(place("EY0C")), s * 2.0 * kMicro, 1e-18);
-    EXPECT_NEAR(tables.location(place("EZ0C")), s * 3.0 * kMicro, 1e-18);
-    EXPECT_NEAR(tables.location(place("EA0C")), s * 4.0 * kMicro, 1e-18);
-    EXPECT_NEAR(tables.location(place("EB0C")), s * 5.0 * kMicro, 1e-18);
-    EXPECT_NEAR(tables.location(place("EC0C")), 6.0 * kMicro, 1e-18) << "no side: in the command's sense";
+    EXPECT_NEAR(tables.location(place("EX0C")), (10.0 + s * 1.0) * kMicroUnit, 1e-18);
+    EXPECT_NEAR(tables.location(place("EY0C")), s * 2.0 * kMicroUnit, 1e-18);
+    EXPECT_NEAR(tables.location(place("EZ0C")), s * 3.0 * kMicroUnit, 1e-18);
+    EXPECT_NEAR(tables.location(place("EA0C")), s * 4.0 * kMicroUnit, 1e-18);
+    EXPECT_NEAR(tables.location(place("EB0C")), s * 5.0 * kMicroUnit, 1e-18);
+    EXPECT_NEAR(tables.location(place("EC0C")), 6.0 * kMicroUnit, 1e-18) << "no side: in the command's sense";
     for (const char* name : {"EXC", "EYC", "EZC", "EAC", "EBC", "ECC"})
       EXPECT_NEAR(tables.value(motion(name), 1.0), 0.0, 1e-18) << name;
   }
@@ -51,17 +51,17 @@ TEST(RotaryDatum, TransverseMotionsHaveNoMeanAndTheOthersAreZeroAtHome) {
   axis.travel_max = 2.0;
   axis.home = 0.5;
   TruthMachine truth(machine);
-  const auto square = [](double q) { return kMicro * q * q; };
+  const auto square = [](double q) { return kMicroUnit * q * q; };
   for (const char* name : {"EXA", "EYA", "EZA", "EAA", "EBA", "ECA"}) truth.set_error(motion(name), square);
   const TruthInDatum tables(truth);
   // Mean of q^2 over [-1, 2]: (8 + 1) / 3 / 3 = 1; at home 0.25.
   for (const char* name : {"EYA", "EZA", "EBA", "ECA"})
-    EXPECT_NEAR(tables.value(motion(name), 2.0), 3.0 * kMicro, 1e-18) << name;
+    EXPECT_NEAR(tables.value(motion(name), 2.0), 3.0 * kMicroUnit, 1e-18) << name;
   for (const char* name : {"EXA", "EAA"})
-    EXPECT_NEAR(tables.value(motion(name), 2.0), 3.75 * kMicro, 1e-18) << name;
-  EXPECT_NEAR(tables.location(place("EB0A")), 1.0 * kMicro, 1e-18);
-  EXPECT_NEAR(tables.location(place("EX0A")), 0.25 * kMicro, 1e-18);
-  EXPECT_NEAR(tables.location(place("EA0A")), 0.25 * kMicro, 1e-18);
+    EXPECT_NEAR(tables.value(motion(name), 2.0), 3.75 * kMicroUnit, 1e-18) << name;
+  EXPECT_NEAR(tables.location(place("EB0A")), 1.0 * kMicroUnit, 1e-18);
+  EXPECT_NEAR(tables.location(place("EX0A")), 0.25 * kMicroUnit, 1e-18);
+  EXPECT_NEAR(tables.location(place("EA0A")), 0.25 * kMicroUnit, 1e-18);
   EXPECT_NEAR(uniform_mean([](double q) { return std::sin(3.0 * q); }, 0.0, 1.0), (1.0 - std::cos(3.0)) / 3.0,
               1e-15);
   EXPECT_THROW(tables.location(place("EC0Y")), std::invalid_argument);
@@ -73,7 +73,7 @@ Eigen::Vector3d circle_centre(const TruthMachine& truth, const Eigen::Vector3d& 
   constexpr int kPositions = 8;
   for (int i = 0; i < kPositions; ++i) {
     MachineState state;
-    state.position[index_of(AxisName::C)] = 2.0 * kPi * i / kPositions;
+    state.position[index_of(AxisName::C)] = 2.0 * kHalfTurn * i / kPositions;
     sum += (inverse(truth.pose(state, Eigen::Vector3d::Zero())) * point_w.homogeneous()).head<3>();
   }
   return sum / kPositions;
@@ -83,39 +83,39 @@ TEST(RotaryDatum, LocationErrorsAreThoseOfThePhysicalAxisOfATable) {
   Machine machine = rotary_machine("w C' b X Y Z t");
   machine.axes.front().centre = {0.01, 0.02, 0.0};
   TruthMachine truth(machine);
-  truth.set_location(place("EX0C"), 10.0 * kMicro);
-  truth.set_location(place("EY0C"), 20.0 * kMicro);
-  truth.set_location(place("EA0C"), 30.0 * kMicro);
-  truth.set_location(place("EB0C"), 50.0 * kMicro);
+  truth.set_location(place("EX0C"), 10.0 * kMicroUnit);
+  truth.set_location(place("EY0C"), 20.0 * kMicroUnit);
+  truth.set_location(place("EA0C"), 30.0 * kMicroUnit);
+  truth.set_location(place("EB0C"), 50.0 * kMicroUnit);
   const Eigen::Vector3d low = circle_centre(truth, {0.1, 0.0, 0.0}) - Eigen::Vector3d(0.01, 0.02, 0.0);
-  EXPECT_LT((low.head<2>() - kMicro * Eigen::Vector2d(10.0, 20.0)).norm(), 1e-9);
+  EXPECT_LT((low.head<2>() - kMicroUnit * Eigen::Vector2d(10.0, 20.0)).norm(), 1e-9);
   const Eigen::Vector3d high = circle_centre(truth, {0.1, 0.0, 0.3}) - Eigen::Vector3d(0.01, 0.02, 0.3);
-  EXPECT_LT((high.head<2>() - kMicro * Eigen::Vector2d(25.0, 11.0)).norm(), 1e-9);
+  EXPECT_LT((high.head<2>() - kMicroUnit * Eigen::Vector2d(25.0, 11.0)).norm(), 1e-9);
   MachineState state;
-  state.position[index_of(AxisName::C)] = kPi / 4.0;
+  state.position[index_of(AxisName::C)] = kHalfTurn / 4.0;
   const Eigen::Vector3d turned =
       inverse(TruthMachine(machine).pose(state, {0.0, 0.0, 0.0})).topLeftCorner<3, 3>() *
       Eigen::Vector3d::UnitX();
-  EXPECT_NEAR(std::atan2(turned.y(), turned.x()), -kPi / 4.0, 1e-15) << "the table turns the other way";
+  EXPECT_NEAR(std::atan2(turned.y(), turned.x()), -kHalfTurn / 4.0, 1e-15) << "the table turns the other way";
 }
 
 TEST(RotaryDatum, LocationErrorsOfACarriedAxisAddToThoseOfItsCarrier) {
   Machine machine = rotary_machine("w C' A' b X Y Z t");
   machine.axes[1].centre = {0.0, 0.0, 0.05};
   TruthMachine truth(machine);
-  truth.set_location(place("EY0A"), 10.0 * kMicro);
-  truth.set_location(place("EZ0A"), -20.0 * kMicro);
-  truth.set_location(place("EB0A"), 60.0 * kMicro);
-  truth.set_location(place("EC0A"), -40.0 * kMicro);
-  truth.set_location(place("EX0C"), 5.0 * kMicro);
-  truth.set_location(place("EY0C"), 7.0 * kMicro);
-  truth.set_location(place("EA0C"), 30.0 * kMicro);
-  truth.set_location(place("EB0C"), -20.0 * kMicro);
+  truth.set_location(place("EY0A"), 10.0 * kMicroUnit);
+  truth.set_location(place("EZ0A"), -20.0 * kMicroUnit);
+  truth.set_location(place("EB0A"), 60.0 * kMicroUnit);
+  truth.set_location(place("EC0A"), -40.0 * kMicroUnit);
+  truth.set_location(place("EX0C"), 5.0 * kMicroUnit);
+  truth.set_location(place("EY0C"), 7.0 * kMicroUnit);
+  truth.set_location(place("EA0C"), 30.0 * kMicroUnit);
+  truth.set_location(place("EB0C"), -20.0 * kMicroUnit);
   // At machine zero X0C = 2, Y0C = 17 um, A0C = 30, B0C = 40 urad.
   const Eigen::Vector3d low = circle_centre(truth, {0.1, 0.0, 0.0});
-  EXPECT_LT((low.head<2>() - kMicro * Eigen::Vector2d(2.0, 17.0)).norm(), 2e-8);
+  EXPECT_LT((low.head<2>() - kMicroUnit * Eigen::Vector2d(2.0, 17.0)).norm(), 2e-8);
   const Eigen::Vector3d high = circle_centre(truth, {0.1, 0.0, 0.3});
-  EXPECT_LT((high.head<2>() - kMicro * Eigen::Vector2d(2.0 + 12.0, 17.0 - 9.0)).norm(), 2e-8);
+  EXPECT_LT((high.head<2>() - kMicroUnit * Eigen::Vector2d(2.0 + 12.0, 17.0 - 9.0)).norm(), 2e-8);
 }
 
 /// Nothing in datum form: slopes, home values and means everywhere.
@@ -132,14 +132,16 @@ TruthMachine crooked_rotary_machine(const std::string& code) {
     for (const Component component : kAllComponents) {
       phase += 1.0;
       truth.set_error({component, axis.name}, [phase](double q) {
-        return kMicro * (3.0 * std::sin(3.0 * q + phase) + 4.0 * q * std::cos(phase) + std::cos(2 * phase));
+        return kMicroUnit *
+               (3.0 * std::sin(3.0 * q + phase) + 4.0 * q * std::cos(phase) + std::cos(2 * phase));
       });
-      if (is_rotary(axis.name)) truth.set_location({component, axis.name}, kMicro * std::sin(3.0 * phase));
+      if (is_rotary(axis.name))
+        truth.set_location({component, axis.name}, kMicroUnit * std::sin(3.0 * phase));
     }
   }
-  double value = 10.0 * kMicro;
+  double value = 10.0 * kMicroUnit;
   for (const LocationSymbol& symbol : machine.datum.squareness())
-    truth.set_location(symbol, value += 7.0 * kMicro);
+    truth.set_location(symbol, value += 7.0 * kMicroUnit);
   return truth;
 }
 
@@ -194,25 +196,25 @@ TEST(RotaryDatum, DescribesTheSameMachineAtRandomPoses) {
       }
     }
     EXPECT_LT(rms_after_alignment(point, difference), 3e-9) << code;
-    EXPECT_GT(largest, 5.0 * kMicro) << code;
+    EXPECT_GT(largest, 5.0 * kMicroUnit) << code;
   }
 }
 
 TEST(RandomTruth, ErrorsOfAnAxisThatTurnsRightRoundComeBack) {
   Machine machine = rotary_machine("w C' A' b X Y Z t");
-  machine.axes[1].travel_min = -0.5 * kPi;
-  machine.axes[1].travel_max = 0.5 * kPi;
+  machine.axes[1].travel_min = -0.5 * kHalfTurn;
+  machine.axes[1].travel_max = 0.5 * kHalfTurn;
   const TruthMachine truth = random_truth(machine, 4);
   const TruthInDatum tables(truth);
   for (const Component component : kAllComponents) {
     const ErrorSymbol symbol{component, AxisName::C};
-    EXPECT_NEAR(truth.function_value(symbol, -kPi), truth.function_value(symbol, kPi), 1e-18);
+    EXPECT_NEAR(truth.function_value(symbol, -kHalfTurn), truth.function_value(symbol, kHalfTurn), 1e-18);
     EXPECT_NE(tables.value(symbol, 1.0), 0.0);
   }
   EXPECT_EQ(truth.function_value(motion("EXA"), 0.0), 0.0);
   EXPECT_NE(truth.function_value(motion("EXA"), 1.0), 0.0);
   const auto of_tables = [&](double q) { return tables.value(motion("EYA"), q); };
-  EXPECT_LT(std::abs(uniform_mean(of_tables, -0.5 * kPi, 0.5 * kPi)), 1e-18);
+  EXPECT_LT(std::abs(uniform_mean(of_tables, -0.5 * kHalfTurn, 0.5 * kHalfTurn)), 1e-18);
 }
 
 }  // namespace

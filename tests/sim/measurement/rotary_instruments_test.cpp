@@ -13,10 +13,10 @@
 namespace volcal::sim {
 namespace {
 
-constexpr double kError = 10e-6;       // m
-constexpr double kTilt = 100e-6;       // rad
-constexpr double kSecondOrder = 2e-8;  // m: tilts of 100 urad over 0.2 m
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kHandError = 10e-6;         // m
+constexpr double kHandTilt = 100e-6;         // rad
+constexpr double kRotarySecondOrder = 2e-8;  // m: tilts of 100 urad over 0.2 m
+constexpr double kOneDegree = std::numbers::pi / 180.0;
 
 /// A machine, a pose, and what one error does to the tool point there, um.
 struct HandPose {
@@ -41,16 +41,17 @@ class RotaryReadings : public ::testing::Test {
   static CommandedPoint commanded(const HandPose& pose) {
     CommandedPoint point;
     for (const auto& [axis, value] : pose.position)
-      point.position[index_of(axis)] = is_rotary(axis) ? value * kDegree : value;
+      point.position[index_of(axis)] = is_rotary(axis) ? value * kOneDegree : value;
     return point;
   }
   static void set(TruthMachine& truth, const std::string& name) {
     if (const auto location = LocationSymbol::parse(name)) {
-      truth.set_location(*location, is_rotation(location->component) ? kTilt : kError);
+      truth.set_location(*location, is_rotation(location->component) ? kHandTilt : kHandError);
       return;
     }
     const ErrorSymbol symbol = *ErrorSymbol::parse(name);
-    truth.set_error(symbol, [size = is_rotation(symbol.component) ? kTilt : kError](double) { return size; });
+    truth.set_error(symbol,
+                    [size = is_rotation(symbol.component) ? kHandTilt : kHandError](double) { return size; });
   }
   static Eigen::Vector3d read(const TruthMachine& truth, const HandPose& pose, const std::string& instrument,
                               const std::string& frame = "workpiece") {
@@ -73,9 +74,9 @@ class RotaryReadings : public ::testing::Test {
       TruthMachine truth = machine_of(pose);
       set(truth, row.symbol);
       const Eigen::Vector3d displacement = 1e-6 * row.displacement_um;
-      EXPECT_LT((read(truth, pose, kRTest) - kSphere - displacement).norm(), kSecondOrder)
+      EXPECT_LT((read(truth, pose, kRTest) - kSphere - displacement).norm(), kRotarySecondOrder)
           << pose.code << " " << row.symbol << " " << (read(truth, pose, kRTest) - kSphere).transpose();
-      EXPECT_LT((read(truth, pose, kProbedSphere) - kSphere + displacement).norm(), kSecondOrder)
+      EXPECT_LT((read(truth, pose, kProbedSphere) - kSphere + displacement).norm(), kRotarySecondOrder)
           << pose.code << " " << row.symbol;
     }
   }
@@ -147,17 +148,17 @@ TEST_F(RotaryReadings, InTheAxesOfToolAndMachine) {
   set(truth, "EYC");
   // (-10, 0, 0) um in workpiece coordinates, whose x is the machine's y turned back: +y of machine and tool.
   for (const char* frame : {"machine", "tool"}) {
-    EXPECT_LT((read(truth, table, kRTest, frame) - kSphere - Eigen::Vector3d(0, kError, 0)).norm(),
-              kSecondOrder)
+    EXPECT_LT((read(truth, table, kRTest, frame) - kSphere - Eigen::Vector3d(0, kHandError, 0)).norm(),
+              kRotarySecondOrder)
         << frame << ": the offset stays as it is in the frame of the readings";
   }
   const HandPose head{"w b X Y Z C t", {{AxisName::C, 90.0}}, {0.1, 0.0, -0.2}, {0.0, 0.1, -0.2}};
   TruthMachine turned = machine_of(head);
   set(turned, "EXC");
-  EXPECT_LT((read(turned, head, kRTest, "machine") - kSphere - Eigen::Vector3d(kError, 0, 0)).norm(),
-            kSecondOrder);
-  EXPECT_LT((read(turned, head, kRTest, "tool") - kSphere - Eigen::Vector3d(0, -kError, 0)).norm(),
-            kSecondOrder);
+  EXPECT_LT((read(turned, head, kRTest, "machine") - kSphere - Eigen::Vector3d(kHandError, 0, 0)).norm(),
+            kRotarySecondOrder);
+  EXPECT_LT((read(turned, head, kRTest, "tool") - kSphere - Eigen::Vector3d(0, -kHandError, 0)).norm(),
+            kRotarySecondOrder);
   EXPECT_THROW(read(turned, head, kRTest, "bed"), std::invalid_argument);
 }
 

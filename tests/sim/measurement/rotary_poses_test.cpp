@@ -17,15 +17,15 @@
 namespace volcal::sim {
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFullTurn = 2.0 * std::numbers::pi;
 
 /// A table that tilts by 90 deg and turns, its axes meeting in the middle of the travel.
 Machine tilting_table(const std::string& code = "w C' A' b X Y Z t") {
   Machine machine = machine_from_code(code, {{{-0.4, 0.4}, {-0.4, 0.4}, {-0.4, 0.4}}});
   for (Axis& axis : machine.axes) {
     if (axis.name != AxisName::A && axis.name != AxisName::B) continue;
-    axis.travel_min = -0.25 * kTurn;
-    axis.travel_max = 0.25 * kTurn;
+    axis.travel_min = -0.25 * kFullTurn;
+    axis.travel_max = 0.25 * kFullTurn;
   }
   return machine;
 }
@@ -38,7 +38,7 @@ RTest r_test_at(const Eigen::Vector3d& sphere, std::vector<std::string> tools = 
   return settings;
 }
 
-std::string refusal(const MeasurementSettings& settings, const Machine& machine) {
+std::string plan_refusal(const MeasurementSettings& settings, const Machine& machine) {
   try {
     plan_setups({"", settings}, machine, 1);
   } catch (const InputError& error) {
@@ -64,9 +64,9 @@ TEST(RotaryPath, MeetsEveryCombinationThereAndBack) {
     EXPECT_NE(moves_a, c != path[i - 1].position[index_of(AxisName::C)]) << "one axis at a time";
   }
   EXPECT_EQ(met.size(), 12U);
-  EXPECT_EQ(met.begin()->first, -0.25 * kTurn);
-  EXPECT_EQ(met.rbegin()->first, 0.25 * kTurn) << "both ends of a tilt";
-  EXPECT_NEAR(met.rbegin()->second, 0.25 * kTurn, 1e-15) << "-180, -90, 0, 90 deg: a turn has one end";
+  EXPECT_EQ(met.begin()->first, -0.25 * kFullTurn);
+  EXPECT_EQ(met.rbegin()->first, 0.25 * kFullTurn) << "both ends of a tilt";
+  EXPECT_NEAR(met.rbegin()->second, 0.25 * kFullTurn, 1e-15) << "-180, -90, 0, 90 deg: a turn has one end";
   grid.bidirectional = true;
   const auto both = rotary_path(machine, grid, random);
   ASSERT_EQ(both.size(), 24U);
@@ -154,28 +154,28 @@ TEST(RTestPlan, LeavesOutPosesBeyondTheTravelAndSaysHowMany) {
 
 TEST(RTestPlan, RefusesWhatLeavesTooFewPoses) {
   const Machine machine = tilting_table();
-  const std::string far = refusal(r_test_at({0.8, 0.0, 0.0}), machine);
+  const std::string far = plan_refusal(r_test_at({0.8, 0.0, 0.0}), machine);
   EXPECT_THAT(far, testing::HasSubstr("of 40 poses of setup rtest_S1_short"));
   EXPECT_THAT(far, testing::HasSubstr("put the sphere nearer to the rotary axes"));
-  EXPECT_THAT(refusal(RTest{}, machine), testing::HasSubstr("no sphere is listed"));
-  EXPECT_THAT(refusal(r_test_at({0, 0, 0}, {"none"}), machine),
+  EXPECT_THAT(plan_refusal(RTest{}, machine), testing::HasSubstr("no sphere is listed"));
+  EXPECT_THAT(plan_refusal(r_test_at({0, 0, 0}, {"none"}), machine),
               testing::HasSubstr("there is no tool \"none\""));
-  EXPECT_THAT(refusal(r_test_at({0, 0, 0}), reference_machines()[0]),
+  EXPECT_THAT(plan_refusal(r_test_at({0, 0, 0}), reference_machines()[0]),
               testing::HasSubstr("the machine has no rotary axis"));
   RTest beyond = r_test_at({0, 0, 0});
   beyond.poses.grid.range = {{AxisName::A, {-2.0, 2.0}}};
-  EXPECT_THAT(refusal(beyond, machine), testing::HasSubstr("range_deg of A is not within its travel"));
+  EXPECT_THAT(plan_refusal(beyond, machine), testing::HasSubstr("range_deg of A is not within its travel"));
   RTest other = r_test_at({0, 0, 0});
   other.poses.grid.points = {{AxisName::B, 5}};
-  EXPECT_THAT(refusal(other, machine), testing::HasSubstr("B is no rotary axis of the machine"));
+  EXPECT_THAT(plan_refusal(other, machine), testing::HasSubstr("B is no rotary axis of the machine"));
   RTest twice = r_test_at({0, 0, 0});
   twice.poses.spheres.push_back(twice.poses.spheres.front());
-  EXPECT_THAT(refusal(twice, machine), testing::HasSubstr("two spheres are called S1"));
+  EXPECT_THAT(plan_refusal(twice, machine), testing::HasSubstr("two spheres are called S1"));
   ProbedSphere kind;
   kind.poses = r_test_at({0, 0, 0}).poses;
   kind.contacts = true;
   kind.kinds = {"Q"};
-  EXPECT_THAT(refusal(kind, machine), testing::HasSubstr("\"Q\" is no kind of contact"));
+  EXPECT_THAT(plan_refusal(kind, machine), testing::HasSubstr("\"Q\" is no kind of contact"));
 }
 
 TEST(RTestPlan, AnAxisThatCannotBeFollowedIsLeftOut) {
@@ -243,7 +243,7 @@ TEST(RotaryTracking, MovesRotaryAxesAtRandomOrOnAGridThereAndBack) {
   }
   Tracking settings;
   settings.rotary = RotaryMotion::Random;
-  EXPECT_THAT(refusal(settings, reference_machines()[0]), testing::HasSubstr("has no rotary axis"));
+  EXPECT_THAT(plan_refusal(settings, reference_machines()[0]), testing::HasSubstr("has no rotary axis"));
 }
 
 TEST(RotaryStudy, ValidatesAtRotaryPosesWhereTheCampaignMovesThem) {

@@ -81,23 +81,28 @@ std::vector<double> breakpoints_of(const FunctionSpec& spec, const Axis& axis) {
   return ends;
 }
 
-ErrorFunction known_function(const ModelSpec& errors, ErrorSymbol symbol, const Axis& axis) {
-  const FunctionSpec& spec = errors.function(symbol);
+ErrorFunction known_function(const FunctionSpec& spec, ErrorSymbol symbol, const Axis& axis,
+                             const std::string& file) {
   if (spec.basis == "bspline") return KnownSpline(spec.degree, breakpoints_of(spec, axis), spec.coefficients);
   if (spec.basis == "legendre") return KnownLegendre{axis.travel_min, axis.travel_max, spec.coefficients};
   if (spec.basis == "fourier") return KnownFourier{spec.coefficients};
   throw InputError(
-      {errors.file, 0}, symbol.name() + " has the basis \"" + spec.basis + "\", which is not simulated",
+      {file, 0}, symbol.name() + " has the basis \"" + spec.basis + "\", which is not simulated",
       "state it in one of bspline, legendre, fourier, or as tables (volcal tables --format csv)");
 }
 
 }  // namespace
 
-void set_known_errors(const ModelSpec& errors, TruthMachine& truth) {
-  for (const auto& [symbol, spec] : errors.functions) {
+void set_known_functions(const std::map<ErrorSymbol, FunctionSpec>& functions, const std::string& file,
+                         TruthMachine& truth) {
+  for (const auto& [symbol, spec] : functions) {
     if (spec.coefficients.empty()) continue;
-    truth.set_error(symbol, known_function(errors, symbol, truth.machine().axis(symbol.axis)));
+    truth.set_error(symbol, known_function(spec, symbol, truth.machine().axis(symbol.axis), file));
   }
+}
+
+void set_known_errors(const ModelSpec& errors, TruthMachine& truth) {
+  set_known_functions(errors.functions, errors.file, truth);
   for (const auto& [symbol, value] : errors.locations) truth.set_location(symbol, value);
 }
 

@@ -3,6 +3,7 @@
 /// effects are evaluated here, by code that shares nothing with model/: splines by de Boor's algorithm,
 /// Legendre series by their recurrence, effects by the formulas of their kinds in exact transforms.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,12 @@
 
 namespace volcal::sim {
 
-/// Functions with coefficients and known locations; what has no value is zero. Beyond the breakpoints the end
-/// pieces are continued. Throws InputError for a basis that is not simulated.
+/// Functions with coefficients, in place of others; `file` names them in messages. Beyond the breakpoints the
+/// end pieces are continued. Throws InputError for a basis that is not simulated.
+void set_known_functions(const std::map<ErrorSymbol, FunctionSpec>& functions, const std::string& file,
+                         TruthMachine& truth);
+
+/// Functions with coefficients and known locations; what has no value is zero. Throws as above.
 void set_known_errors(const ModelSpec& errors, TruthMachine& truth);
 
 /// The effects with their amplitudes. Throws InputError, at the effect's place, for a kind that is not

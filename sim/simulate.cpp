@@ -74,7 +74,22 @@ std::vector<SetupPlan> all_plans(const Study& study) {
   return plans;
 }
 
-Campaign validation_campaign(const Study& study, const TruthMachine& truth, const Interference& known) {
+bool moves_rotary_axes(const Machine& machine, const std::vector<SetupPlan>& plans) {
+  return std::ranges::any_of(plans, [&](const SetupPlan& plan) {
+    return std::ranges::any_of(machine.axes, [&](const Axis& axis) {
+      if (!is_rotary(axis.name)) return false;
+      const double first = plan.points.front().position[index_of(axis.name)];
+      return std::ranges::any_of(plan.points, [&](const CommandedPoint& point) {
+        return point.position[index_of(axis.name)] != first;
+      });
+    });
+  });
+}
+
+Campaign validation_campaign(const Study& study, const TruthMachine& truth, const Interference& known,
+                             const std::vector<SetupPlan>& plans) {
+  const RotaryMotion rotary =
+      moves_rotary_axes(study.machine, plans) ? RotaryMotion::Random : RotaryMotion::Home;
   Campaign campaign;
   campaign.machine = study.machine;
   std::vector<std::string> tools = study.validation.tools;
@@ -95,7 +110,7 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth, cons
     plan.instrument = "volumetric-points";
     plan.tool = *index;
     RandomStream random(study.seed, "validation points " + tool);
-    plan.points = random_points(study.machine, study.validation.points, random);
+    plan.points = random_points(study.machine, study.validation.points, random, rotary);
     Setup setup = measure(plan, conditions, 0.0);
     setup.noise.set("constant", study.validation.stated_noise);
     campaign.setups.push_back(std::move(setup));
@@ -157,6 +172,7 @@ TruthMachine true_machine_of(const Study& study, const std::vector<SetupPlan>& p
   HiddenScene scene{truth, known};
   if (study.truth.errors)
     add_known_effects(*study.truth.errors, {study.machine, study.environment, plans}, scene);
+  set_known_functions(study.truth.functions, study.file, truth);
   for (const auto& [symbol, value] : study.truth.locations) truth.set_location(symbol, value);
   for (const auto& [symbol, value] : study.truth.reversals) truth.set_reversal(symbol, value);
   set_expansions(study, truth);
@@ -192,7 +208,7 @@ SimulatedCampaign simulate(const Study& study) {
   }
   simulated.campaign = readout.with_noise(simulated.truth, interference);
   simulated.campaign.active_compensations = study.compensation.description;
-  simulated.validation = validation_campaign(study, simulated.truth, known);
+  simulated.validation = validation_campaign(study, simulated.truth, known, simulated.plans);
   for (const SetupPlan& plan : simulated.plans) append_gross_errors(plan, study.seed, simulated.outliers);
   if (study.unseen || !study.hidden.empty()) {
     const StudyReadout elsewhere{study, simulated.tool_offsets, at_unseen_positions(simulated.plans)};

@@ -26,6 +26,7 @@ struct TruthSettings {
   std::optional<ModelSpec> errors;  ///< known ones in place of random ones (known_errors.h)
   std::string errors_file;          ///< where they were read from
   RandomTruthOptions random;
+  std::map<ErrorSymbol, FunctionSpec> functions;   ///< with coefficients, in place of the random ones
   std::map<LocationSymbol, double> locations;      ///< in place of the random ones, rad or m
   std::map<ErrorSymbol, double> reversals;         ///< in place of the random ones, rad or m
   std::map<AxisName, ScaleExpansion> expansions;   ///< exact, in place of the machine file's
@@ -33,7 +34,8 @@ struct TruthSettings {
   std::function<void(TruthMachine& truth)> alter;  ///< anything else, applied last
 };
 
-/// Noise-free error vectors at random points, temperatures 20 degC, direction unknown.
+/// Noise-free error vectors at random points, temperatures 20 degC, direction unknown. Rotary axes stand at
+/// random positions too where the campaign moves any of them, and otherwise at home.
 struct ValidationSettings {
   int points = 400;
   std::vector<std::string> tools;  ///< empty = the first tool only; one setup per tool

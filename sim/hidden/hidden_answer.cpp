@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "volcal/model/description/units.h"
+#include "volcal/sim/measurement/instruments.h"
 #include "volcal/sim/measurement/noise.h"
 
 namespace volcal::sim {
@@ -20,9 +21,11 @@ Size difference(const Campaign& a, const Campaign& b) {
   double square_within = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < a.setups.size(); ++i) {
-    for (std::size_t channel = 0; channel < a.setups[i].readings.value.size(); ++channel) {
-      const auto& before = a.setups[i].readings.value[channel];
-      const auto& after = b.setups[i].readings.value[channel];
+    const auto all_before = measured_components(a.setups[i]);
+    const auto all_after = measured_components(b.setups[i]);
+    for (std::size_t channel = 0; channel < all_before.size(); ++channel) {
+      const auto& before = all_before[channel];
+      const auto& after = all_after[channel];
       const auto rows = static_cast<double>(before.size());
       double sum = 0.0;
       double sum_of_squares = 0.0;
@@ -115,7 +118,7 @@ void append_gross_errors(const SetupPlan& plan, std::uint64_t seed, std::vector<
   if (plan.noise.outlier_share <= 0.0) return;
   const CorrelatedNoise noise(plan, seed);
   for (std::size_t row = 0; row < plan.points.size(); ++row) {
-    for (std::size_t channel = 0; channel < channels_of(plan.instrument); ++channel) {
+    for (std::size_t channel = 0; channel < channels_of(plan); ++channel) {
       const int sign = noise.outlier(row, channel);
       if (sign != 0) errors.push_back({plan.name, row, channel, sign});
     }

@@ -13,6 +13,7 @@ namespace volcal::sim {
 namespace {
 
 constexpr int kHighestDegree = 7;
+constexpr int kHighestHarmonic = 9;
 constexpr double kStraightness = 5e-6;     ///< m, before scaling to the volumetric error
 constexpr double kPositioning = 6e-6;      ///< m
 constexpr double kAngle = 8e-6;            ///< rad
@@ -36,7 +37,7 @@ struct SmoothFunction {
   double high = 1.0;
   double home = 0.0;
   std::array<double, kHighestDegree + 1> legendre{};
-  std::array<Wave, 2> waves{};
+  std::vector<Wave> waves;
   double slope = 0.0;
   double at_home = 0.0;
 
@@ -67,6 +68,7 @@ SmoothFunction linear_axis_function(const Axis& axis, ErrorSymbol symbol, double
     f.legendre[static_cast<std::size_t>(n)] = size * random.normal() / std::pow(n, 1.5);
   }
   const std::array<double, 2> share_of_travel = {random.uniform(0.48, 0.85), random.uniform(0.32, 0.48)};
+  f.waves.resize(2);
   for (std::size_t i = 0; i < 2; ++i) {
     f.waves[i] = {size * kWave * wave_scale * random.uniform(0.5, 1.0) / static_cast<double>(i + 1),
                   2.0 * std::numbers::pi / (share_of_travel[i] * axis.travel()),
@@ -84,15 +86,27 @@ bool turns_frame(const Datum& datum, ErrorSymbol symbol) {
   return symbol.axis == datum.secondary && direction_of(symbol.component) == direction_of(datum.third());
 }
 
+/// An axis that turns right round has harmonics of the turn, its errors at both ends being those of one
+/// place; another has waves of any length.
 SmoothFunction rotary_function(const Axis& axis, double size, double wave_scale, RandomStream& random) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  constexpr double kClosed = 1e-6;  // rad
   SmoothFunction f;
   f.low = axis.travel_min;
   f.high = axis.travel_max;
   f.home = axis.home;
-  f.waves[0] = {size * random.uniform(0.5, 1.0), random.uniform(1.6, 2.4),
-                random.uniform(0.0, 2.0 * std::numbers::pi)};
-  f.waves[1] = {size * 0.3 * wave_scale * random.uniform(0.5, 1.0), random.uniform(3.5, 4.5),
-                random.uniform(0.0, 2.0 * std::numbers::pi)};
+  if (axis.travel() > kTurn - kClosed) {
+    f.waves.push_back({size * random.uniform(0.5, 1.0), 1.0, random.uniform(0.0, kTurn)});
+    for (int n = 2; n <= kHighestHarmonic; ++n) {
+      const double share = 0.5 * wave_scale * random.uniform(0.5, 1.0) / std::pow(n, 1.5);
+      f.waves.push_back({size * share, static_cast<double>(n), random.uniform(0.0, kTurn)});
+    }
+  } else {
+    f.waves.push_back(
+        {size * random.uniform(0.5, 1.0), random.uniform(1.6, 2.4), random.uniform(0.0, kTurn)});
+    f.waves.push_back({size * 0.3 * wave_scale * random.uniform(0.5, 1.0), random.uniform(3.5, 4.5),
+                       random.uniform(0.0, kTurn)});
+  }
   f.at_home = f.raw(axis.home);
   return f;
 }

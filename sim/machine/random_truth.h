@@ -1,6 +1,7 @@
 #pragma once
 /// Random truth machines whose error functions lie outside every fitted basis: a Legendre series of degree 1
-/// or 2 to 7 with decaying amplitudes plus two sines of incommensurate period. m and rad.
+/// or 2 to 7 with decaying amplitudes plus two sines of incommensurate period; of a rotary axis harmonics 1
+/// to 9 with decaying amplitudes, or two sines where it turns less than once. m and rad.
 
 #include <cstdint>
 

@@ -189,6 +189,14 @@ Eigen::Vector3d TruthMachine::point_error(const MachineState& state,
   return point(state, tool_offset) - nominal_point(state, tool_offset);
 }
 
+Eigen::Matrix3d TruthMachine::nominal_tool_axes(const MachineState& state) const {
+  return chain(Side::Both, true, state).topLeftCorner<3, 3>();
+}
+
+Eigen::Matrix3d TruthMachine::nominal_bed_axes(const MachineState& state) const {
+  return chain(Side::Workpiece, true, state).topLeftCorner<3, 3>();
+}
+
 Eigen::Vector3d TruthMachine::relative_rotation(const MachineState& state) const {
   return rotation_vector(
       (chain(Side::Both, false, state) * inverse(chain(Side::Both, true, state))).topLeftCorner<3, 3>());

@@ -88,6 +88,11 @@ class TruthMachine {
   /// Actual minus nominal functional point.
   Eigen::Vector3d point_error(const MachineState& state, const Eigen::Vector3d& tool_offset) const;
 
+  /// Nominal axes, by columns, in workpiece coordinates: of the tool,
+  Eigen::Matrix3d nominal_tool_axes(const MachineState& state) const;
+  /// of the bed (machine).
+  Eigen::Matrix3d nominal_bed_axes(const MachineState& state) const;
+
   /// Rotation vector, actual relative to nominal orientation: tool in workpiece coordinates,
   Eigen::Vector3d relative_rotation(const MachineState& state) const;
   /// tool in bed coordinates,

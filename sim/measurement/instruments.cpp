@@ -7,12 +7,15 @@
 
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/machine/transforms.h"
+#include "volcal/sim/measurement/measurements.h"
 #include "volcal/sim/measurement/noise.h"
+#include "volcal/sim/measurement/rotary_poses.h"
 
 namespace volcal::sim {
 namespace {
 
 constexpr int kMaxChannels = 3;
+constexpr std::size_t kContactColumns = 1;  ///< column set of tip and normal
 
 /// Directions and origins of a setup, from its commanded points.
 struct SetupGeometry {
@@ -40,6 +43,8 @@ struct Sighting {
   std::int32_t line;
   Eigen::Vector3d point_w;
   Eigen::Vector3d nominal_w;
+  const CommandedPoint& commanded;
+  Eigen::Vector3d nominal_tool;  ///< offset
 
   double sigma(double length) const { return std::hypot(plan.noise.constant, plan.noise.per_metre * length); }
   double offset() const {
@@ -123,13 +128,57 @@ Reading read_volumetric_points(const Sighting& sighting) {
   return {{error.x(), error.y(), error.z()}, {sigma, sigma, sigma}, 3};
 }
 
+Reading read_r_test(const Sighting& sighting) {
+  const std::string frame = sighting.plan.options.text("frame").value_or("workpiece");
+  const Eigen::Matrix3d axes_w = axes_of_frame(sighting.machine, sighting.state, frame);
+  const Eigen::Vector3d shown =
+      axes_w.transpose() * (sighting.point_w - sighting.nominal_w) + sighting.instrument.sphere;
+  const double sigma = sighting.sigma(0.0);
+  return {{shown.x(), shown.y(), shown.z()}, {sigma, sigma, sigma}, 3};
+}
+
+/// The axes where the tip has gone on by `along` the normal.
+CommandedPoint gone_on(const TruthMachine& machine, const Eigen::Vector3d& nominal_tool,
+                       const CommandedPoint& point, double along) {
+  return Follower(machine, nominal_tool).moved(point, along * point.normal_w);
+}
+
+/// How far along its normal the tip goes on from the commanded point until it touches.
+Reading read_contact(const Sighting& sighting) {
+  constexpr int kSteps = 4;  // each leaves a share of 1e-4 or so: errors change little over the way
+  const InstrumentTruth& truth = sighting.instrument;
+  const Eigen::Vector3d& normal_w = sighting.commanded.normal_w;
+  const Eigen::Vector3d error_here =
+      sighting.machine.point_error(sighting.state, sighting.nominal_tool);  // without tool and repeatability
+  const Eigen::Vector3d other_w = sighting.point_w - sighting.nominal_w - error_here;
+  double along = 0.0;
+  for (int step = 0; step < kSteps; ++step) {
+    MachineState state = sighting.state;
+    state.position = gone_on(sighting.machine, sighting.nominal_tool, sighting.commanded, along).position;
+    const Eigen::Vector3d error_w = sighting.machine.point_error(state, sighting.nominal_tool) + other_w;
+    along = normal_w.dot(truth.sphere - sighting.nominal_w - error_w) + truth.contact_radius;
+  }
+  return {{along}, {sighting.sigma(0.0)}};
+}
+
+bool reads_contacts(const SetupPlan& plan) {
+  return plan.instrument == kProbedSphere && plan.column_set == kContactColumns;
+}
+
+Reading read_probed_sphere(const Sighting& sighting) {
+  if (reads_contacts(sighting.plan)) return read_contact(sighting);
+  const Eigen::Vector3d centre = sighting.instrument.sphere - (sighting.point_w - sighting.nominal_w);
+  const double sigma = sighting.sigma(0.0);
+  return {{centre.x(), centre.y(), centre.z()}, {sigma, sigma, sigma}, 3};
+}
+
 using ReadFunction = Reading (*)(const Sighting&);
 struct SimulatedInstrument {
   std::string_view name;
   ReadFunction read;
 };
 
-constexpr std::array<SimulatedInstrument, 7> kInstruments = {{
+constexpr std::array<SimulatedInstrument, 9> kInstruments = {{
     {"laser-tracer", read_tracer},
     {"laser-tracker", read_tracker},
     {"ball-bar", read_ball_bar},
@@ -137,6 +186,8 @@ constexpr std::array<SimulatedInstrument, 7> kInstruments = {{
     {"straightness", read_straightness},
     {"angle", read_angle},
     {"volumetric-points", read_volumetric_points},
+    {kRTest, read_r_test},
+    {kProbedSphere, read_probed_sphere},
 }};
 
 ReadFunction find_instrument(const std::string& name) {
@@ -251,9 +302,9 @@ class Measurer {
       for (const auto& change : conditions_.interference->instrument) change(occasion, instrument);
     }
     const Eigen::Vector3d& nominal_tool = truth.machine().tools.at(plan_.tool).offset;
-    Reading reading =
-        read_({plan_, instrument, geometry_, truth, state, point.line,
-               truth.point(state, tool) + repeatability, truth.nominal_point(state, nominal_tool)});
+    Reading reading = read_({plan_, instrument, geometry_, truth, state, point.line,
+                             truth.point(state, tool) + repeatability,
+                             truth.nominal_point(state, nominal_tool), point, nominal_tool});
     if (!conditions_.interference) return reading;
     const Channels undisturbed = reading.value;
     for (const auto& error : conditions_.interference->reading) {
@@ -270,6 +321,26 @@ class Measurer {
   ReadFunction read_;
   SetupGeometry geometry_;
 };
+
+/// What the file says of one reading: where the axes stood, and the columns.
+struct Record {
+  CommandedPoint point;
+  std::vector<double> columns;
+};
+
+Record recorded(const SetupPlan& plan, const TruthMachine& machine, const CommandedPoint& point,
+                const Reading& reading) {
+  if (!reads_contacts(plan))
+    return {point,
+            {reading.value.begin(), reading.value.begin() + static_cast<std::ptrdiff_t>(reading.channels)}};
+  const Eigen::Vector3d& tool = machine.machine().tools.at(plan.tool).offset;
+  const CommandedPoint touching = gone_on(machine, tool, point, reading.value[0]);
+  MachineState state;
+  state.position = touching.position;
+  const Eigen::Vector3d tip_w = machine.nominal_point(state, tool);
+  const Eigen::Vector3d& normal_w = point.normal_w;
+  return {touching, {tip_w.x(), tip_w.y(), tip_w.z(), normal_w.x(), normal_w.y(), normal_w.z()}};
+}
 
 Setup described(const SetupPlan& plan) {
   Setup setup;
@@ -291,6 +362,18 @@ double independent_sigma(const SetupPlan& plan, const Reading& reading, std::siz
 }
 
 }  // namespace
+
+std::vector<std::vector<double>> measured_components(const Setup& setup) {
+  const auto& columns = setup.readings.value;
+  if (setup.instrument != kProbedSphere || setup.readings.column_set != kContactColumns) return columns;
+  std::vector<double> along;
+  for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) sum += columns[k][row] * columns[k + 3][row];
+    along.push_back(sum);
+  }
+  return {along};
+}
 
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {
   if (plan.points.empty()) throw std::invalid_argument("setup " + plan.name + " has no points");
@@ -314,9 +397,11 @@ Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, doub
             correlated.outlier(row, k) * plan.noise.outlier_size * independent_sigma(plan, reading, k);
       }
     }
-    setup.readings.value.resize(reading.channels);
-    for (std::size_t k = 0; k < reading.channels; ++k) setup.readings.value[k].push_back(reading.value[k]);
-    append_point(point, state, conditions.machine.machine(), plan.records_feed, setup.readings);
+    const Record record = recorded(plan, conditions.machine, point, reading);
+    setup.readings.value.resize(record.columns.size());
+    for (std::size_t k = 0; k < record.columns.size(); ++k)
+      setup.readings.value[k].push_back(record.columns[k]);
+    append_point(record.point, state, conditions.machine.machine(), plan.records_feed, setup.readings);
     time += plan.seconds_per_reading;
   }
   return setup;

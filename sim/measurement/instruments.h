@@ -12,7 +12,13 @@
 ///     straightness       v.(P - P_first) - v.(artefact_rotation x a) s + offset; s the commanded distance
 ///                        along the line a
 ///     angle              O.axis + offset; O of the tool relative to the workpiece, or of one body in the
-///     room volumetric-points  P - P_nominal + translation + rotation x P_nominal
+///                        room
+///     volumetric-points  P - P_nominal + translation + rotation x P_nominal
+///     r-test             R^T (P - P_nominal) + sphere; R the nominal axes of `frame`
+///     probed-sphere      centres (column set 0): sphere - (P - P_nominal)
+///                        contacts (1): tip and normal n; the axes go along n until
+///                        n.(tip + P - P_nominal) = n.sphere + contact_radius, errors of the axes where they
+///                        then stand, which the readings give as commanded; noise along n
 /// P_first: nominal first point. a, and u without `direction`: commanded first to last point, or to the
 /// farthest when the last is the first.
 
@@ -37,6 +43,10 @@ struct MeasuringConditions {
   bool noise_free = false;
   const Interference* interference = nullptr;  ///< nothing interferes
 };
+
+/// Readings as independent components, by [component][row]: the columns, of single contacts the tip along its
+/// normal.
+std::vector<std::vector<double>> measured_components(const Setup& setup);
 
 /// `start_time`: of the first reading, s. Throws std::invalid_argument for an instrument that is not
 /// simulated and for a setup without points.

@@ -21,6 +21,9 @@ struct Planner {
   std::vector<SetupPlan> operator()(const Squares& s) const { return plan_squares(s, context); }
   std::vector<SetupPlan> operator()(const AngleLines& s) const { return plan_angles(s, context); }
   std::vector<SetupPlan> operator()(const PointGrid& s) const { return plan_point_grid(s, context); }
+  std::vector<SetupPlan> operator()(const RTest& s) const { return plan_r_test(s, context); }
+  std::vector<SetupPlan> operator()(const ProbedSphere& s) const { return plan_probed_sphere(s, context); }
+  std::vector<SetupPlan> operator()(const BallBarPoses& s) const { return plan_ball_bar_poses(s, context); }
 };
 
 }  // namespace

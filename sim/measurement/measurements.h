@@ -11,12 +11,17 @@
 
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
+#include "volcal/sim/measurement/rotary_poses.h"
 #include "volcal/sim/measurement/setup_plan.h"
 
 namespace volcal::sim {
 
 inline constexpr const char* kLaserTracer = "laser-tracer";
 inline constexpr const char* kLaserTracker = "laser-tracker";
+inline constexpr const char* kBallBar = "ball-bar";
+inline constexpr const char* kVolumetricPoints = "volumetric-points";
+inline constexpr const char* kRTest = "r-test";
+inline constexpr const char* kProbedSphere = "probed-sphere";
 
 /// Tracking interferometer or tracker at several stations: jittered grids over the whole travel, each
 /// position met from both directions; or, of a run that has them, positions as given. Without stations and
@@ -35,7 +40,11 @@ struct Tracking {
   std::string instrument = kLaserTracer;  ///< or kLaserTracker
   std::vector<Station> stations;
   std::vector<Run> runs;
-  int revisits = 0;                          ///< how often the list of runs is gone through again
+  int revisits = 0;  ///< how often the list of runs is gone through again
+  /// Of rotary axes at the positions of the grid. Stations are in workpiece coordinates: the instrument goes
+  /// with the table.
+  RotaryMotion rotary = RotaryMotion::Home;
+  RotaryGrid rotary_grid;
   Eigen::Vector3i grid{9, 7, 6};             ///< positions per axis; readings per run are twice the product
   double jitter = 0.3;                       ///< largest, as a share of a grid step
   double station_guess_error = 5e-3;         ///< standard deviation per component of the campaign's guesses
@@ -144,6 +153,8 @@ struct AngleLines {
 /// Error vectors on a regular grid over the travel (grid plate, probed artefact).
 struct PointGrid {
   Eigen::Vector3i grid{5, 4, 3};
+  RotaryMotion rotary = RotaryMotion::Home;
+  RotaryGrid rotary_grid;
   std::string tool;
   bool rigid_alignment = true;
   double alignment_shift = 20e-6;
@@ -152,8 +163,56 @@ struct PointGrid {
   double seconds_per_reading = 10.0;
 };
 
+/// A sphere on the workpiece's table, or the place of a ball-bar's centre ball.
+struct SpherePlace {
+  std::string name;
+  Eigen::Vector3d position_w = Eigen::Vector3d::Zero();  ///< nominal
+};
+
+/// Where rotary axes are measured: every place with every tool, rotary axes on a grid, linear axes following.
+struct RotaryPoses {
+  std::vector<SpherePlace> spheres;
+  std::vector<std::string> tools;  ///< empty = the first three of the machine
+  RotaryGrid grid;
+};
+
+/// R-test (ISO 10791-6): displacement of the tool point against a sphere that it stays on, one setup per
+/// sphere and tool.
+struct RTest {
+  RotaryPoses poses;
+  std::string frame = "workpiece";  ///< axes of the readings; or "tool", "machine"
+  double offset_spread = 30e-6;     ///< of the sphere from where the program has it, per component
+  NoiseLevel noise{0.5e-6, 0.0, 0.0, 0.5e-6};
+  double seconds_per_reading = 5.0;
+};
+
+/// A touch probe on spheres: the centres that the control finds, one setup per sphere and tool; or every
+/// contact, one setup per sphere, tool and kind of contact: W along the tool from its side, U and V across it
+/// along the tool's x and y, from both sides.
+struct ProbedSphere {
+  RotaryPoses poses;
+  bool contacts = false;
+  std::vector<std::string> kinds = {"W", "U", "V"};
+  double place_error = 50e-6;          ///< of the true centres from the stated places, per component
+  double radius = 18e-3;               ///< nominal, sphere and ball
+  double radius_error = 5e-6;          ///< standard deviation, one draw per kind of contact
+  std::optional<double> radius_sigma;  ///< stated: 0 = calibrated (and the error is 0), absent = free
+  NoiseLevel noise{0.5e-6, 0.0, 0.0, 0.7e-6};
+  double seconds_per_reading = 20.0;
+};
+
+/// Ball-bar while rotary axes move: the tool's ball stays at the bar's length from the centre ball in one
+/// direction, one setup per place, tool and direction.
+struct BallBarPoses {
+  RotaryPoses poses;
+  double length = 0.1;
+  std::vector<std::string> directions = {"x", "y", "z"};
+  std::string frame = "machine";  ///< in whose axes the directions stand still; or "workpiece", "tool"
+  BallBarCircles bar;             ///< its errors and noise
+};
+
 using MeasurementSettings = std::variant<Tracking, BallBarCircles, Diagonals, AxisLines, StraightnessLines,
-                                         Squares, AngleLines, PointGrid>;
+                                         Squares, AngleLines, PointGrid, RTest, ProbedSphere, BallBarPoses>;
 
 struct Measurement {
   std::string name;  ///< prefix of its setups' names; empty = by kind

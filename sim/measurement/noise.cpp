@@ -5,6 +5,7 @@
 #include <string>
 
 #include "volcal/sim/machine/random.h"
+#include "volcal/sim/measurement/measurements.h"
 
 namespace volcal::sim {
 namespace {
@@ -53,12 +54,14 @@ std::vector<std::int8_t> outliers(const SetupPlan& plan, std::size_t channel, st
 
 }  // namespace
 
-std::size_t channels_of(const std::string& instrument) {
-  return instrument == "laser-tracker" || instrument == "volumetric-points" ? 3 : 1;
+std::size_t channels_of(const SetupPlan& plan) {
+  const std::string& instrument = plan.instrument;
+  if (instrument == kProbedSphere) return plan.column_set == 0 ? 3 : 1;
+  return instrument == kLaserTracker || instrument == kVolumetricPoints || instrument == kRTest ? 3 : 1;
 }
 
 CorrelatedNoise::CorrelatedNoise(const SetupPlan& plan, std::uint64_t seed) {
-  const std::size_t channels = channels_of(plan.instrument);
+  const std::size_t channels = channels_of(plan);
   const std::size_t lengths = plan.instrument == "laser-tracker" ? 1 : channels;
   if (plan.noise.drift > 0.0 || plan.noise.line > 0.0) {
     for (std::size_t channel = 0; channel < lengths; ++channel) {

@@ -11,8 +11,8 @@
 
 namespace volcal::sim {
 
-/// Components of a reading of this instrument.
-std::size_t channels_of(const std::string& instrument);
+/// Components of a reading in this setup that err independently; of a single contact one, along its normal.
+std::size_t channels_of(const SetupPlan& plan);
 
 /// Correlated and gross errors of a planned setup, row by row. Correlated drift is an exactly discretised
 /// Ornstein-Uhlenbeck process, x' = -x / tau + white noise (Uhlenbeck and Ornstein 1930), in its steady state

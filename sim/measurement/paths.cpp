@@ -7,16 +7,6 @@
 namespace volcal::sim {
 namespace {
 
-/// Direction of approach after a move; where an axis rests, the last one stays.
-void approach(const CommandedPoint& from, CommandedPoint& to) {
-  constexpr double kResting = 1e-12;
-  for (std::size_t k = 0; k < kAxisCount; ++k) {
-    const double move = to.position[k] - from.position[k];
-    to.direction[k] =
-        std::abs(move) < kResting ? from.direction[k] : static_cast<std::int8_t>(move > 0 ? 1 : -1);
-  }
-}
-
 /// The same positions in reverse order, approached from the other side.
 std::vector<CommandedPoint> returning(const std::vector<CommandedPoint>& forward) {
   std::vector<CommandedPoint> back(forward.rbegin(), forward.rend());
@@ -69,6 +59,15 @@ CommandedPoint between(const CommandedPoint& start, const CommandedPoint& end, d
 }
 
 }  // namespace
+
+void approach(const CommandedPoint& from, CommandedPoint& to) {
+  constexpr double kResting = 1e-12;
+  for (std::size_t k = 0; k < kAxisCount; ++k) {
+    const double move = to.position[k] - from.position[k];
+    to.direction[k] =
+        std::abs(move) < kResting ? from.direction[k] : static_cast<std::int8_t>(move > 0 ? 1 : -1);
+  }
+}
 
 CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fraction) {
   CommandedPoint point;
@@ -212,7 +211,8 @@ void shuffle_lines(RandomStream& random, SetupPlan& plan) {
   in_new_order(plan.points);
 }
 
-std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random) {
+std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random,
+                                          RotaryMotion rotary) {
   std::vector<CommandedPoint> points;
   for (int i = 0; i < count; ++i) {
     const double x = random.uniform();
@@ -223,6 +223,11 @@ std::vector<CommandedPoint> random_points(const Machine& machine, int count, Ran
     for (const AxisName axis : kLinearAxes) {
       double& q = points.back().position[index_of(axis)];
       q = programmed(q);
+    }
+    if (rotary == RotaryMotion::Home) continue;
+    for (const Axis& axis : machine.axes) {
+      if (!is_rotary(axis.name)) continue;
+      points.back().position[index_of(axis.name)] = random.uniform(axis.travel_min, axis.travel_max);
     }
   }
   return points;

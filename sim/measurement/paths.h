@@ -11,6 +11,13 @@
 
 namespace volcal::sim {
 
+/// What rotary axes do while linear axes go their way.
+enum class RotaryMotion {
+  Home,    ///< stand at home
+  Random,  ///< uniformly distributed over their range at every position
+  Grid     ///< one node of a grid of rotary positions after another
+};
+
 /// Position of all axes with X, Y, Z at `fraction` of their travel and rotary axes at home.
 CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fraction);
 
@@ -42,8 +49,12 @@ std::vector<CommandedPoint> points_between(const std::vector<CommandedPoint>& po
 /// direction of approach: the machine overruns it from the same side.
 void shuffle_lines(RandomStream& random, SetupPlan& plan);
 
-/// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home,
-/// direction not recorded.
-std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random);
+/// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home or
+/// uniformly distributed too, direction not recorded. `rotary`: Home or Random.
+std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random,
+                                          RotaryMotion rotary = RotaryMotion::Home);
+
+/// Direction of approach of `to` after the move from `from`; where an axis rests, the last one stays.
+void approach(const CommandedPoint& from, CommandedPoint& to);
 
 }  // namespace volcal::sim

@@ -86,6 +86,26 @@ class BallBarPlanner {
     return plan;
   }
 
+  SetupPlan at_poses(const BallBarPoses& settings, const SpherePlace& place, std::size_t tool,
+                     const std::string& direction) const {
+    const auto component = static_cast<int>(std::string("xyz").find(direction));
+    SetupPlan plan;
+    plan.name =
+        context_.prefix + "bar_" + place.name + "_" + context_.machine.tools[tool].name + "_" + direction;
+    plan.tool = tool;
+    plan.seconds_per_reading = settings_.seconds_per_reading;
+    const PoseTarget ball = [&](CommandedPoint& rotary) -> Eigen::Vector3d {
+      MachineState state;
+      state.position = rotary.position;
+      return place.position_w +
+             settings.length * axes_of_frame(nominal_, state, settings.frame).col(component);
+    };
+    follow_poses(settings.poses.grid, ball, context_, plan);
+    set_velocities_along(settings_.seconds_per_reading, plan.points);
+    set_up(place.position_w, plan);
+    return plan;
+  }
+
  private:
   Eigen::Vector3d point_w(const CommandedPoint& point, std::size_t tool) const {
     return nominal_.nominal_point({point.position, point.direction, 0.0, {}},
@@ -132,7 +152,7 @@ class BallBarPlanner {
 
   /// What the campaign file does not know: where the centre ball is exactly, and how long the bar.
   void set_up(const Eigen::Vector3d& centre_w, SetupPlan& plan) const {
-    plan.instrument = "ball-bar";
+    plan.instrument = kBallBar;
     plan.noise = settings_.noise;
     plan.records_feed = settings_.records_feed;
     RandomStream random(context_.seed, "setup " + plan.name);
@@ -149,6 +169,25 @@ class BallBarPlanner {
 };
 
 }  // namespace
+
+std::vector<SetupPlan> plan_ball_bar_poses(const BallBarPoses& settings, const PlanContext& context) {
+  check_poses(settings.poses, context);
+  check_frame(settings.frame, context);
+  if (!(settings.length > 0.0)) context.fail("the bar has no length", "give length_mm, such as 100");
+  for (const std::string& direction : settings.directions) {
+    if (direction != "x" && direction != "y" && direction != "z")
+      context.fail("\"" + direction + "\" is no direction of a bar", "list some of \"x\", \"y\", \"z\"");
+  }
+  const BallBarPlanner planner(settings.bar, context);
+  std::vector<SetupPlan> plans;
+  for (const SpherePlace& place : settings.poses.spheres) {
+    for (const std::size_t tool : tools_of(settings.poses, context)) {
+      for (const std::string& direction : settings.directions)
+        plans.push_back(planner.at_poses(settings, place, tool, direction));
+    }
+  }
+  return plans;
+}
 
 std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context) {
   context.require_at_least(settings.points_per_turn, 8, "points_per_turn");

@@ -192,7 +192,7 @@ std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext
 
 std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanContext& context) {
   for (const int count : settings.grid) context.require_at_least(count, 2, "grid");
-  SetupPlan plan = new_plan("points", "volumetric-points", settings, context);
+  SetupPlan plan = new_plan("points", kVolumetricPoints, settings, context);
   for (int k = 0; k < settings.grid.z(); ++k) {
     for (int j = 0; j < settings.grid.y(); ++j) {
       for (int i = 0; i < settings.grid.x(); ++i) {
@@ -202,6 +202,11 @@ std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanCont
         plan.points.back().line = k * settings.grid.y() + j;
       }
     }
+  }
+  if (settings.rotary != RotaryMotion::Home) {
+    require_rotary_axes(context);
+    RandomStream random(context.seed, "rotary positions of " + plan.name);
+    add_rotary_motion(context.machine, settings.rotary, settings.rotary_grid, false, random, plan.points);
   }
   plan.options.set("alignment", std::string(settings.rigid_alignment ? "rigid" : "none"));
   if (settings.rigid_alignment) {

@@ -1,6 +1,7 @@
 #pragma once
 /// What the planners of several measurements share.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,22 @@ LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d&
 /// A position as a user would state it, in whole steps of `millimetres`.
 Eigen::Vector3d stated_position(const Eigen::Vector3d& position, double millimetres);
 
+/// Place of the tool point at rotary positions, workpiece coordinates; it may set the point's normal.
+using PoseTarget = std::function<Eigen::Vector3d(CommandedPoint& rotary)>;
+/// Fills points and unseen points of a setup: the grid's rotary positions, linear axes following; what lies
+/// beyond their travel is left out and counted. Throws InputError where too few are left.
+void follow_poses(const RotaryGrid& grid, const PoseTarget& target, const PlanContext& context,
+                  SetupPlan& plan);
+
+/// The tools named, the machine's first three where none is; throws InputError.
+std::vector<std::size_t> tools_of(const RotaryPoses& poses, const PlanContext& context);
+/// Throws InputError for poses that make no sense on the machine.
+void check_poses(const RotaryPoses& poses, const PlanContext& context);
+/// Throws InputError where rotary axes shall move and there are none.
+void require_rotary_axes(const PlanContext& context);
+/// "workpiece", "tool" or "machine"; throws InputError.
+void check_frame(const std::string& frame, const PlanContext& context);
+
 std::vector<SetupPlan> plan_tracking(const Tracking& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_ball_bar(const BallBarCircles& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_diagonals(const Diagonals& settings, const PlanContext& context);
@@ -50,5 +67,8 @@ std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, cons
 std::vector<SetupPlan> plan_squares(const Squares& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_angles(const AngleLines& settings, const PlanContext& context);
 std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_r_test(const RTest& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_probed_sphere(const ProbedSphere& settings, const PlanContext& context);
+std::vector<SetupPlan> plan_ball_bar_poses(const BallBarPoses& settings, const PlanContext& context);
 
 }  // namespace volcal::sim

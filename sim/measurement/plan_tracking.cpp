@@ -40,6 +40,7 @@ class TrackingPlanner {
   TrackingPlanner(const Tracking& settings, const PlanContext& context)
       : settings_(settings), context_(context), nominal_(context.machine) {
     context.tool("");
+    if (settings.rotary != RotaryMotion::Home) require_rotary_axes(context);
     stations_ = settings.stations.empty() ? standard_stations(context.machine) : settings.stations;
     runs_ = settings.runs.empty() ? standard_runs(context.machine, stations_) : settings.runs;
     context.require_at_least(settings.revisits, 0, "revisits");
@@ -86,6 +87,9 @@ class TrackingPlanner {
     if (run.points.empty()) {
       plan.points = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, random);
       plan.unseen = jittered_grid_path(context_.machine, settings_.grid, settings_.jitter, elsewhere);
+      const RotaryGrid& rotary = settings_.rotary_grid;
+      add_rotary_motion(context_.machine, settings_.rotary, rotary, true, random, plan.points);
+      add_rotary_motion(context_.machine, settings_.rotary, rotary, true, elsewhere, plan.unseen);
     } else {
       plan.points = run.points;
       plan.unseen = points_between(run.points, elsewhere);

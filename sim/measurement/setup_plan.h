@@ -21,6 +21,8 @@ struct CommandedPoint {
   std::int32_t line = 0;
   std::int32_t run = 0;
   std::array<double, kAxisCount> velocity{};  ///< while the reading is taken, m/s or rad/s; 0 = stands
+  /// Of a single contact: outward normal of the sphere, workpiece coordinates.
+  Eigen::Vector3d normal_w = Eigen::Vector3d::Zero();
 };
 
 /// What stands between a reading and the truth. The campaign file states the first four alone, which are
@@ -53,6 +55,9 @@ struct InstrumentTruth {
   RigidMotion alignment;
   Eigen::Matrix4d floor = Eigen::Matrix4d::Identity();  ///< machine's coordinates to those of the floor
   double beam_angle = 0.0;                              ///< of a displacement's beam against its path, rad
+  /// r-test: added to the readings, in their frame; probed-sphere: the centre.
+  Eigen::Vector3d sphere = Eigen::Vector3d::Zero();
+  double contact_radius = 0.0;  ///< sphere centre to tip at a contact
 };
 
 struct SetupPlan {
@@ -60,12 +65,16 @@ struct SetupPlan {
   std::string instrument;
   std::size_t tool = 0;
   std::vector<CommandedPoint> points;
-  std::size_t column_set = 0;  ///< displacement: 1 = deviation from the commanded displacement
+  /// displacement: 1 = deviation from the commanded displacement; probed-sphere: 1 = single contacts
+  std::size_t column_set = 0;
   double seconds_per_reading = 4.0;
   NoiseLevel noise;
   Options options;  ///< keys of the instrument's schema, SI
   InstrumentTruth truth;
   bool records_feed = false;
+  /// Poses that were asked for and lie beyond the travel of these linear axes.
+  std::size_t poses_left_out = 0;
+  std::string left_out_by;
   std::vector<CommandedPoint> unseen;  ///< other positions, point by point at the same time; may be empty
 };
 

@@ -17,24 +17,33 @@ namespace {
 
 constexpr int kTruthPositions = 41;
 
+std::string location_row(LocationSymbol symbol, double value) {
+  return fmt::format("{},,,,{:.6f},{}\n", symbol.name(), kPerMicro * value, edge_unit(symbol.component));
+}
+
 std::string truth_csv(const sim::TruthMachine& truth) {
   const sim::TruthInDatum tables(truth);
   std::string text = "symbol,axis,position,position_unit,value,unit\n";
   for (const Axis& axis : truth.machine().axes) {
-    if (is_rotary(axis.name)) continue;
+    const Unit unit = position_unit(axis.name);
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};
       for (int i = 0; i < kTruthPositions; ++i) {
         const double q = axis.travel_min + axis.travel() * i / (kTruthPositions - 1);
-        text += fmt::format("{},{},{},mm,{:.6f},{}\n", symbol.name(), letter_of(axis.name),
-                            edge_number(q, kMetrePerMillimetre), kPerMicro * tables.value(symbol, q),
-                            edge_unit(component));
+        text += fmt::format("{},{},{},{},{:.6f},{}\n", symbol.name(), letter_of(axis.name),
+                            edge_number(q, unit.si_per_unit), unit.suffix,
+                            kPerMicro * tables.value(symbol, q), edge_unit(component));
       }
     }
   }
   const auto symbols = tables.datum().squareness();
-  for (std::size_t i = 0; i < symbols.size(); ++i) {
-    text += fmt::format("{},,,,{:.6f},urad\n", symbols[i].name(), kPerMicro * tables.squareness()[i]);
+  for (std::size_t i = 0; i < symbols.size(); ++i) text += location_row(symbols[i], tables.squareness()[i]);
+  for (const Axis& axis : truth.machine().axes) {
+    if (!is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) {
+      const LocationSymbol symbol{component, axis.name};
+      text += location_row(symbol, tables.location(symbol));
+    }
   }
   return text;
 }

@@ -9,6 +9,7 @@ namespace volcal {
 namespace {
 
 constexpr std::int64_t kMostPoints = 1000000;
+constexpr std::int64_t kMostRotaryPositions = 1000;
 constexpr double kMostReadings = 2e6;  // of a measurement; a simulated campaign is held in memory
 
 void read(const TomlTable& table, const char* key, double& value) {
@@ -108,6 +109,58 @@ void read_line_settings(const TomlTable& table, Settings& settings) {
   read(table, "reading_s", settings.seconds_per_reading);
 }
 
+AxisName rotary_axis(const TomlTable& table, const std::string& name) {
+  const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
+  if (!axis || !is_rotary(*axis))
+    table.fail(name, table.path() + " names \"" + printable(name) + "\"", "name rotary axes: A, B or C");
+  return *axis;
+}
+
+/// Tables by axis: positions = { A = 7, C = 12 }, range_deg = { A = [-90, 30] }.
+void read_rotary_grid(const TomlTable& table, sim::RotaryGrid& grid) {
+  if (const auto counts = table.table("positions")) {
+    for (const std::string& name : counts->keys()) {
+      grid.points[rotary_axis(*counts, name)] =
+          static_cast<int>(counts->integer(name, 1, kMostRotaryPositions).value());
+    }
+  }
+  if (const auto ranges = table.table("range_deg")) {
+    for (const std::string& name : ranges->keys()) {
+      const AxisName axis = rotary_axis(*ranges, name);
+      const std::vector<double> ends = *ranges->numbers(name);
+      if (ends.size() != 2 || !(ends[0] < ends[1]))
+        ranges->fail(name, ranges->path() + "." + name + " is not a range", "give [from, to] in deg");
+      grid.range[axis] = {ends[0] * kRadianPerDegree, ends[1] * kRadianPerDegree};
+    }
+  }
+  grid.combined = table.choice("poses", {"grid", "singly"}).value_or("grid") == "grid";
+  read(table, "bidirectional", grid.bidirectional);
+  if (const auto jitter = table.number("jitter", {0.0, 0.5})) grid.jitter = *jitter;
+}
+
+sim::RotaryPoses read_rotary_poses(const TomlTable& table) {
+  sim::RotaryPoses poses;
+  const std::vector<TomlTable> spheres = table.required_tables(
+      "spheres", "add a [[measurements.spheres]] table with name and position_mm for every place");
+  for (const TomlTable& sphere : spheres)
+    poses.spheres.push_back({sphere.required_name("name"), sphere.required_vector3("position_mm")});
+  if (const auto tools = table.texts("tools")) poses.tools = *tools;
+  read_rotary_grid(table, poses.grid);
+  return poses;
+}
+
+/// What rotary axes do at the positions of linear axes: rotary = "home", "random" or "grid".
+void read_rotary_motion(const TomlTable& table, sim::RotaryMotion& motion, sim::RotaryGrid& grid) {
+  const std::string word = table.choice("rotary", {"home", "random", "grid"}).value_or("home");
+  motion = word == "random" ? sim::RotaryMotion::Random
+           : word == "grid" ? sim::RotaryMotion::Grid
+                            : sim::RotaryMotion::Home;
+  if (motion == sim::RotaryMotion::Home) return;
+  sim::RotaryGrid read_grid;
+  if (const auto inside = table.table("rotary_axes")) read_rotary_grid(*inside, read_grid);
+  grid = read_grid;
+}
+
 /// Positions of a run in a file of their own: columns of the machine's axes, dir_x ..., line and run as in
 /// the readings of a campaign (run_points.h).
 std::vector<sim::CommandedPoint> read_points(const TomlTable& run) {
@@ -130,6 +183,7 @@ sim::Tracking read_tracking(const TomlTable& table) {
                   (settings.grid.cast<double>().prod() + static_cast<double>(settings.revisits)) *
                       static_cast<double>(std::max<std::size_t>(settings.runs.size(), 1)));
   if (const auto jitter = table.number("jitter", {0.0, 0.5})) settings.jitter = *jitter;
+  read_rotary_motion(table, settings.rotary, settings.rotary_grid);
   read(table, "guess_error_mm", settings.station_guess_error);
   read(table, "station_sigma_mm", settings.station_sigma);
   read(table, "scale_sigma_um_per_m", settings.length_scale_sigma);
@@ -248,12 +302,56 @@ sim::MeasurementSettings read_angles(const TomlTable& table) {
 sim::MeasurementSettings read_point_grid(const TomlTable& table) {
   sim::PointGrid settings;
   read_grid(table, settings.grid);
+  read_rotary_motion(table, settings.rotary, settings.rotary_grid);
   read(table, "tool", settings.tool);
   settings.rigid_alignment = table.choice("alignment", {"rigid", "none"}).value_or("rigid") == "rigid";
   read(table, "alignment_shift_um", settings.alignment_shift);
   read(table, "alignment_rotation_urad", settings.alignment_rotation);
   read(table, "reading_s", settings.seconds_per_reading);
   read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_r_test(const TomlTable& table) {
+  sim::RTest settings;
+  settings.poses = read_rotary_poses(table);
+  if (const auto frame = table.choice("frame", {"workpiece", "tool", "machine"})) settings.frame = *frame;
+  read(table, "offset_spread_um", settings.offset_spread);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_probed_sphere(const TomlTable& table) {
+  sim::ProbedSphere settings;
+  settings.poses = read_rotary_poses(table);
+  settings.contacts = table.choice("record", {"centres", "contacts"}).value_or("centres") == "contacts";
+  for (const char* key : {"contacts", "radius_mm", "radius_error_um", "radius_sigma_um"}) {
+    if (settings.contacts || !table.has(key)) continue;
+    table.fail(key, table.path() + " records centres, and " + key + " is of single contacts",
+               "write record = \"contacts\", or leave " + std::string(key) + " out");
+  }
+  if (const auto kinds = table.texts("contacts")) settings.kinds = *kinds;
+  read(table, "place_error_um", settings.place_error);
+  read(table, "radius_mm", settings.radius);
+  read(table, "radius_error_um", settings.radius_error);
+  read(table, "radius_sigma_um", settings.radius_sigma);
+  read(table, "reading_s", settings.seconds_per_reading);
+  read_length_noise(table, settings.noise);
+  return settings;
+}
+
+sim::MeasurementSettings read_ball_bar_poses(const TomlTable& table) {
+  sim::BallBarPoses settings;
+  settings.poses = read_rotary_poses(table);
+  read(table, "length_mm", settings.length);
+  if (const auto directions = table.texts("directions")) settings.directions = *directions;
+  if (const auto frame = table.choice("frame", {"workpiece", "tool", "machine"})) settings.frame = *frame;
+  read(table, "centre_error_um", settings.bar.centre_error);
+  read(table, "length_error_um", settings.bar.length_error);
+  read(table, "length_sigma_um", settings.bar.length_sigma);
+  read(table, "reading_s", settings.bar.seconds_per_reading);
+  read_length_noise(table, settings.bar.noise);
   return settings;
 }
 
@@ -273,6 +371,9 @@ constexpr auto kMeasurementKinds = std::to_array<MeasurementKind>({
     {"squares", read_squares},
     {"angle-lines", read_angles},
     {"point-grid", read_point_grid},
+    {sim::kRTest, read_r_test},
+    {sim::kProbedSphere, read_probed_sphere},
+    {"ball-bar-poses", read_ball_bar_poses},
 });
 
 }  // namespace

@@ -53,6 +53,18 @@ void check_location(const TomlTable& truth, const std::string& table_name, Locat
             "with this datum they are " + names);
 }
 
+void read_truth_functions(const TomlTable& table, const Machine& machine, sim::TruthSettings& truth) {
+  if (!table.has("functions")) return;
+  truth.functions = read_function_specs(table, machine);
+  const TomlTable functions = table.required_table("functions");
+  for (const auto& [symbol, spec] : truth.functions) {
+    if (!spec.coefficients.empty()) continue;
+    const std::string key = symbol.name();
+    functions.fail(key, functions.path() + "." + key + " states no value",
+                   "add coefficients_" + std::string(edge_unit(symbol.component)) + " = [...]");
+  }
+}
+
 void read_expansions(const TomlTable& truth, const Machine& machine, sim::TruthSettings& settings) {
   const auto tables = truth.table("expansions");
   if (!tables) return;
@@ -106,6 +118,7 @@ sim::TruthSettings read_truth(const TomlTable& table, const std::string& file, c
     read_symbols<ErrorSymbol>(table, "reversals_" + unit, rotations, machine,
                               [&](ErrorSymbol symbol, double value) { truth.reversals[symbol] = value; });
   }
+  read_truth_functions(table, machine, truth);
   read_expansions(table, machine, truth);
   return truth;
 }

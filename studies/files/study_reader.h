@@ -14,6 +14,8 @@
 ///     reversal_max_um, angular_reversal_max_urad = 0.0
 ///     [truth.locations_urad]             # rotations in place of random ones: EC0Y = 12.0
 ///     [truth.locations_um]               # displacements of rotary axes: EX0C = 10.0
+///     [truth.functions]                  # in place of random ones, as in model files, with coefficients:
+///     EXC = { basis = "fourier", degree = 1, coefficients_um = [0.0, 3.0, -2.0] }
 ///     [truth.reversals_um]               # EXX = 3.0
 ///     [truth.reversals_urad]             # EAX = 4.0
 ///     [truth.expansions.X]               # unknown to the machine file
@@ -31,14 +33,26 @@
 ///     tools = ["short"]
 ///     [[measurements]]                   # setups' names start with `name`
 ///     kind = "laser-tracer" | "laser-tracker" | "ball-bar-circles" | "diagonals" | "axis-lines" |
-///            "straightness-lines" | "squares" | "angle-lines" | "point-grid"
+///            "straightness-lines" | "squares" | "angle-lines" | "point-grid" |
+///            "r-test" | "probed-sphere" | "ball-bar-poses"
 ///     shuffled = true                    # lines in random order
 ///     noise = { constant_um, per_metre_um, repeatability_um,            # the campaign file states these;
 ///               wander_um, wander_time_s, line_um, outlier_share, outlier_sigma }   # these are sealed
 ///     [[hidden]]                         # an effect that the campaign file does not know of
-///     kind = "screw-lead"                # the kinds and their keys: sim/hidden/hidden_effects.h,
-///     hidden_*.cpp symbol = "EXX" period_mm = 10.0 amplitude_um = 2.0                 # or rms_um = 0.8, of
-///     its effect on the readings
+///     kind = "screw-lead"                # the kinds and their keys: sim/hidden/hidden_effects.h
+///     symbol = "EXX"
+///     period_mm = 10.0
+///     amplitude_um = 2.0                 # or rms_um = 0.8, of its effect on the readings
+/// Rotary axes move in the last three kinds and, on a grid or at random, with rotary = "grid" | "random" in
+/// trackings and point-grid ([docs/guides/calibrate-a-five-axis-machine.md](../../docs/guides)):
+///     kind = "r-test"
+///     tools = ["short", "long"]          # each with every sphere; absent: the machine's first three
+///     positions = { A = 7, C = 12 }      # of each rotary axis
+///     range_deg = { A = [-90.0, 30.0] }  # absent: the travel
+///     poses = "grid"                     # every combination, or "singly": one axis after another
+///     [[measurements.spheres]]
+///     name = "S1"
+///     position_mm = [120.0, 0.0, -350.0] # workpiece coordinates
 /// Keys of a measurement: study_measurements.cpp; defaults: sim/measurement/measurements.h.
 
 #include <string>

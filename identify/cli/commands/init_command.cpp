@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/commands/rotary_templates.h"
 #include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
@@ -25,12 +26,6 @@ struct InitArguments {
 };
 
 std::string axis_table(AxisName axis) {
-  if (is_rotary(axis)) {
-    return fmt::format(
-        "[axes.{}]\ntravel_deg = [-180.0, 180.0]\nhome_deg = 0.0\ncentre_mm = [0.0, 0.0, 0.0]  # a point of "
-        "the axis line, all axes at 0\n",
-        letter_of(axis));
-  }
   return fmt::format(
       "[axes.{}]\ntravel_mm = [0.0, 500.0]\nhome_mm = 0.0\nreference_point_mm = [0.0, 0.0, 0.0]  # where the "
       "scale reads, all axes at 0\n",
@@ -59,7 +54,10 @@ std::string machine_toml(const Structure& structure) {
       "structure = \"{}\"  # workpiece to tool; a prime marks an axis that moves the workpiece\n",
       structure.code);
   text += datum_table(structure);
-  for (const Joint& joint : structure.joints) text += axis_table(joint.axis);
+  const bool rotary = has_rotary_axes(structure);
+  for (const Joint& joint : structure.joints)
+    text += rotary ? axis_table_beside_rotary(joint.axis, structure) : axis_table(joint.axis);
+  if (rotary) return text + rotary_tools();
   return text +
          "[tools.short]\noffset_mm = [0.0, 0.0, -150.0]  # functional point from the spindle's reference "
          "point\n"
@@ -108,7 +106,13 @@ std::string campaign_toml(const Structure& structure) {
       "machine = \"machine.toml\"\n"
       "[noise]\n"
       "repeatability_um = 0.5  # of the machine, k = 1, per component along the reading\n";
+  std::vector<std::string> shown;
+  if (has_rotary_axes(structure)) {
+    text += rotary_setups(structure, position_columns(structure));
+    shown = rotary_instruments();
+  }
   for (const Instrument* instrument : instruments()) {
+    if (std::ranges::find(shown, instrument->schema().name) != shown.end()) continue;
     text += commented_setup(instrument->schema(), position_columns(structure));
   }
   return text;
@@ -125,25 +129,47 @@ const char* const kModelToml =
     "#kind = \"reversal\"\n"
     "#symbol = \"EXX\"\n";
 
+std::string model_toml(const Structure& structure) {
+  if (!has_rotary_axes(structure)) return kModelToml;
+  const auto rotary =
+      std::ranges::find_if(structure.joints, [](const Joint& joint) { return is_rotary(joint.axis); });
+  const char letter = letter_of(rotary->axis);
+  return kModelToml + fmt::format(
+                          "#[locations]\n"
+                          "#EA0{0}_urad = 12.0  # a location error that is known; \"zero\" leaves one out\n",
+                          letter);
+}
+
 int run_init(const InitArguments& arguments) {
   const Structure structure = Structure::parse(arguments.structure);
   AtomicFolder folder(arguments.output, arguments.force ? Replaceable::Anything : Replaceable::Unedited);
   folder.write("machine.toml", machine_toml(structure));
-  folder.write("model.toml", kModelToml);
+  folder.write("model.toml", model_toml(structure));
   folder.write("campaign.toml", campaign_toml(structure));
+  std::vector<std::string> files = {"machine.toml", "model.toml", "campaign.toml"};
+  if (has_rotary_axes(structure)) {
+    if (const std::string study = rotary_study(structure); !study.empty()) {
+      folder.write("study.toml", study);
+      files.emplace_back("study.toml");
+    }
+  }
   folder.commit_to_be_edited();
   if (arguments.json) {
-    const nlohmann::ordered_json json = {{"folder", arguments.output},
-                                         {"structure", structure.code},
-                                         {"files", {"machine.toml", "model.toml", "campaign.toml"}}};
+    const nlohmann::ordered_json json = {
+        {"folder", arguments.output}, {"structure", structure.code}, {"files", files}};
     fmt::print("{}\n", json_text(json, 2));
     return kDone;
   }
+  std::string written;
+  for (const std::string& file : files)
+    written += (written.empty() ? "" : ", ") + arguments.output + "/" + file;
   fmt::print(
-      "written: {0}/machine.toml, {0}/model.toml, {0}/campaign.toml\n"
+      "written: {1}\n"
       "next: enter travel and tools in machine.toml, a setup per measurement in campaign.toml, then\n"
       "      volcal fit {0}/campaign.toml --model {0}/model.toml -o result\n",
-      arguments.output);
+      arguments.output, written);
+  if (files.size() > 3)
+    fmt::print("or rehearse it: volcal simulate {}/study.toml -o rehearsal\n", arguments.output);
   return kDone;
 }
 

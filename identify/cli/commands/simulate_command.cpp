@@ -38,6 +38,24 @@ void compensate(const SimulateArguments& arguments, sim::Study& study) {
     study.wrong_tool_length = arguments.wrong_tool_length_mm * kMetrePerMillimetre;
 }
 
+nlohmann::ordered_json left_out_json(const sim::SimulatedCampaign& simulated) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const sim::SetupPlan& plan : simulated.plans) {
+    if (plan.poses_left_out == 0) continue;
+    list.push_back(
+        {{"setup", plan.name}, {"poses", plan.poses_left_out}, {"beyond_travel_of", plan.left_out_by}});
+  }
+  return list;
+}
+
+void print_left_out(const sim::SimulatedCampaign& simulated) {
+  for (const sim::SetupPlan& plan : simulated.plans) {
+    if (plan.poses_left_out == 0) continue;
+    fmt::print("{}: {} of {} poses left out, beyond the travel of {}\n", plan.name, plan.poses_left_out,
+               plan.poses_left_out + plan.points.size(), plan.left_out_by);
+  }
+}
+
 int run_simulate(const SimulateArguments& arguments) {
   const Replaceable replaceable = arguments.force ? Replaceable::Anything : Replaceable::Unedited;
   require_output_folder(arguments.output, {arguments.study, arguments.errors, arguments.compensation},
@@ -55,12 +73,14 @@ int run_simulate(const SimulateArguments& arguments) {
                                          {"seed", study.seed},
                                          {"setups", simulated.campaign.setups.size()},
                                          {"readings", simulated.campaign.reading_count()},
+                                         {"poses_left_out", left_out_json(simulated)},
                                          {"known_errors", study.truth.errors_file},
                                          {"active_compensations", study.compensation.description}};
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{} readings in {} setups (seed {}) written to {}\n", simulated.campaign.reading_count(),
                simulated.campaign.setups.size(), study.seed, arguments.output);
+    print_left_out(simulated);
     if (!study.truth.errors_file.empty()) fmt::print("errors as stated in {}\n", study.truth.errors_file);
     if (!study.compensation.description.empty())
       fmt::print("active while it was measured: {}\n", study.compensation.description);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/text/nearest_name.h"
@@ -35,22 +36,28 @@ std::vector<std::string> function_names(const Machine& machine) {
 
 class ModelReader {
  public:
-  ModelReader(const TomlDocument& document, const std::string& file, const Machine& machine)
-      : document_(document), root_(document.root()), machine_(machine) {
+  ModelReader(TomlTable root, const std::string& file, const Machine& machine)
+      : root_(std::move(root)), machine_(machine) {
     spec_.file = file;
   }
 
-  ModelSpec read() {
-    document_.require_format(kModelFormat);
+  ModelSpec read(const TomlDocument& document) {
+    document.require_format(kModelFormat);
     root_.know("machine");
     root_.text("name");
     read_functions();
     read_locations();
     read_priors();
     read_effects();
-    document_.reject_unknown();
+    document.reject_unknown();
     check_default();
     return std::move(spec_);
+  }
+
+  /// The table [functions] alone.
+  std::map<ErrorSymbol, FunctionSpec> functions() {
+    read_functions();
+    return std::move(spec_.functions);
   }
 
  private:
@@ -314,7 +321,6 @@ class ModelReader {
     }
   }
 
-  const TomlDocument& document_;
   TomlTable root_;
   const Machine& machine_;
   ModelSpec spec_;
@@ -387,11 +393,16 @@ ModelSpec read_model(const std::string& path, const Machine& machine, const Sour
   const TomlDocument document = TomlDocument::read(path, named_at);
   document.require_format(kModelFormat);
   check_machine(document, path, machine);
-  return ModelReader(document, path, machine).read();
+  return ModelReader(document.root(), path, machine).read(document);
 }
 
 ModelSpec parse_model(const std::string& text, const std::string& file, const Machine& machine) {
-  return ModelReader(TomlDocument::parse(text, file), file, machine).read();
+  const TomlDocument document = TomlDocument::parse(text, file);
+  return ModelReader(document.root(), file, machine).read(document);
+}
+
+std::map<ErrorSymbol, FunctionSpec> read_function_specs(const TomlTable& parent, const Machine& machine) {
+  return ModelReader(parent, parent.place().file, machine).functions();
 }
 
 ModelFile read_model_with_machine(const std::string& path, const SourcePlace& named_at) {
@@ -401,7 +412,7 @@ ModelFile read_model_with_machine(const std::string& path, const SourcePlace& na
   const TomlTable root = document.root();
   ModelFile file;
   file.machine = read_machine(resolve_path(path, root.required_text("machine")), root.place("machine"));
-  file.spec = ModelReader(document, path, file.machine).read();
+  file.spec = ModelReader(root, path, file.machine).read(document);
   return file;
 }
 

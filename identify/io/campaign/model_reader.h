@@ -7,8 +7,10 @@
 /// out). `[priors]`: `displacement_um`, `rotation_urad`, `squareness_mrad`, how large errors may be before
 /// any reading is seen (standard deviations).
 
+#include <map>
 #include <string>
 
+#include "volcal/identify/text/toml_document.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/machine.h"
 #include "volcal/model/description/model_spec.h"
@@ -21,6 +23,9 @@ inline constexpr const char* kModelFormat = "volcal-model-1";
 /// from `machine` in structure, datum or axes.
 ModelSpec read_model(const std::string& path, const Machine& machine, const SourcePlace& named_at = {});
 ModelSpec parse_model(const std::string& text, const std::string& file, const Machine& machine);
+
+/// The table `functions` of another file's table, in the form that model files have. Throws InputError.
+std::map<ErrorSymbol, FunctionSpec> read_function_specs(const TomlTable& parent, const Machine& machine);
 
 /// A model together with the machine that its `machine` key names.
 struct ModelFile {

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <string>
 #include <variant>
 
 #include "tests/support/scratch_folder.h"
@@ -109,6 +113,30 @@ TEST(CampaignWriter, EveryInstrumentIsReadBack) {
               read_campaign((scratch.path() / "campaign/truth/campaign.toml").string()));
   EXPECT_TRUE(std::filesystem::exists((scratch.path() / "campaign/model.toml").string()));
   EXPECT_TRUE(std::filesystem::exists((scratch.path() / "campaign/truth/error_functions.csv").string()));
+}
+
+TEST(CampaignWriter, TheTruthHasMotionsAndLocationsOfRotaryAxes) {
+  const testing::ScratchFolder scratch;
+  sim::Study study;
+  study.machine = sim::machine_from_code("w C' b X Y Z t", {{{0, 1}, {0, 1}, {0, 1}}});
+  study.truth.perfect = true;
+  study.truth.locations = {{*LocationSymbol::parse("EX0C"), 10e-6}, {*LocationSymbol::parse("EA0C"), -30e-6}};
+  study.truth.alter = [](sim::TruthMachine& truth) {
+    truth.set_error(*ErrorSymbol::parse("EXC"), [](double q) { return 2e-6 + 5e-6 * std::cos(q); });
+  };
+  sim::PointGrid points;
+  points.rotary = sim::RotaryMotion::Grid;
+  study.measurements = {{"", points}};
+  AtomicFolder folder((scratch.path() / "campaign").string());
+  write_simulation(sim::simulate(study), folder);
+  folder.commit();
+  std::ifstream file(scratch.path() / "campaign/truth/error_functions.csv");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  // The constant 2 um of EXC is in EX0C, with the sign of the workpiece side.
+  for (const char* row : {"EXC,C,-180,deg,-5.000000,um\n", "EXC,C,0,deg,5.000000,um\n",
+                          "ECC,C,90,deg,0.000000,urad\n", "EX0C,,,,8.000000,um\n", "EY0C,,,,0.000000,um\n",
+                          "EA0C,,,,-30.000000,urad\n", "EB0C,,,,0.000000,urad\n", "EC0C,,,,0.000000,urad\n"})
+    EXPECT_NE(text.find(row), std::string::npos) << row;
 }
 
 TEST(CampaignWriter, WritesShortNumbersInEdgeUnits) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <variant>
 
@@ -108,6 +109,130 @@ tool = "short"
   EXPECT_LT((tracker.stations[0].position_w - Eigen::Vector3d(-0.3, -0.2, 0.05)).norm(), 1e-15);
   ASSERT_EQ(tracker.runs.size(), 1U);
   EXPECT_EQ(sim::simulate(study).campaign.reading_count(), 2U * 24U * 3U);
+}
+
+sim::Study parsed_rotary_study(const std::string& body) {
+  return parse_study(kStudyHead + body, "study.toml",
+                     sim::machine_from_code("w C' A' b X Y Z t", {{{-0.4, 0.4}, {-0.4, 0.4}, {-0.4, 0.4}}}));
+}
+
+TEST(SimulationFile, StatesRotaryErrors) {
+  const sim::Study study = parsed_rotary_study(R"(
+[truth]
+kind = "perfect"
+[truth.locations_um]
+EX0C = 10.0
+EY0A = -4
+[truth.locations_urad]
+EB0A = 30.0
+EC0C = 5.0
+[truth.reversals_urad]
+ECC = 8.0
+[truth.functions]
+EXC = { basis = "fourier", degree = 1, coefficients_um = [1.0, 3.0, -2.0] }
+EAA = { basis = "legendre", degree = 1, coefficients_urad = [0.0, 6.0] }
+[[measurements]]
+kind = "point-grid"
+rotary = "grid"
+rotary_axes = { positions = { A = 3, C = 4 } }
+)");
+  const sim::TruthMachine truth = sim::true_machine(study);
+  EXPECT_DOUBLE_EQ(truth.location(*LocationSymbol::parse("EX0C")), 10e-6);
+  EXPECT_DOUBLE_EQ(truth.location(*LocationSymbol::parse("EY0A")), -4e-6);
+  EXPECT_DOUBLE_EQ(truth.location(*LocationSymbol::parse("EB0A")), 30e-6);
+  EXPECT_DOUBLE_EQ(truth.location(*LocationSymbol::parse("EC0C")), 5e-6);
+  EXPECT_DOUBLE_EQ(truth.reversal(*ErrorSymbol::parse("ECC")), 8e-6);
+  const double half_pi = std::acos(0.0);
+  EXPECT_NEAR(truth.function_value(*ErrorSymbol::parse("EXC"), 0.0), 4e-6, 1e-18);
+  EXPECT_NEAR(truth.function_value(*ErrorSymbol::parse("EXC"), half_pi), -1e-6, 1e-18);
+  EXPECT_NEAR(truth.function_value(*ErrorSymbol::parse("EAA"), half_pi), 3e-6, 1e-18) << "travel +-180 deg";
+  const auto& grid = std::get<sim::PointGrid>(study.measurements[0].settings);
+  EXPECT_EQ(grid.rotary, sim::RotaryMotion::Grid);
+  EXPECT_EQ(grid.rotary_grid.points.at(AxisName::C), 4);
+}
+
+TEST(SimulationFile, ReadsMeasurementsOfRotaryAxes) {
+  const std::string spheres =
+      "[[measurements.spheres]]\nname = \"S1\"\nposition_mm = [100, 0.0, 20]\n"
+      "[[measurements.spheres]]\nname = \"S2\"\nposition_mm = [0, 100, 20]\n";
+  const sim::Study study = parsed_rotary_study(R"(
+[[measurements]]
+kind = "r-test"
+tools = ["short", "side_x"]
+positions = { A = 5, C = 9 }
+range_deg = { A = [-90, 30.0] }
+frame = "machine"
+poses = "singly"
+bidirectional = true
+noise = { constant_um = 0.7 }
+)" + spheres + R"(
+[[measurements]]
+kind = "probed-sphere"
+record = "contacts"
+contacts = ["U"]
+radius_mm = 17.5
+radius_sigma_um = 2.0
+)" + spheres + R"(
+[[measurements]]
+kind = "ball-bar-poses"
+length_mm = 80.0
+directions = ["x"]
+length_sigma_um = 0.0
+)" + spheres);
+  const auto& r_test = std::get<sim::RTest>(study.measurements[0].settings);
+  ASSERT_EQ(r_test.poses.spheres.size(), 2U);
+  EXPECT_EQ(r_test.poses.spheres[1].position_w, Eigen::Vector3d(0.0, 0.1, 0.02));
+  EXPECT_EQ(r_test.poses.tools, (std::vector<std::string>{"short", "side_x"}));
+  EXPECT_EQ(r_test.poses.grid.points.at(AxisName::A), 5);
+  EXPECT_NEAR(r_test.poses.grid.range.at(AxisName::A)[1], std::acos(-1.0) / 6.0, 1e-15);
+  EXPECT_FALSE(r_test.poses.grid.combined);
+  EXPECT_TRUE(r_test.poses.grid.bidirectional);
+  EXPECT_EQ(r_test.frame, "machine");
+  EXPECT_DOUBLE_EQ(r_test.noise.constant, 0.7e-6);
+  const auto& probing = std::get<sim::ProbedSphere>(study.measurements[1].settings);
+  EXPECT_TRUE(probing.contacts);
+  EXPECT_EQ(probing.kinds, std::vector<std::string>{"U"});
+  EXPECT_DOUBLE_EQ(probing.radius, 17.5e-3);
+  EXPECT_DOUBLE_EQ(*probing.radius_sigma, 2e-6);
+  const auto& bar = std::get<sim::BallBarPoses>(study.measurements[2].settings);
+  EXPECT_DOUBLE_EQ(bar.length, 0.08);
+  EXPECT_DOUBLE_EQ(*bar.bar.length_sigma, 0.0);
+  EXPECT_EQ(bar.frame, "machine");
+}
+
+struct BadRotaryStudy {
+  std::string body;
+  std::string expected;
+};
+
+TEST(SimulationFile, RefusesWhatMakesNoSenseOfRotaryAxes) {
+  const std::string r_test = "[[measurements]]\nkind = \"r-test\"\n";
+  const std::string probing = "[[measurements]]\nkind = \"probed-sphere\"\n";
+  const std::string sphere = "[[measurements.spheres]]\nname = \"S1\"\nposition_mm = [0, 0, 0]\n";
+  const std::vector<BadRotaryStudy> studies = {
+      {r_test, "spheres"},
+      {r_test + "positions = { X = 3 }\n" + sphere, "name rotary axes"},
+      {r_test + "positions = { A = 0 }\n" + sphere, "positions.A"},
+      {r_test + "range_deg = { A = [30, -30] }\n" + sphere, "is not a range"},
+      {r_test + "frame = \"bed\"\n" + sphere, "frame"},
+      {r_test + "radius_mm = 3.0\n" + sphere, "unknown key"},
+      {probing + "radius_mm = 18.0\n" + sphere, "records centres"},
+      {"[[measurements]]\nkind = \"point-grid\"\nrotary = \"always\"\n", "rotary"},
+      {"[truth.functions]\nEXC = { basis = \"fourier\", degree = 1 }\n" + r_test + sphere, "states no value"},
+      {"[truth.functions]\nEXB = { basis = \"fourier\", degree = 1, coefficients_um = [1, 2, 3] }\n" +
+           r_test + sphere,
+       "is no error motion of this machine"},
+      {"[truth.locations_um]\nEX0B = 1.0\n" + r_test + sphere, "is no error of this machine"},
+      {"[truth.locations_urad]\nEX0C = 1.0\n" + r_test + sphere, "displacements into the one in um"}};
+  for (const BadRotaryStudy& study : studies) {
+    try {
+      parsed_rotary_study(study.body);
+      ADD_FAILURE() << "accepted: " << study.body;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(study.expected), std::string::npos)
+          << error.what() << " does not say " << study.expected;
+    }
+  }
 }
 
 TEST(SimulationFile, DefaultsAreThoseOfTheSettings) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "volcal/sim/machine/random_truth.h"
 #include "volcal/sim/machine/reference_machines.h"
@@ -154,11 +153,6 @@ TEST(TruthInDatum, SixDatumsOfOneMachineDifferByARigidMotionAndAShiftPerTool) {
     }
     EXPECT_EQ(turn.norm() < 1e-12, datum.primary == AxisName::X && datum.secondary == AxisName::Y);
   }
-}
-
-TEST(TruthInDatum, RefusesRotaryAxes) {
-  const TruthMachine truth(machine_from_code("w C' b X Y Z t", {{{0, 1}, {0, 1}, {0, 1}}}));
-  EXPECT_THROW(TruthInDatum(truth).value(*ErrorSymbol::parse("EXC"), 0.0), std::invalid_argument);
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ TEST_F(InstrumentTest, RecordsClockTemperaturesLinesAndDirections) {
 }
 
 TEST_F(InstrumentTest, RefusesWhatItCannotMeasure) {
-  EXPECT_THROW(reading_of(plan("r-test", {at(0, 0, 0)})), std::invalid_argument);
+  EXPECT_THROW(reading_of(plan("sundial", {at(0, 0, 0)})), std::invalid_argument);
   EXPECT_THROW(reading_of(plan("laser-tracer", {})), std::invalid_argument);
 }
 

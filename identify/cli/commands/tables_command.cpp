@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/compensation_text.h"
 #include "volcal/identify/report/text/correction_text.h"

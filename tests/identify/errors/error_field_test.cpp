@@ -17,6 +17,7 @@
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/program/program_errors.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/model/description/errors.h"

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/io/results/result_json.h"
 #include "volcal/identify/report/report.h"

@@ -44,7 +44,7 @@ MadeTables tables_of(const Result& result, const std::string& format_name, const
   options.functions.positions = positions;
   options.functions.zero_plus = zero == "plus";
   options.grid_per_axis = grid;
-  options.type = type.empty() ? format.supported : CompensationType::parse(type);
+  options.type = type.empty() ? default_type(format, result.result) : CompensationType::parse(type);
   options.tool = tool;
   options.step = step_mm * kMetrePerMillimetre;
   options.settings = named_texts(settings);

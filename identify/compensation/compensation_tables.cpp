@@ -30,7 +30,12 @@ double interpolated(const std::vector<double>& values, const Piece& piece) {
 }  // namespace
 
 double AxisTable::value(const AxisPosition& at, const ApproachDirection& direction) const {
-  Piece piece = piece_of(position, at[index_of(input)]);
+  double q = at[index_of(input)];
+  if (beyond == BeyondEnds::Repeat && position.size() > 1) {
+    const double period = position.back() - position.front();
+    q -= period * std::floor((q - position.front()) / period);
+  }
+  Piece piece = piece_of(position, q);
   if (beyond == BeyondEnds::Hold) piece.share = std::clamp(piece.share, 0.0, 1.0);
   const std::int8_t approach = direction[index_of(input)];
   if (approach > 0) return interpolated(forward, piece);
@@ -62,32 +67,42 @@ Eigen::Vector3d CorrectionGrid::value(const AxisPosition& at, const ApproachDire
   return sum;
 }
 
+namespace {
+
+Correction moved(AxisName output, double value) {
+  Correction correction;
+  (is_rotary(output) ? correction.rotary : correction.linear)[direction_of(output)] = value;
+  return correction;
+}
+
+}  // namespace
+
 CorrectionTerm axis_term(AxisName output, AxisTable table) {
   return [output, table = std::move(table)](const AxisPosition& at, const ApproachDirection& direction) {
-    return Eigen::Vector3d(Eigen::Vector3d::Unit(direction_of(output)) * table.value(at, direction));
+    return moved(output, table.value(at, direction));
   };
 }
 
 CorrectionTerm product_term(AxisName output, AxisTable table, AxisTable factor) {
   return [output, table = std::move(table), factor = std::move(factor)](const AxisPosition& at,
                                                                         const ApproachDirection& direction) {
-    return Eigen::Vector3d(Eigen::Vector3d::Unit(direction_of(output)) *
-                           (table.value(at, direction) * factor.value(at, direction)));
+    return moved(output, table.value(at, direction) * factor.value(at, direction));
   };
 }
 
 CorrectionTerm grid_term(CorrectionGrid grid) {
   return [grid = std::move(grid)](const AxisPosition& at, const ApproachDirection& direction) {
-    return grid.value(at, direction);
+    return Correction{grid.value(at, direction), {0.0, 0.0, 0.0}};
   };
 }
 
-Eigen::Vector3d CompensationTables::correction(const AxisPosition& position,
-                                               const ApproachDirection& direction) const {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+Correction CompensationTables::correction(const AxisPosition& position,
+                                          const ApproachDirection& direction) const {
+  Correction sum;
   for (const CorrectionTerm& term : terms) sum += term(position, direction);
   if (least_increment > 0.0) {
-    for (double& component : sum) component = std::round(component / least_increment) * least_increment;
+    for (double& component : sum.linear)
+      component = std::round(component / least_increment) * least_increment;
   }
   return sum;
 }

@@ -8,17 +8,16 @@
 #include <optional>
 #include <vector>
 
+#include "volcal/identify/compensation/correction.h"
 #include "volcal/identify/errors/error_field.h"
 
 namespace volcal {
 
-/// Added to the commands of X, Y, Z at a commanded position and direction of approach; m.
-using CorrectionTerm = std::function<Eigen::Vector3d(const AxisPosition&, const ApproachDirection&)>;
-
 /// What happens beyond the first and last position of a table.
 enum class BeyondEnds {
-  Hold,     ///< the end value stays
-  Continue  ///< the end piece goes on as a straight line
+  Hold,      ///< the end value stays
+  Continue,  ///< the end piece goes on as a straight line
+  Repeat     ///< the table begins anew: of rotary axes, one turn
 };
 
 /// A function of one axis by its values, linear between them; direction 0 is the mean of both.
@@ -55,6 +54,7 @@ void for_each_node(const std::array<std::vector<double>, 3>& nodes, Visit&& visi
   }
 }
 
+/// Values of the table, m, of a rotary output rad, to the command of `output`.
 CorrectionTerm axis_term(AxisName output, AxisTable table);
 /// Product of two tables, for controllers that multiply them.
 CorrectionTerm product_term(AxisName output, AxisTable table, AxisTable factor);
@@ -62,9 +62,9 @@ CorrectionTerm grid_term(CorrectionGrid grid);
 
 struct CompensationTables {
   std::vector<CorrectionTerm> terms;  ///< their sum is the correction
-  double least_increment = 0.0;       ///< m; the sum of each axis is rounded to it; 0 = not rounded
+  double least_increment = 0.0;       ///< m; the sum of each linear axis is rounded to it; 0 = not rounded
 
-  Eigen::Vector3d correction(const AxisPosition& position, const ApproachDirection& direction) const;
+  Correction correction(const AxisPosition& position, const ApproachDirection& direction) const;
 };
 
 }  // namespace volcal

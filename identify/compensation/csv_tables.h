@@ -44,6 +44,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
 struct TableMetadata {
   Machine machine;  ///< structure, datum, axes, tools
   std::string tool;
+  CompensationType type;                       ///< L-VOL in files that do not say
   std::map<std::string, std::string> entries;  ///< every key
 };
 TableMetadata read_table_metadata(const TableFile& file);

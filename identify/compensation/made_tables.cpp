@@ -1,6 +1,26 @@
 #include "volcal/identify/compensation/made_tables.h"
 
+#include "volcal/model/description/finding_codes.h"
+
 namespace volcal {
+namespace {
+
+/// What was identified and is in none of these tables, or partly.
+std::vector<Finding> left_out_by(CompensationType type, const FitResult& result) {
+  std::vector<Finding> findings;
+  for (const Finding& finding : errors_in_no_table(result)) {
+    const bool of_rotary = finding.code == FindingCode::RotaryErrorsInNoTable;
+    if (!of_rotary || type.rotary().empty()) {
+      findings.push_back(finding);
+    } else if (!type.contains(CompensationType::rotary_volumetric())) {
+      findings.push_back({FindingCode::RotaryErrorsPartlyInTables,
+                          {{"axis", finding.text("axis")}, {"type", type.rotary().name()}}});
+    }
+  }
+  return findings;
+}
+
+}  // namespace
 
 MadeTables make_tables(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
                        double tolerance) {
@@ -18,7 +38,8 @@ MadeTables make_tables(const TableFormat& format, const FitResult& result, const
   made.files = write_tables(format, result, made.options);
   made.read_back = format.read(made.files);
   made.check = check_in_volume(result, made.options, made.read_back);
-  made.effects_left_out = errors_in_no_table(result);
+  made.rotary_check = check_rotary_axes(format, result, made.options, made.read_back);
+  made.effects_left_out = left_out_by(made.options.type, result);
   return made;
 }
 

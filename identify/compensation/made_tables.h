@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "volcal/identify/compensation/rotary_check.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/compensation/volume_check.h"
 
@@ -20,6 +21,7 @@ struct MadeTables {
   std::vector<TableFile> files;
   CompensationTables read_back;
   VolumeCheck check;
+  std::optional<RotaryCheck> rotary_check;  ///< of a type for rotary axes
   std::vector<Finding> effects_left_out;
 };
 

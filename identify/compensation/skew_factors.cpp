@@ -15,8 +15,9 @@ CompensationTables skew_tables(const SkewFactors& factors) {
   CompensationTables tables;
   tables.terms.emplace_back([factors](const AxisPosition& at, const ApproachDirection& /*direction*/) {
     const double y = at[index_of(AxisName::Y)], z = at[index_of(AxisName::Z)];
-    return Eigen::Vector3d(-y * factors.xy - z * (factors.xz - factors.xy * factors.yz), -z * factors.yz,
-                           0.0);
+    Correction correction;
+    correction.linear = {-y * factors.xy - z * (factors.xz - factors.xy * factors.yz), -z * factors.yz, 0.0};
+    return correction;
   });
   return tables;
 }

@@ -51,6 +51,7 @@ struct TableFormatOptions {
   std::string tool;                   ///< that the compensation is for; empty = the machine's first
   std::optional<AxisPosition> lines;  ///< where the specific lines cross; middle_of_travel() otherwise
   double step = 0.0;                  ///< between positions, m; 0 = the format's own
+  double rotary_step = 0.0;           ///< at most, between positions of rotary axes, rad; 0 = default
   std::map<std::string, std::string> settings;  ///< of the format
   std::optional<Conditions> conditions;         ///< default_conditions() when absent
   TableRecord record;
@@ -60,11 +61,12 @@ struct TableFormatOptions {
 };
 
 struct TableFormat {
-  std::string_view name;      ///< as the user writes it: "csv"
-  std::string_view summary;   ///< one sentence for the user
-  std::string_view source;    ///< which document fixes the format
-  std::string_view verified;  ///< on what it was verified, and what of it is not confirmed
-  CompensationType supported;
+  std::string_view name;          ///< as the user writes it: "csv"
+  std::string_view summary;       ///< one sentence for the user
+  std::string_view source;        ///< which document fixes the format
+  std::string_view verified;      ///< on what it was verified, and what of it is not confirmed
+  CompensationType supported;     ///< of the linear axes' errors
+  CompensationType rotary = {};   ///< of the rotary axes' errors, where any were identified
   bool rigid = false;             ///< holds what single axes do, no error motion that depends on another axis
   bool indivisible = false;       ///< `supported` as a whole only, no part of it
   bool positions_of_own = false;  ///< has positions of its own where neither a step nor a tolerance is given
@@ -95,6 +97,9 @@ struct RefusedFormat {
   std::string_view reason;
 };
 std::span<const RefusedFormat> refused_table_formats();
+
+/// All that the format can do of this machine: rotary types where errors of rotary axes were identified.
+CompensationType default_type(const TableFormat& format, const FitResult& result);
 
 /// Throws InputError for a type or a setting that the format does not have, and where the active tables
 /// correct something that the type does not hold and would be lost.

@@ -4,6 +4,8 @@
 #include <iterator>
 
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/compensation/rotary_tables.h"
+#include "volcal/identify/errors/rotary/rotary_grid.h"
 #include "volcal/identify/text/csv_cell.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -55,6 +57,22 @@ void add_machine(MetadataWriter& out, const Machine& machine) {
   for (const Tool& tool : machine.tools) out.add_point_mm("tools." + tool.name + ".offset", tool.offset);
 }
 
+/// What is decided beyond the names of ISO 230-1 (ISO/TR 16907, 9.1).
+void add_rotary_types(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
+  out.add("rotary.error_motions",
+          "tool relative to workpiece, in the stator of the axis, not in its rotor; of tables as of heads");
+  out.add("rotary.location_errors",
+          "of the physical axis average line, relative to the carrying body, machine coordinates");
+  out.add("rotary.positioning",
+          "rotations about the axis itself, EAA EBB ECC and EA0A EB0B EC0C: actual minus commanded");
+  out.add("rotary.tilt_error_motions_act_on", "the functional point, R-VOL: no reference point is needed");
+  const std::string no_grid = no_rotary_grid(result);
+  out.add("rotary.grid", no_grid.empty() ? "one of every side of the bed, twist at the reference point that "
+                                           "the file states"
+                                         : "none: " + no_grid);
+  if (no_grid.empty()) out.add_number("rotary.grid_step_at_most_deg", grid_step(options) / kRadianPerDegree);
+}
+
 void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOptions& options) {
   out.add("alignment", result.alignment.empty() ? "as identified" : result.alignment);
   std::size_t readings = 0;
@@ -101,6 +119,7 @@ class MetadataReader {
     metadata.machine = machine();
     metadata.tool = text("tool");
     if (!metadata.machine.tool_index(metadata.tool)) fail("tool", "name one of the tools listed below it");
+    metadata.type = compensation_type();
     for (const auto& [key, row] : rows_) metadata.entries[key] = row.cells[1];
     return metadata;
   }
@@ -116,6 +135,16 @@ class MetadataReader {
   double number(const std::string& key) const { return csv_number(row(key), 1, key); }
   [[noreturn]] void fail(const std::string& key, const std::string& remedy) const {
     throw InputError(row(key).place, key + " is \"" + text(key).substr(0, 40) + "\"", remedy);
+  }
+
+  CompensationType compensation_type() const {
+    const std::string key = "compensation_type";
+    if (rows_.find(key) == rows_.end()) return CompensationType::volumetric();
+    try {
+      return CompensationType::parse(text(key));
+    } catch (const InputError& error) {
+      fail(key, error.remedy());
+    }
   }
 
   Eigen::Vector3d point(const std::string& key) const {
@@ -187,6 +216,7 @@ std::string table_metadata_csv(const FitResult& result, const TableFormatOptions
                                               : "home, mean of both directions of approach");
   const AxisPosition lines = lines_of(result.machine, options);
   out.add_point_mm("specific_lines", {lines[0], lines[1], lines[2]});
+  if (!options.type.rotary().empty()) add_rotary_types(out, result, options);
   add_machine(out, result.machine);
   add_run(out, result, options);
   for (const std::string_view key : recordable_conditions()) {

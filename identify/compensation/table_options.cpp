@@ -3,6 +3,7 @@
 
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -41,6 +42,46 @@ void check_settings(const TableFormat& format, const TableFormatOptions& options
   }
 }
 
+/// Why a format has no tables of a rotary type; empty where it has.
+std::string why_no_rotary_type(const TableFormat& format, const FitResult& result, CompensationType type) {
+  if (type.rotary().empty()) return {};
+  if (type.has(CompensationPart::Orientation))
+    return "FOR moves rotary axes by what all axes do, which no table holds; a control or a program that "
+           "computes with the machine's kinematics can (FiveAxisCompensation of the library)";
+  if (format.rotary.empty()) return "it holds nothing of rotary axes";
+  if (!format.rotary.contains(type.rotary())) return "of rotary axes it holds " + format.rotary.name();
+  if (format.indivisible && type.rotary() != format.rotary)
+    return "it holds " + format.rotary.name() + " as a whole";
+  if (identified_rotary_axes(result).empty()) return "no error of a rotary axis was identified";
+  return {};
+}
+
+void check_type(const TableFormat& format, const FitResult& result, CompensationType type) {
+  const std::string rotary = why_no_rotary_type(format, result, type);
+  const bool part = format.indivisible && type.linear() != format.supported;
+  if (rotary.empty() && !part && !type.empty() && format.supported.contains(type.linear())) return;
+  const CompensationType possible = default_type(format, result);
+  throw InputError({},
+                   std::string(format.name) + " cannot compensate " + type.name() + ": " +
+                       std::string(format.refusal) + (rotary.empty() ? "" : "; " + rotary),
+                   "it can do " + possible.name() + "; give --type, or another --format");
+}
+
+bool acts_on_rotary_axes(const CompensationTables& tables, const Machine& machine) {
+  const AxisPosition middle = middle_of_travel(machine);
+  const Eigen::Vector3d at_zero = tables.correction(middle, {}).linear;
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) continue;
+    for (const double share : {0.0, 0.13, 0.31, 0.57, 0.79, 1.0}) {
+      AxisPosition turned = middle;
+      turned[index_of(axis.name)] = axis.travel_min + share * axis.travel();
+      const Correction correction = tables.correction(turned, {});
+      if (!correction.rotary.isZero(0.0) || correction.linear != at_zero) return true;
+    }
+  }
+  return false;
+}
+
 /// What the active tables correct must be something that the new ones hold.
 void check_active_tables(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options) {
@@ -51,20 +92,23 @@ void check_active_tables(const TableFormat& format, const FitResult& result,
                      "superimpose in neutral-csv or in the controller's format");
   const CompensationTables& active = *options.active;
   const Machine& machine = result.machine;
+  if (acts_on_rotary_axes(active, machine))
+    throw InputError({}, "the active tables move rotary axes or depend on them: they cannot be superimposed",
+                     "measure with the tables of rotary axes switched off, or name those of the linear axes");
   const Compensation same(machine, lines_of(machine, options), options.type,
                           [&active](const AxisPosition& position, const ApproachDirection& direction) {
-                            return Eigen::Vector3d(-active.correction(position, direction));
+                            return Eigen::Vector3d(-active.correction(position, direction).linear);
                           });
-  const Eigen::Vector3d at_home = active.correction(home_of(machine), kTowardsPlus);
+  const Eigen::Vector3d at_home = active.correction(home_of(machine), kTowardsPlus).linear;
   double lost = 0.0;
   for (const AxisPosition& position : grid_positions(machine, kSuperimposedCells)) {
     for (const std::int8_t sign : {-1, 1}) {
       ApproachDirection direction{};
       direction.fill(sign);
-      lost = std::max(
-          lost, (same.correction(position, direction) - active.correction(position, direction) + at_home)
-                    .cwiseAbs()
-                    .maxCoeff());
+      lost = std::max(lost, (same.correction(position, direction) -
+                             active.correction(position, direction).linear + at_home)
+                                .cwiseAbs()
+                                .maxCoeff());
     }
   }
   if (lost > kLostBySuperimposing)
@@ -78,15 +122,13 @@ void check_active_tables(const TableFormat& format, const FitResult& result,
 
 std::span<const std::string_view> recordable_conditions() { return kConditions; }
 
+CompensationType default_type(const TableFormat& format, const FitResult& result) {
+  return identified_rotary_axes(result).empty() ? format.supported : format.supported | format.rotary;
+}
+
 void check_table_options(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options) {
-  const bool part = format.indivisible && options.type != format.supported;
-  if (part || !format.supported.contains(options.type)) {
-    throw InputError({},
-                     std::string(format.name) + " cannot compensate " + options.type.name() + ": " +
-                         std::string(format.refusal),
-                     "it can do " + format.supported.name() + "; give --type, or another --format");
-  }
+  check_type(format, result, options.type);
   if (linear_axes_of(result.machine).empty())
     throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");
   check_settings(format, options);
@@ -146,7 +188,8 @@ namespace {
 
 Eigen::Vector3d active_correction(const TableFormatOptions& options, const AxisPosition& position,
                                   const ApproachDirection& direction) {
-  return options.active ? options.active->correction(position, direction) : Eigen::Vector3d(0.0, 0.0, 0.0);
+  return options.active ? options.active->correction(position, direction).linear
+                        : Eigen::Vector3d(0.0, 0.0, 0.0);
 }
 
 LinearDisplacements identified_displacements(const FitResult& result, const TableFormatOptions& options) {
@@ -181,7 +224,7 @@ DisplacementField errors_to_correct(const FitResult& result, const TableFormatOp
   if (!options.active) return identified;
   return [identified, active = *options.active](const AxisPosition& position,
                                                 const ApproachDirection& direction) {
-    return Eigen::Vector3d(identified(position, direction) - active.correction(position, direction));
+    return Eigen::Vector3d(identified(position, direction) - active.correction(position, direction).linear);
   };
 }
 

@@ -21,7 +21,7 @@ constexpr std::size_t kMostBytes = 30'000'000;
 /// The error that is left where a compensation acts.
 DisplacementField corrected(const DisplacementField& errors, const CompensationTables& tables) {
   return [errors, &tables](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(errors(position, direction) + tables.correction(position, direction));
+    return Eigen::Vector3d(errors(position, direction) + tables.correction(position, direction).linear);
   };
 }
 
@@ -74,7 +74,8 @@ std::vector<double> round_steps(double longest) {
 double largest_deviation(const Machine& machine, const Compensation& ideal, const CompensationTables& tables,
                          bool both_directions) {
   const auto difference = [&](const AxisPosition& position, const ApproachDirection& direction) {
-    return Eigen::Vector3d(tables.correction(position, direction) - ideal.correction(position, direction));
+    return Eigen::Vector3d(tables.correction(position, direction).linear -
+                           ideal.correction(position, direction));
   };
   const std::vector<ApproachDirection> directions =
       both_directions ? std::vector<ApproachDirection>{{1, 1, 1, 0, 0, 0}, {-1, -1, -1, 0, 0, 0}}
@@ -215,7 +216,7 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
   check.before = error_left(machine, points, measured);
   check.ideal = error_left(machine, points, corrected(errors, ideal));
   check.exported = error_left(machine, points, exported);
-  for (const CompensationPart part : kCompensationParts) {
+  for (const CompensationPart part : kLinearCompensationParts) {
     const Compensation of_before(machine, lines, part, measured), of_exported(machine, lines, part, exported);
     check.parts.push_back({part, error_left(machine, points, part_of(of_before)),
                            error_left(machine, points, part_of(of_exported))});

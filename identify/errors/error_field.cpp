@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "volcal/identify/errors/linear_axis_errors.h"
-#include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -102,10 +101,12 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
   }
 }
 
-PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirection& direction) const {
+/// `offset_t`: displacement of the tool's offset.
+PoseErrors<double> ErrorField::errors_at(const AxisPosition& position, const ApproachDirection& direction,
+                                         Vector3d& offset_t) const {
   const AxisPosition held = measured_.held(position);
   PoseErrors<double> errors = pose_errors(layout_, held, parameters_);
-  Vector3d offset_t = Vector3d::Zero();
+  offset_t.setZero();
   if (tool_parameter_ >= 0) offset_t = parameters_.segment<3>(tool_parameter_);
   for (const Expansion& expansion : expansions_) {
     const double deviation =
@@ -125,6 +126,18 @@ PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirec
       }
     }
   }
+  return errors;
+}
+
+PoseErrors<double> ErrorField::joint_errors(const AxisPosition& position,
+                                            const ApproachDirection& direction) const {
+  Vector3d offset_t;
+  return errors_at(position, direction, offset_t);
+}
+
+PoseErrorVector ErrorField::at(const AxisPosition& position, const ApproachDirection& direction) const {
+  Vector3d offset_t;
+  const PoseErrors<double> errors = errors_at(position, direction, offset_t);
   const ToolTwist twist = chain_.first_order(position, tool_.offset, errors);
   PoseErrorVector error;
   error << twist.displacement_w, twist.rotation_tool_side_w + twist.rotation_workpiece_side_w;
@@ -472,24 +485,6 @@ DisplacementField plain_displacement_field(const FitResult& result, const Tool& 
                                                         const ApproachDirection& direction) -> Vector3d {
     return field.at(without_rotary_axes(position), direction).head<3>();
   };
-}
-
-void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position) {
-  for (const Axis& axis : result.machine.axes) {
-    if (!is_rotary(axis.name) || position[index_of(axis.name)] == 0.0) continue;
-    const bool function = std::ranges::any_of(
-        result.layout.groups, [&](const FunctionGroup& group) { return group.axis == axis.name; });
-    const bool location = std::ranges::any_of(result.layout.blocks, [&](const ParameterBlock& block) {
-      return block.location && block.location->axis == axis.name;
-    });
-    if (function || location) continue;
-    throw InputError({},
-                     std::string("the errors of axis ") + letter_of(axis.name) +
-                         " were not identified, and the pose turns it",
-                     std::string("leave ") + letter_of(axis.name) +
-                         " at 0, or identify its errors: name its functions and locations in the model file "
-                         "and measure with the axis in several positions");
-  }
 }
 
 }  // namespace volcal

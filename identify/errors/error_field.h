@@ -62,6 +62,10 @@ class ErrorField {
 
   /// By tool and direction at a commanded position. Rotary errors are in it as far as they were identified.
   PoseErrorVector at(const AxisPosition& position, const ApproachDirection& direction = {}) const;
+  /// What it is made of: the errors of every axis at that pose, functions held, expansions and effects on
+  /// error motions included. The tool's offset is left out.
+  PoseErrors<double> joint_errors(const AxisPosition& position,
+                                  const ApproachDirection& direction = {}) const;
   /// Derivatives to the parameters; errors are linear in all of them but those of an effect's shape.
   PoseErrorRows rows(const AxisPosition& position, const ApproachDirection& direction = {}) const;
   /// The same with the error functions as they are beyond the measured positions: what the uncertainty of a
@@ -96,6 +100,8 @@ class ErrorField {
     int parameter = -1;   ///< deviation of the coefficient, 1/K
   };
 
+  PoseErrors<double> errors_at(const AxisPosition& position, const ApproachDirection& direction,
+                               Eigen::Vector3d& offset_t) const;
   Eigen::Index place_of(int parameter) const;
   PoseErrorRows rows_at(const AxisPosition& position, const AxisPosition& functions_at,
                         const ApproachDirection& direction) const;
@@ -149,8 +155,5 @@ DisplacementField displacement_field(const FitResult& result, const Tool& tool, 
 /// The same along the chain, joint by joint, at every call.
 DisplacementField plain_displacement_field(const FitResult& result, const Tool& tool,
                                            const Conditions& conditions);
-
-/// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.
-void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position);
 
 }  // namespace volcal

@@ -29,6 +29,11 @@ std::string rotary_in_no_table(const Finding& finding) {
       axis);
 }
 
+std::string rotary_partly_in_tables(const Finding& finding) {
+  return fmt::format("of the errors of axis {} the tables hold {} alone", finding.text("axis"),
+                     finding.text("type"));
+}
+
 }  // namespace
 
 std::span<const SentenceMaker> error_sentences() {
@@ -36,6 +41,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::ErrorsHeldBeyondReadings, held_beyond_readings},
       {FindingCode::EffectInNoTable, effect_in_no_table},
       {FindingCode::RotaryErrorsInNoTable, rotary_in_no_table},
+      {FindingCode::RotaryErrorsPartlyInTables, rotary_partly_in_tables},
   });
   return kSentences;
 }

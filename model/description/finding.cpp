@@ -89,6 +89,7 @@ constexpr auto kFindingCodes = std::to_array<FindingCodeRow>({
     {ErrorsHeldBeyondReadings, "errors.held-beyond-readings", Severity::Warning},
     {EffectInNoTable, "effect.in-no-table", Severity::Warning},
     {RotaryErrorsInNoTable, "errors.rotary-in-no-table", Severity::Warning},
+    {RotaryErrorsPartlyInTables, "errors.rotary-partly-in-tables", Severity::Warning},
 });
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(End), "every code has one name");
 static_assert(

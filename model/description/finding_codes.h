@@ -85,6 +85,7 @@ enum class FindingCode : std::uint8_t {
   ErrorsHeldBeyondReadings,
   EffectInNoTable,
   RotaryErrorsInNoTable,
+  RotaryErrorsPartlyInTables,
   End,  ///< none: how many there are
 };
 

@@ -22,6 +22,12 @@ const std::string& content_of(std::span<const TableFile> files, const std::strin
   return file_named(files, name).content;
 }
 
+/// The simulated control moves linear axes alone.
+[[noreturn]] void refuse_rotary(const std::string& file, std::string_view type) {
+  throw InputError({file, 0}, "the tables move rotary axes or depend on them, the simulated control does not",
+                   "write them for the linear axes: --type " + std::string(type));
+}
+
 /// Tables of one input and one output axis in one row per position: appended in the order of the file.
 class AxisTables {
  public:
@@ -73,6 +79,7 @@ void add_grid_row(sim::ControlGrid& grid, const Words& row, double position_unit
 // compensation_tables.csv holds what is to be added, with its own kinematics and the tool of metadata.csv.
 sim::ControlTables csv_control(std::span<const TableFile> files) {
   const TableMetadata metadata = read_table_metadata(file_named(files, "metadata.csv"));
+  if (!metadata.type.rotary().empty()) refuse_rotary("metadata.csv", "L-VOL");
   sim::ControlModel model{metadata.machine, {}, sim::TableValue::Correction, {}, {}};
   model.tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
   std::istringstream text(content_of(files, "compensation_tables.csv"));
@@ -112,6 +119,9 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
 
 // Corrections to add; the grid has the whole reversal.
 sim::ControlTables neutral_control(std::span<const TableFile> files) {
+  for (const TableFile& file : files) {
+    if (file.name.starts_with("rotary_")) refuse_rotary(file.name, "L-VOL");
+  }
   sim::ControlTables tables;
   if (const TableFile* file = find_file(files, "axis_corrections.csv")) {
     AxisTables axes(sim::TableValue::Correction);
@@ -320,6 +330,7 @@ sim::ControlTables sinumerik_control(std::span<const TableFile> files) {
   for (const Words& line : sinumerik_words(content_of(files, "AX_EEC.INI"))) {
     const double value = std::stod(line.back()) * kMillimetre;
     const AxisName axis = axis_in(line.at(line.size() - 2));
+    if (is_rotary(axis)) refuse_rotary("AX_EEC.INI", "L-POS");
     if (line[0] == "$AA_ENC_COMP") values[axis][std::stoi(line.at(2))] = value;
     if (line[0] == "$AA_ENC_COMP_STEP") step[axis] = value;
     if (line[0] == "$AA_ENC_COMP_MIN") first[axis] = value;
@@ -392,7 +403,11 @@ struct ControlFormat {
 const std::vector<ControlFormat>& control_formats() {
   static const std::vector<ControlFormat> formats = {
       {"csv", {"compensation_tables.csv"}, csv_control, ""},
-      {"neutral-csv", {"axis_corrections.csv", "correction_grid.csv"}, neutral_control, ""},
+      {"neutral-csv",
+       {"axis_corrections.csv", "correction_grid.csv", "rotary_axis_corrections.csv",
+        "rotary_compensation_grid_table.csv", "rotary_compensation_grid_tool.csv"},
+       neutral_control,
+       "compensation_tables.csv"},
       {"linuxcnc", {"compensation.ini"}, linuxcnc_control, ""},
       {"linuxcnc-grid", {"volcal.grid"}, linuxcnc_grid_control, ""},
       {"klipper", {"skew_correction.cfg"}, klipper_control, ""},

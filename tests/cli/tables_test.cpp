@@ -211,7 +211,9 @@ TEST_F(TablesAtPoints, RefuseWhatAFormatCannotDo) {
       {"--format linuxcnc --step 5 --tolerance 1", "excludes"},
       {"--format linuxcnc --tool wrong", "the machine has no such tool"},
       {"--format linuxcnc --lines X=1e9", "outside the travel of X"},
-      {"--type R-POS", "moves rotary axes"},
+      {"--type L-VOL+R-VOL", "no error of a rotary axis was identified"},
+      {"--format linuxcnc --type R-POS", "holds nothing of rotary axes"},
+      {"--format neutral-csv --type L-VOL+", "which no table holds"},
       {"--type L-POS", "the whole model"},
       {"--record weather=fine", "record one of machine_state"},
   };

@@ -101,7 +101,7 @@ inline bool accepts_tables(const std::string& text, std::size_t format_index) {
     for (const int direction : {-1, 0, 1}) {
       ApproachDirection approach{};
       approach.fill(static_cast<std::int8_t>(direction));
-      if (!tables.correction({0.1, -0.2, 0.3, 0.0, 0.0, 0.0}, approach).allFinite())
+      if (!tables.correction({0.1, -0.2, 0.3, 0.0, 0.0, 0.0}, approach).linear.allFinite())
         throw std::logic_error("a correction is not finite");
       sim::MachineState state;
       state.position = {0.1, -0.2, 0.3, 0.0, 0.0, 0.0};

@@ -12,6 +12,7 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/report/text/compensation_text.h"
 #include "volcal/identify/report/text/correction_text.h"
@@ -38,6 +39,7 @@ struct TablesArguments {
   int positions = 0;
   int grid = 5;
   double step_mm = 0.0;
+  double rotary_step_deg = 0.0;
   double tolerance_um = 0.0;
   std::vector<std::string> at;
   std::string tool;
@@ -138,9 +140,11 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
   options.functions.positions = arguments.positions;
   options.functions.zero_plus = arguments.zero == "plus";
   options.grid_per_axis = arguments.grid;
-  options.type = arguments.type.empty() ? format.supported : CompensationType::parse(arguments.type);
+  options.type =
+      arguments.type.empty() ? default_type(format, result) : CompensationType::parse(arguments.type);
   options.tool = arguments.tool;
   options.step = arguments.step_mm * kMetrePerMillimetre;
+  options.rotary_step = arguments.rotary_step_deg * kRadianPerDegree;
   if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
   options.settings = named_values("--set", arguments.settings);
   options.conditions = conditions_of(result, arguments.conditions);
@@ -181,6 +185,7 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
              tool_of(machine, made.options).name, step_text(made));
   fmt::print("{}", conditions_text(result, *made.options.conditions));
   fmt::print("{}", volume_check_text(made.check, made.options.type));
+  if (made.rotary_check) fmt::print("{}", rotary_check_text(*made.rotary_check, made.options.type));
   fmt::print("Verified: {}.\n", made.format->verified);
   if (made.tolerance > 0.0 && !made.step.reached) {
     const bool limited = made.format->limits.points_per_table > 0 || made.format->limits.resolution > 1e-10;
@@ -208,6 +213,7 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
                                  {"step_mm", made.options.step / kMetrePerMillimetre},
                                  {"error_left", volume_check_json(made.check)},
                                  {"verified", made.format->verified}};
+  if (made.rotary_check) json["rotary_error_left"] = rotary_check_json(*made.rotary_check);
   add_findings("effects_in_no_table", made.effects_left_out, json);
   if (!arguments.dry_run) json["folder"] = arguments.output;
   if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;
@@ -271,14 +277,19 @@ int run_tables(const TablesArguments& arguments) {
 void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
   app.add_option("-f,--format", arguments.format, format_help())
       ->check(CLI::Validator(check_format_name, fmt::format("{{{}}}", fmt::join(table_format_names(), ","))));
-  app.add_option("--type", arguments.type,
-                 "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG joined by +, or L-VOL; "
-                 "default: all that the format can do");
+  app.add_option(
+      "--type", arguments.type,
+      "what to compensate (ISO/TR 16907, 8.2): L-POS, L-STR, L-SQU, L-ANG, or L-VOL; of rotary axes "
+      "R-POS, R-RAX, R-POR, R-ANG, or R-VOL; joined by +; default: all that the format can do");
   app.add_option("--tool", arguments.tool,
                  "tool that the compensation is for, default the first; with --at, default every tool");
   auto* step =
       app.add_option("--step", arguments.step_mm, "between the positions of a table, mm; default: chosen")
           ->check(positive());
+  app.add_option(
+         "--rotary-step", arguments.rotary_step_deg,
+         "at most, between positions of rotary axes, deg; default 10 on grids, 5 in tables of one axis")
+      ->check(CLI::Range(0.01, 180.0));
   app.add_option(
          "--tolerance", arguments.tolerance_um,
          "choose the largest round step at which the tables, read back, follow the ideal compensation "

@@ -4,23 +4,37 @@
 #include <utility>
 
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/compensation/rotary_grid_csv.h"
+#include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
 
-/// Errors of the linear axes as a program reads them: linear between rows, then the kinematic model.
+/// Errors of the axes as a program reads them: linear between rows, then the kinematic model.
 class FunctionTables {
  public:
   FunctionTables(const std::vector<ErrorTableRow>& rows, const TableFile& file) {
     for (const ErrorTableRow& row : rows) {
       const auto motion = ErrorSymbol::parse(row.symbol);
       const auto location = LocationSymbol::parse(row.symbol);
-      if (motion && !is_rotary(motion->axis)) add(*motion, row);
-      if (location && !is_rotary(location->axis)) locations_[*location] = row.value;
+      if (motion) add(*motion, row);
+      if (location) locations_[*location] = row.value;
     }
     for (auto& [symbol, table] : tables_) complete(symbol, table, file);
+  }
+
+  /// Of the linear axes alone.
+  PoseErrors<double> linear_at(const AxisPosition& position, const ApproachDirection& direction) const {
+    PoseErrors<double> errors = at(position, direction);
+    for (const AxisName axis : kAllAxes) {
+      if (!is_rotary(axis)) continue;
+      errors.motion[index_of(axis)] = {};
+      errors.location[index_of(axis)] = {};
+    }
+    return errors;
   }
 
   PoseErrors<double> at(const AxisPosition& position, const ApproachDirection& direction) const {
@@ -62,8 +76,29 @@ std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptio
                                                      TableContent::Compensations)});
   files.push_back(spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis,
                                     conditions_of(result, options), TableContent::Compensations));
+  if (!options.type.rotary().empty() && no_rotary_grid(result).empty()) {
+    for (const RotaryGrid& grid : rotary_grids(result, conditions_of(result, options), grid_step(options))) {
+      for (const TableContent content : {TableContent::Errors, TableContent::Compensations})
+        files.push_back({rotary_grid_file_name(grid.body, content), rotary_grid_csv(grid, content, true)});
+    }
+  }
   files.push_back({"metadata.csv", table_metadata_csv(result, options)});
   return files;
+}
+
+/// Rotary axes by the control's own kinematic model, without the grids.
+CorrectionTerm rotary_term(const TableMetadata& metadata, const Eigen::Vector3d& tool,
+                           std::shared_ptr<const FunctionTables> tables) {
+  FiveAxisSettings settings;
+  settings.tool_offset = tool;
+  const FiveAxisCompensation compensation(
+      metadata.machine, settings,
+      [tables = std::move(tables)](const AxisPosition& position, const ApproachDirection& direction) {
+        return tables->at(position, direction);
+      });
+  return [compensation](const AxisPosition& position, const ApproachDirection& direction) {
+    return compensation.correction(position, direction);
+  };
 }
 
 /// From compensation_tables.csv and metadata.csv, for the tool that the latter names; zero at home approached
@@ -73,7 +108,9 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   const TableFile& file = file_named(files, "compensation_tables.csv");
   const auto rows = read_function_table(file, TableContent::Compensations);
   for (const ErrorTableRow& row : rows) {
-    if (row.axis && !metadata.machine.has_axis(*row.axis))
+    const auto location = LocationSymbol::parse(row.symbol);
+    const auto axis = location && is_rotary(location->axis) ? std::optional(location->axis) : row.axis;
+    if (axis && !metadata.machine.has_axis(*axis))
       throw InputError({file.name, 0}, row.symbol + " belongs to an axis that the machine lacks",
                        "take metadata.csv of the same run");
   }
@@ -83,15 +120,19 @@ CompensationTables read_csv(std::span<const TableFile> files) {
   const Eigen::Vector3d movable = movable_directions(metadata.machine);
   const auto error = [=](const AxisPosition& position, const ApproachDirection& direction) {
     const AxisPosition linear = without_rotary_axes(position);
-    const ToolTwist twist = chain.first_order(linear, tool, tables->at(linear, direction));
+    const ToolTwist twist = chain.first_order(linear, tool, tables->linear_at(linear, direction));
     return Eigen::Vector3d(twist.displacement_w.cwiseProduct(movable));
   };
   const Eigen::Vector3d at_home = error(home_of(metadata.machine), kTowardsPlus);
   CompensationTables result;
   result.terms.emplace_back(
       [error, at_home](const AxisPosition& position, const ApproachDirection& direction) {
-        return Eigen::Vector3d(at_home - error(position, direction));
+        return Correction{at_home - error(position, direction), {0.0, 0.0, 0.0}};
       });
+  if (!metadata.type.rotary().empty()) result.terms.push_back(rotary_term(metadata, tool, tables));
+  // The grids hold the same once more: they must be sound.
+  read_rotary_grids(files, TableContent::Errors);
+  read_rotary_grids(files, TableContent::Compensations);
   return result;
 }
 
@@ -101,11 +142,13 @@ const TableFormat& csv_table_format() {
   static const TableFormat format = {
       .name = "csv",
       .summary =
-          "errors and compensations of every function and squareness in both directions, and on a "
-          "grid of the volume, with uncertainty and the conditions of the run; mm, um, urad",
+          "errors and compensations of every function, squareness and location of rotary axes in both "
+          "directions, and on grids of the volume and of the rotary axes, with uncertainty and the "
+          "conditions of the run; mm, deg, um, urad",
       .source = "volcal's own; symbols, signs and layout of ISO 230-1 and ISO/TR 16907:2015, 9.1 to 9.3",
       .verified = "read back and evaluated by volcal with its kinematic model",
       .supported = CompensationType::volumetric(),
+      .rotary = CompensationType::rotary_volumetric(),
       .rigid = true,
       .indivisible = true,
       .positions_of_own = true,

@@ -196,7 +196,7 @@ const SinumerikAssignment& cec_setting(const CecTable& table, const std::string&
 
 AxisName cec_axis(const CecTable& table, const std::string& name) {
   const SinumerikAssignment& assignment = cec_setting(table, name);
-  return sinumerik_axis(assignment.value, assignment.place);
+  return sinumerik_linear_axis(assignment.value, assignment.place);
 }
 
 double cec_length(const CecTable& table, const std::string& name) {

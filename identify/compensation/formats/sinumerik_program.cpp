@@ -89,6 +89,14 @@ int sinumerik_index(const SinumerikAssignment& assignment, std::size_t index) {
 std::string sinumerik_axis_name(char letter) { return std::string(1, letter) + "1"; }
 
 AxisName sinumerik_axis(std::string_view name, const SourcePlace& place) {
+  for (const AxisName axis : kAllAxes) {
+    if (name == sinumerik_axis_name(letter_of(axis))) return axis;
+  }
+  throw InputError(place, "the machine axis is \"" + std::string(name.substr(0, 40)) + "\"",
+                   "write X1, Y1, Z1, A1, B1 or C1");
+}
+
+AxisName sinumerik_linear_axis(std::string_view name, const SourcePlace& place) {
   for (const AxisName axis : kLinearAxes) {
     if (name == sinumerik_axis_name(letter_of(axis))) return axis;
   }

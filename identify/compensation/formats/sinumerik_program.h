@@ -27,15 +27,18 @@ std::vector<SinumerikAssignment> sinumerik_assignments(const TableFile& file, st
 double sinumerik_number(const SinumerikAssignment& assignment);
 int sinumerik_index(const SinumerikAssignment& assignment, std::size_t index);
 
-/// X1, Y1, Z1: machine axes in the order of the linear axes.
+/// X1, Y1, Z1, A1, B1, C1: machine axes.
 std::string sinumerik_axis_name(char letter);
 /// Throws InputError at `place`.
 AxisName sinumerik_axis(std::string_view name, const SourcePlace& place);
+/// The same of a linear axis.
+AxisName sinumerik_linear_axis(std::string_view name, const SourcePlace& place);
 
-/// Values of a table by their number, m, and where they stand.
+/// Values of a table by their number, m or rad, and where they stand.
 struct SinumerikValues {
   std::map<int, double> value;
-  std::optional<double> low, high, step;  ///< MIN, MAX, STEP, m
+  std::optional<double> low, high, step;  ///< MIN, MAX, STEP, m or rad
+  bool is_modulo = false;                 ///< IS_MODULO
   SourcePlace place;
 };
 /// Positions of the values. Throws InputError unless they are numbered from 0 and reach from MIN to MAX,

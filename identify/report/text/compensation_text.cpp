@@ -35,7 +35,8 @@ std::string settings_text(const TableFormat& format) {
 std::string volume_check_text(const VolumeCheck& check, const CompensationType& type) {
   TextTable volume({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}}, "Error left in the volume");
   volume.add_row(left_figures("before", check.before));
-  volume.add_row(left_figures("ideal " + type.name(), check.ideal));
+  const std::string of_linear_axes = type.linear().name();
+  volume.add_row(left_figures(of_linear_axes.empty() ? "ideal" : "ideal " + of_linear_axes, check.ideal));
   volume.add_row(left_figures("tables read back", check.exported));
   if (check.identification_u > 0.0)
     volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
@@ -63,6 +64,29 @@ nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
   return json;
 }
 
+std::string rotary_check_text(const RotaryCheck& check, const CompensationType& type) {
+  TextTable table({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}, {"tool axis [urad]"}},
+                  fmt::format("Errors of rotary axes left at {} poses of all axes", kRotaryCheckPoses));
+  const auto add = [&table](const std::string& name, const RotaryLeft& left) {
+    table.add_row({name, fixed_number(left.rms / kMicro, 2), fixed_number(left.max / kMicro, 2),
+                   fixed_number(left.axis_rms / kMicro, 2)});
+  };
+  add("before", check.before);
+  add("ideal " + type.rotary().name(), check.ideal);
+  add("tables read back", check.exported);
+  return table.text();
+}
+
+nlohmann::ordered_json rotary_check_json(const RotaryCheck& check) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, left] : {std::pair{"before", &check.before}, std::pair{"ideal", &check.ideal},
+                                   std::pair{"tables", &check.exported}})
+    json[name] = {{"rms_um", left->rms / kMicro},
+                  {"max_um", left->max / kMicro},
+                  {"tool_axis_urad", left->axis_rms / kMicro}};
+  return json;
+}
+
 std::string limits_text(const CompensationLimits& limits) {
   std::string text;
   if (limits.points_per_table > 0)
@@ -78,8 +102,8 @@ std::string table_formats_text() {
   for (const TableFormat* format : table_formats()) {
     text += fmt::format(
         "{}\n    {}\n    types: {}; others: {}\n    limits: {}\n{}    source: {}\n    verified: {}\n",
-        format->name, format->summary, format->supported.name(), format->refusal, limits_text(format->limits),
-        settings_text(*format), format->source, format->verified);
+        format->name, format->summary, (format->supported | format->rotary).name(), format->refusal,
+        limits_text(format->limits), settings_text(*format), format->source, format->verified);
   }
   text += "\nNot written\n";
   for (const RefusedFormat& refused : refused_table_formats())
@@ -98,7 +122,7 @@ nlohmann::ordered_json table_formats_json() {
       settings.push_back({{"name", setting.name}, {"help", setting.help}, {"otherwise", setting.otherwise}});
     list.push_back({{"name", format->name},
                     {"summary", format->summary},
-                    {"types", format->supported.name()},
+                    {"types", (format->supported | format->rotary).name()},
                     {"refusal", format->refusal},
                     {"points_per_table", format->limits.points_per_table},
                     {"resolution_um", format->limits.resolution / kMicro},

@@ -4,9 +4,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "volcal/identify/compensation/rotary_check.h"
 #include "volcal/identify/compensation/volume_check.h"
 
 namespace volcal {
+
+/// Of the errors of rotary axes, the tool point and the direction of the tool's axis.
+std::string rotary_check_text(const RotaryCheck& check, const CompensationType& type);
+nlohmann::ordered_json rotary_check_json(const RotaryCheck& check);
 
 /// RMS and largest error before, with the ideal compensation and with the tables, and what is to be expected
 /// of the machine with the uncertainty of the identified errors; then per type.

@@ -12,15 +12,31 @@
 namespace volcal {
 namespace {
 
-double in_mm(const AxisPosition& position, AxisName axis) {
-  return position[index_of(axis)] / kMetrePerMillimetre;
+double shown_position(const AxisPosition& position, AxisName axis) {
+  return position[index_of(axis)] / position_unit(axis).si_per_unit;
 }
 
-Eigen::Vector3d correction_um(const CompensationTables& tables, const AxisPosition& position,
-                              std::string_view signs) {
+/// `signs`: of X, Y, Z; rotary axes are approached as X is.
+Correction correction_at(const CompensationTables& tables, const AxisPosition& position,
+                         std::string_view signs) {
   ApproachDirection direction{};
-  for (std::size_t i = 0; i < 3; ++i) direction[i] = signs[i] == '+' ? 1 : -1;
-  return tables.correction(position, direction) / kMicro;
+  for (std::size_t i = 0; i < direction.size(); ++i) direction[i] = signs[i < 3 ? i : 0] == '+' ? 1 : -1;
+  return tables.correction(position, direction);
+}
+
+std::vector<AxisName> rotary_axes_of(const Machine& machine) {
+  std::vector<AxisName> axes;
+  for (const AxisName axis : kAllAxes) {
+    if (is_rotary(axis) && machine.has_axis(axis)) axes.push_back(axis);
+  }
+  return axes;
+}
+
+/// X Y Z A B C.
+std::vector<AxisName> axes_in_order(const Machine& machine) {
+  std::vector<AxisName> axes = linear_axes_of(machine);
+  for (const AxisName axis : rotary_axes_of(machine)) axes.push_back(axis);
+  return axes;
 }
 
 }  // namespace
@@ -29,19 +45,23 @@ std::string corrections_text(const Machine& machine, const CompensationTables& t
                              const std::vector<AxisPosition>& points) {
   if (points.empty()) return {};
   std::vector<TextColumn> columns;
-  for (const AxisName axis : linear_axes_of(machine))
-    columns.push_back({fmt::format("{} [mm]", letter_of(axis))});
+  for (const AxisName axis : axes_in_order(machine))
+    columns.push_back({fmt::format("{} [{}]", letter_of(axis), position_unit(axis).suffix)});
   columns.push_back({"approached", Align::Left});
   for (const char* name : {"dX [um]", "dY [um]", "dZ [um]"}) columns.push_back({name});
+  for (const AxisName axis : rotary_axes_of(machine))
+    columns.push_back({fmt::format("d{} [urad]", letter_of(axis))});
   TextTable table(columns, "Added to the command by the tables read back");
   for (const AxisPosition& point : points) {
     for (const char* signs : {"+++", "---"}) {
       std::vector<std::string> cells;
-      for (const AxisName axis : linear_axes_of(machine))
-        cells.push_back(short_number(in_mm(point, axis), 6));
+      for (const AxisName axis : axes_in_order(machine))
+        cells.push_back(short_number(shown_position(point, axis), 6));
       cells.push_back(fmt::format("towards {}", signs[0]));
-      for (const double component : correction_um(tables, point, signs))
-        cells.push_back(fixed_number(component, 3));
+      const Correction correction = correction_at(tables, point, signs);
+      for (const double component : correction.linear) cells.push_back(fixed_number(component / kMicro, 3));
+      for (const AxisName axis : rotary_axes_of(machine))
+        cells.push_back(fixed_number(correction.rotary[direction_of(axis)] / kMicro, 3));
       table.add_row(std::move(cells));
     }
   }
@@ -53,11 +73,15 @@ nlohmann::ordered_json corrections_json(const Machine& machine, const Compensati
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const AxisPosition& point : points) {
     nlohmann::ordered_json entry;
-    for (const AxisName axis : linear_axes_of(machine))
-      entry["position"][std::string(1, letter_of(axis))] = in_mm(point, axis);
+    for (const AxisName axis : axes_in_order(machine))
+      entry["position"][std::string(1, letter_of(axis))] = shown_position(point, axis);
     for (const char* signs : {"+++", "++-", "+-+", "+--", "-++", "-+-", "--+", "---"}) {
-      const Eigen::Vector3d um = correction_um(tables, point, signs);
+      const Correction correction = correction_at(tables, point, signs);
+      const Eigen::Vector3d um = correction.linear / kMicro;
       entry["correction_um"][signs] = {um.x(), um.y(), um.z()};
+      for (const AxisName axis : rotary_axes_of(machine))
+        entry["rotary_correction_urad"][signs][std::string(1, letter_of(axis))] =
+            correction.rotary[direction_of(axis)] / kMicro;
     }
     list.push_back(std::move(entry));
   }

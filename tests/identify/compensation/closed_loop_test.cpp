@@ -25,7 +25,7 @@
 namespace volcal {
 namespace {
 
-using Correction = std::function<Eigen::Vector3d(const AxisPosition&, const ApproachDirection&)>;
+using LinearCorrection = std::function<Eigen::Vector3d(const AxisPosition&, const ApproachDirection&)>;
 
 // Largest ratio and volumetric error allowed are those that were asked of the exporters.
 constexpr double kStepTolerance = 0.5e-6;  // m, of the chosen step
@@ -63,7 +63,7 @@ double aligned_rms(
 
 /// Of the exact machine under corrected commands.
 double remaining_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
-                     const Correction& correction) {
+                     const LinearCorrection& correction) {
   return aligned_rms(truth, tool, [&](sim::MachineState state, const Eigen::Vector3d& nominal) {
     const Eigen::Vector3d added = correction(state.position, state.direction);
     for (std::size_t i = 0; i < 3; ++i) state.position[i] += added[static_cast<Eigen::Index>(i)];
@@ -73,7 +73,7 @@ double remaining_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool
 
 /// Of the corrections alone: what they move the functional point by.
 double correction_rms(const sim::TruthMachine& truth, const Eigen::Vector3d& tool,
-                      const Correction& correction) {
+                      const LinearCorrection& correction) {
   return aligned_rms(truth, tool, [&](const sim::MachineState& state, const Eigen::Vector3d&) {
     return correction(state.position, state.direction);
   });
@@ -91,7 +91,7 @@ Compensation ideal_of(const sim::TruthMachine& truth, const Eigen::Vector3d& too
 }
 
 /// Of a format that tells no directions apart, the mean of both.
-Correction corrections_of(const Compensation& ideal, bool both_directions) {
+LinearCorrection corrections_of(const Compensation& ideal, bool both_directions) {
   return [&ideal, both_directions](const AxisPosition& at, const ApproachDirection& direction) {
     return ideal.correction(at, both_directions ? direction : ApproachDirection{});
   };
@@ -139,7 +139,7 @@ class TablesInTheLoop : public ::testing::TestWithParam<std::tuple<const TableFo
     return {remaining_rms(truth, tool, no_correction),
             remaining_rms(truth, tool, corrections_of(ideal, format().limits.both_directions)),
             remaining_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {
-              return tables.correction(at, direction);
+              return tables.correction(at, direction).linear;
             })};
   }
 };
@@ -172,10 +172,10 @@ TEST_P(TablesInTheLoop, MistakesAreSeen) {
   const CompensationTables tables = exported(truth, type);
   const auto deviation = [&](const Vector& tool, const std::function<Vector(const Vector&)>& mistake) {
     const Compensation ideal = ideal_of(truth, tool, type);
-    const Correction right = corrections_of(ideal, format().limits.both_directions);
+    const LinearCorrection right = corrections_of(ideal, format().limits.both_directions);
     return correction_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {
       const bool both = format().limits.both_directions;  // else the mean, without lists of reversal
-      return Vector(mistake(tables.correction(at, both ? direction : ApproachDirection{})) -
+      return Vector(mistake(tables.correction(at, both ? direction : ApproachDirection{}).linear) -
                     right(at, direction));
     });
   };
@@ -214,7 +214,7 @@ TEST(ReversalLists, TakeWhatVolumetricTablesLeaveOfAReversalAlongTheAxes) {
       const CompensationTables tables = format.read(write_tables(format, testing::result_of(truth), options));
       left[reversal] =
           remaining_rms(truth, tool, [&](const AxisPosition& at, const ApproachDirection& direction) {
-            return tables.correction(at, direction);
+            return tables.correction(at, direction).linear;
           });
     }
     EXPECT_LT(left["lists"], 0.75 * left["none"]) << structure;
@@ -248,7 +248,7 @@ TEST(TablesOfAFit, CompensateTheMachineThatWasMeasured) {
     const CompensationTables tables = format.read(write_tables(format, result, options));
     EXPECT_LE(remaining_rms(simulated.truth, tool,
                             [&](const AxisPosition& at, const ApproachDirection& direction) {
-                              return tables.correction(at, direction);
+                              return tables.correction(at, direction).linear;
                             }),
               kVolumetricGoal)
         << name;

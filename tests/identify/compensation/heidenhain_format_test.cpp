@@ -23,7 +23,7 @@ const TableFormat& heidenhain() { return *find_table_format("heidenhain"); }
 
 /// Added to the commands, um, as the format's own reader and the simulated control say.
 Eigen::Vector3d heidenhain_added_by_both(const std::vector<TableFile>& files, const AxisPosition& at) {
-  const Eigen::Vector3d own = heidenhain().read(files).correction(at, kTowardsPlus);
+  const Eigen::Vector3d own = heidenhain().read(files).correction(at, kTowardsPlus).linear;
   sim::MachineState state;
   state.position = at;
   state.direction = kTowardsPlus;

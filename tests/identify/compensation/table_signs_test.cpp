@@ -46,7 +46,7 @@ double x_um(const std::string& format, const std::vector<TableFile>& files, cons
             int direction) {
   ApproachDirection approach{};
   approach.fill(static_cast<std::int8_t>(direction));
-  return find_table_format(format)->read(files).correction(at, approach).x() / 1e-6;
+  return find_table_format(format)->read(files).correction(at, approach).linear.x() / 1e-6;
 }
 
 constexpr AxisPosition kFarX = {1.0, 0.5, 0.5};

@@ -17,6 +17,7 @@
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/rigid_compromise.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/program/program_errors.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/model/description/errors.h"
@@ -326,8 +327,8 @@ TEST(RigidCompromise, TablesOfErrorsWithItLeaveLessThanWithout) {
     const Vector3d at_home = truth(home_of(result.machine), kTowardsPlus);
     double squares = 0.0;
     for (std::size_t i = 0; i < poses.positions.size(); ++i)
-      squares +=
-          (truth(poses.positions[i], {}) - at_home + tables.correction(poses.positions[i], {})).squaredNorm();
+      squares += (truth(poses.positions[i], {}) - at_home + tables.correction(poses.positions[i], {}).linear)
+                     .squaredNorm();
     return std::sqrt(squares / 300.0);
   };
   EXPECT_LT(left(result), 0.75 * left(rigid));

@@ -467,6 +467,8 @@ const std::vector<WordedFinding>& examples() {
        "following error X was identified and is in no table: it acts along a path or in one setup"},
       {{FindingCode::RotaryErrorsInNoTable, {{"axis", "C"}}},
        "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
+      {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
+       "of the errors of axis C the tables hold R-POS alone"},
   };
   return all;
 }

@@ -84,8 +84,8 @@ TEST(ControlTables, LeadscrewByHand) {
   const CompensationTables own = find_table_format("isg-ssfk")->read(list);
   ApproachDirection towards_minus{};
   towards_minus.fill(-1);
-  EXPECT_NEAR(own.correction(kThird, kTowardsPlus).x(), 10.2e-6, 1e-15);
-  EXPECT_NEAR(own.correction(kThird, towards_minus).x(), -8.0e-6, 1e-15);
+  EXPECT_NEAR(own.correction(kThird, kTowardsPlus).linear.x(), 10.2e-6, 1e-15);
+  EXPECT_NEAR(own.correction(kThird, towards_minus).linear.x(), -8.0e-6, 1e-15);
 }
 
 TEST(ControlTables, SinumerikByHand) {
@@ -167,7 +167,7 @@ TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
         sim::MachineState state;
         state.position = point.position;
         state.direction = point.direction;
-        EXPECT_LT((control(state) - own.correction(point.position, point.direction)).norm(), 2e-9)
+        EXPECT_LT((control(state) - own.correction(point.position, point.direction).linear).norm(), 2e-9)
             << format->name << " " << info.name;
       }
     }

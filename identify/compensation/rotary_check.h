@@ -1,0 +1,35 @@
+#pragma once
+/// What a compensation leaves of the errors of rotary axes, over poses of all axes: the machine as it is,
+/// with the ideal compensation of the type, and with the tables as written and read back.
+
+#include <optional>
+
+#include "volcal/identify/compensation/compensation_tables.h"
+#include "volcal/identify/compensation/table_format.h"
+
+namespace volcal {
+
+inline constexpr int kRotaryCheckPoses = 400;
+
+/// Of the functional point, m, no motion of the frame removed; and of the direction of the tool's axis, rad.
+struct RotaryLeft {
+  double rms = 0.0;  ///< sqrt(mean |e|^2)
+  double max = 0.0;
+  double axis_rms = 0.0;
+};
+
+struct RotaryCheck {
+  RotaryLeft before, ideal, exported;
+};
+
+/// Poses spread evenly over the travel of all axes, of a rotary axis over a turn at most (Halton 1960).
+std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count);
+
+/// By the exact model with the identified errors of the rotary axes alone, mean of both directions; what the
+/// tables correct of linear axes is taken off as the ideal compensation has it. Nothing for a type without
+/// rotary axes.
+std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
+                                             const TableFormatOptions& options,
+                                             const CompensationTables& tables);
+
+}  // namespace volcal

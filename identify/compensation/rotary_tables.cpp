@@ -1,0 +1,46 @@
+#include "volcal/identify/compensation/rotary_tables.h"
+
+#include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/errors/rotary/rotary_grid.h"
+
+namespace volcal {
+
+double grid_step(const TableFormatOptions& options) {
+  return options.rotary_step > 0.0 ? options.rotary_step : kDefaultRotaryGridStep;
+}
+
+double rotary_table_step(const TableFormatOptions& options) {
+  return options.rotary_step > 0.0 ? options.rotary_step : kDefaultRotaryTableStep;
+}
+
+std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, const FitResult& result,
+                                                    const TableFormatOptions& options) {
+  FiveAxisSettings settings;
+  settings.type = CompensationPart::RotaryPositioning;
+  const FiveAxisCompensation ideal(
+      result.machine, settings,
+      joint_errors(result, tool_of(result.machine, options), conditions_of(result, options)));
+  std::vector<SampledTable> tables;
+  for (const AxisName axis : identified_rotary_axes(result)) {
+    const RotaryNodes nodes = rotary_nodes(result, axis, rotary_table_step(options));
+    require_points(format, result.machine.axis(axis), nodes.positions.size());
+    AxisTable table{.input = axis, .position = nodes.positions, .forward = {}, .backward = {}};
+    if (nodes.full_turn) table.beyond = BeyondEnds::Repeat;
+    const auto value = [&](double q, int towards) {
+      AxisPosition position{};
+      position[index_of(axis)] = q;
+      ApproachDirection direction{};
+      direction[index_of(axis)] = static_cast<std::int8_t>(format.limits.both_directions ? towards : 0);
+      return ideal.correction(position, direction).rotary[direction_of(axis)];
+    };
+    for (const double q : nodes.positions) {
+      table.forward.push_back(value(q, 1));
+      table.backward.push_back(value(q, -1));
+    }
+    tables.push_back({axis, std::move(table)});
+  }
+  return tables;
+}
+
+}  // namespace volcal

@@ -1,0 +1,22 @@
+#pragma once
+/// Compensations of rotary axes sampled for a format.
+
+#include <vector>
+
+#include "volcal/identify/compensation/sampled_tables.h"
+
+namespace volcal {
+
+/// Largest step of a table of one rotary axis unless the user says otherwise, rad: 5 degrees.
+inline constexpr double kDefaultRotaryTableStep = 5.0 * 3.14159265358979323846 / 180.0;
+
+/// Largest step of the options, or the default, rad.
+double grid_step(const TableFormatOptions& options);
+double rotary_table_step(const TableFormatOptions& options);
+
+/// R-POS: what each identified rotary axis adds to its own command, rad, at equal steps; `beyond` is Repeat
+/// where one turn is written. A format that tells no directions apart gets the mean in both columns.
+std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, const FitResult& result,
+                                                    const TableFormatOptions& options);
+
+}  // namespace volcal

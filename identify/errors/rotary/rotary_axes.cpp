@@ -1,0 +1,58 @@
+#include "volcal/identify/errors/rotary/rotary_axes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "volcal/model/description/errors.h"
+
+namespace volcal {
+
+std::vector<AxisName> identified_rotary_axes(const FitResult& result) {
+  std::vector<AxisName> axes;
+  const auto add = [&axes](AxisName axis) {
+    if (is_rotary(axis) && std::ranges::find(axes, axis) == axes.end()) axes.push_back(axis);
+  };
+  for (const FunctionGroup& group : result.layout.groups) add(group.axis);
+  for (const ParameterBlock& block : result.layout.blocks) {
+    if (block.location) add(block.location->axis);
+  }
+  std::ranges::sort(axes);
+  return axes;
+}
+
+void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position) {
+  const std::vector<AxisName> identified = identified_rotary_axes(result);
+  for (const Axis& axis : result.machine.axes) {
+    if (!is_rotary(axis.name) || position[index_of(axis.name)] == 0.0) continue;
+    if (std::ranges::find(identified, axis.name) != identified.end()) continue;
+    throw InputError({},
+                     std::string("the errors of axis ") + letter_of(axis.name) +
+                         " were not identified, and the pose turns it",
+                     std::string("leave ") + letter_of(axis.name) +
+                         " at 0, or identify its errors: name its functions and locations in the model file "
+                         "and measure with the axis in several positions");
+  }
+}
+
+AxisLineErrors line_at_machine_zero(const Machine& machine, const PoseErrors<double>& errors, AxisName axis) {
+  const std::vector<Joint>& joints = machine.structure.joints;
+  const auto own = std::ranges::find(joints, axis, &Joint::axis);
+  const Eigen::Vector3d& p = machine.axis(axis).centre;
+  AxisLineErrors line;
+  for (auto joint = joints.begin(); joint != joints.end(); ++joint) {
+    // The bed stands to the right of the workpiece side, to the left of the tool side.
+    const bool carries = joint->workpiece_side == own->workpiece_side && is_rotary(joint->axis) &&
+                         (own->workpiece_side ? joint >= own : joint <= own);
+    if (!carries) continue;
+    const auto& location = errors.location[index_of(joint->axis)];
+    const int about = direction_of(joint->axis);
+    Eigen::Vector3d alpha(location[3], location[4], location[5]);
+    alpha[about] = 0.0;
+    line.rotation += alpha;
+    line.displacement += Eigen::Vector3d(location[0], location[1], location[2]) +
+                         alpha.cross(p - machine.axis(joint->axis).centre);
+  }
+  return line;
+}
+
+}  // namespace volcal

@@ -1,0 +1,30 @@
+#pragma once
+/// Rotary axes of an identified machine: which were identified, and where their average lines lie.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "volcal/identify/errors/pose.h"
+#include "volcal/identify/result/result.h"
+
+namespace volcal {
+
+/// Rotary axes of which functions or location errors were identified, A B C.
+std::vector<AxisName> identified_rotary_axes(const FitResult& result);
+
+/// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.
+void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position);
+
+/// Errors of an axis average line in the machine frame, all axes at 0.
+struct AxisLineErrors {
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< at the axis' nominal centre, m
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();      ///< rad
+};
+
+/// Location errors of the model are relative to the carrying body; ISO 230-1 states them in the machine frame
+/// at machine zero, where those of the rotary axes that carry it add up: with p the nominal centres and
+/// carriers i, alpha = sum alpha_i, d = sum d_i + alpha_i x (p - p_i). `axis` must be a rotary axis of the
+/// machine.
+AxisLineErrors line_at_machine_zero(const Machine& machine, const PoseErrors<double>& errors, AxisName axis);
+
+}  // namespace volcal

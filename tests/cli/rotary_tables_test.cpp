@@ -1,0 +1,213 @@
+/// Errors of rotary axes as a user gets them: at a point by hand, in tables, with what they leave.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::HasSubstr;
+using testing::run_program;
+
+/// `axes`: the letters of the structure; reference points and centres at 0; one tool.
+std::string machine_text(const std::string& structure, const std::string& axes, const std::string& tool) {
+  std::string text = "format = \"volcal-machine-1\"\nname = \"by hand\"\nstructure = \"" + structure +
+                     "\"\n[datum]\nprimary = \"X\"\nsecondary = \"Y\"\n";
+  for (const char axis : axes) {
+    text += std::string("[axes.") + axis + "]\n";
+    text += std::string("ABC").find(axis) == std::string::npos
+                ? "travel_mm = [-500.0, 500.0]\nhome_mm = 0.0\nreference_point_mm = [0.0, 0.0, 0.0]\n"
+                : "travel_deg = [-180.0, 180.0]\nhome_deg = 0.0\ncentre_mm = [0.0, 0.0, 0.0]\n";
+  }
+  return text + "[tools.t]\noffset_mm = " + tool + "\n";
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+bool is_location(const std::string& symbol) { return symbol.size() == 4; }
+
+/// 10 um or 100 urad of one error: an error motion as a constant.
+std::string model_text(const std::string& symbol) {
+  const bool angle = std::string("ABC").find(symbol[1]) != std::string::npos;
+  const std::string unit = angle ? "urad" : "um", value = angle ? "100.0" : "10.0";
+  std::string text =
+      "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\n"
+      "default = { basis = \"zero\" }\n";
+  if (is_location(symbol)) return text + "[locations]\n" + symbol + "_" + unit + " = " + value + "\n";
+  return text + symbol + " = { basis = \"bspline\", degree = 1, knots_deg = [-180, 180], coefficients_" +
+         unit + " = [" + value + ", " + value + "] }\n";
+}
+
+struct HandWorked {
+  const char* structure;
+  const char* axes;
+  const char* tool;
+  const char* at;
+  std::map<std::string, std::vector<double>> um;  ///< by error
+};
+
+/// Functional-point errors of hand_worked_test.cpp, all rows.
+const std::vector<HandWorked>& hand_worked() {
+  static const std::vector<HandWorked> all = {{"w C' b X Y Z t",
+                                               "XYZC",
+                                               "[0.0, 0.0, 0.0]",
+                                               "C=90,X=100,Z=50",
+                                               {{"EXC", {0, 10, 0}},
+                                                {"EYC", {-10, 0, 0}},
+                                                {"EZC", {0, 0, 10}},
+                                                {"EAC", {5, 0, 0}},
+                                                {"EBC", {0, 5, -10}},
+                                                {"ECC", {-10, 0, 0}},
+                                                {"EX0C", {0, -10, 0}},
+                                                {"EY0C", {10, 0, 0}},
+                                                {"EA0C", {-5, 0, 0}},
+                                                {"EB0C", {0, -5, 10}},
+                                                {"EC0C", {-10, 0, 0}}}},
+                                              {"w b X Y Z C t",
+                                               "XYZC",
+                                               "[100.0, 0.0, -200.0]",
+                                               "C=90",
+                                               {{"EXC", {10, 0, 0}},
+                                                {"EAC", {0, 20, 10}},
+                                                {"EBC", {-20, 0, 0}},
+                                                {"ECC", {-10, 0, 0}},
+                                                {"EX0C", {10, 0, 0}},
+                                                {"EA0C", {0, 20, 10}}}},
+                                              {"w C' A' b X Y Z t",
+                                               "XYZAC",
+                                               "[0.0, 0.0, 0.0]",
+                                               "A=-90,X=100,Z=50",
+                                               {{"EZC", {0, 0, 10}},
+                                                {"EBC", {0, 0, -10}},
+                                                {"ECC", {-5, 10, 0}},
+                                                {"EYA", {0, 0, -10}},
+                                                {"EBA", {5, -10, 0}}}},
+                                              {"w X' b Y Z C B t",
+                                               "XYZBC",
+                                               "[0.0, 0.0, -200.0]",
+                                               "C=90,B=90",
+                                               {{"EAC", {0, 0, -20}},
+                                                {"EBC", {0, 0, 0}},
+                                                {"ECC", {20, 0, 0}},
+                                                {"EXB", {0, 10, 0}},
+                                                {"EAB", {0, 0, 0}},
+                                                {"EBB", {0, 0, 20}},
+                                                {"ECB", {20, 0, 0}}}}};
+  return all;
+}
+
+/// The pose turns A or C in every row; an axis without stated errors stands in the model with one of 0.
+TEST(RotaryErrorsAtAPoint, AreThoseWorkedByHand) {
+  for (const HandWorked& machine : hand_worked()) {
+    const testing::ScratchFolder folder;
+    write_text(folder.path() / "machine.toml", machine_text(machine.structure, machine.axes, machine.tool));
+    for (const auto& [symbol, expected] : machine.um) {
+      std::string model = model_text(symbol);
+      const bool has_locations = is_location(symbol);
+      if (!has_locations) model += "[locations]\n";
+      for (const char axis : std::string("ABC")) {
+        const std::string zero = std::string(axis == 'A' ? "EB0" : "EA0") + axis;
+        if (std::string(machine.axes).find(axis) != std::string::npos && zero != symbol)
+          model += zero + "_urad = 0.0\n";
+      }
+      write_text(folder.path() / "model.toml", model);
+      const auto run = run_program("tables " + (folder.path() / "model.toml").string() + " --at " +
+                                   machine.at + " --json");
+      ASSERT_EQ(run.exit_code, 0) << run.errors << model;
+      const Json error = Json::parse(run.output).at("volumetric_errors").at(0).at("error_um");
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR(error.at(k).get<double>(), expected[k], 1e-6) << machine.structure << " " << symbol;
+    }
+  }
+}
+
+std::string five_axis_model() {
+  return "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\ndefault = { basis = \"zero\" "
+         "}\n"
+         "EXX = { basis = \"legendre\", degree = 2, coefficients_um = [0.0, 9.0, 0.0] }\n"
+         "ECC = { basis = \"fourier\", degree = 1, coefficients_urad = [0.0, 12.0, 5.0] }\n"
+         "EAC = { basis = \"fourier\", degree = 1, coefficients_urad = [0.0, 8.0, -6.0] }\n"
+         "[locations]\nEX0C_um = 12.0\nEA0C_urad = 30.0\nEY0A_um = -9.0\nEB0A_urad = 25.0\n";
+}
+
+struct FiveAxisFolder {
+  testing::ScratchFolder folder;
+  std::string model;
+
+  FiveAxisFolder() {
+    write_text(folder.path() / "machine.toml",
+               machine_text("w C' A' b X Y Z t", "XYZAC", "[0.0, 0.0, -200.0]"));
+    write_text(folder.path() / "model.toml", five_axis_model());
+    model = (folder.path() / "model.toml").string();
+  }
+  std::string out(const char* name) const { return (folder.path() / name).string(); }
+};
+
+TEST(RotaryTablesProgram, WritesErrorsOfRotaryAxesAndSaysWhatTheyLeave) {
+  const FiveAxisFolder given;
+  const auto run = run_program("tables " + given.model + " --format csv -o " + given.out("csv"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("csv L-VOL+R-VOL, tool t"));
+  EXPECT_THAT(run.output, HasSubstr("Errors of rotary axes left at 400 poses of all axes"));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in no table")));
+  EXPECT_THAT(run.output, HasSubstr("rotary_error_grid_table.csv"));
+  const std::string errors = testing::content(std::filesystem::path(given.out("csv")) / "error_tables.csv");
+  EXPECT_THAT(errors, HasSubstr("\nECC,C,-180,deg,0,"));
+  EXPECT_THAT(errors, HasSubstr("\nEX0C,,,,0,12,um,"));
+  // The folder is known errors in its turn: the same error at a pose but for linear interpolation.
+  const std::string at = " --at A=-40,C=70,X=100,Z=300 --json";
+  const auto error_of = [&](const std::string& source) {
+    const auto at_point = run_program("tables " + source + at);
+    EXPECT_EQ(at_point.exit_code, 0) << at_point.errors;
+    return Json::parse(at_point.output)
+        .at("volumetric_errors")
+        .at(0)
+        .at("error_um")
+        .get<std::vector<double>>();
+  };
+  const auto of_model = error_of(given.model), of_tables = error_of(given.out("csv"));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(of_tables[k], of_model[k], 0.05);
+}
+
+TEST(RotaryTablesProgram, JsonHasTheFiguresAndTheMovesOfRotaryAxes) {
+  const FiveAxisFolder given;
+  const auto run = run_program("tables " + given.model +
+                               " --format neutral-csv --type R-VOL --dry-run --at A=-40,C=90,Z=200 --json");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const Json json = Json::parse(run.output);
+  EXPECT_EQ(json.at("type"), "R-VOL");
+  const Json left = json.at("rotary_error_left");
+  EXPECT_GT(left.at("before").at("rms_um"), 10.0);
+  EXPECT_LT(left.at("ideal").at("rms_um"), 0.01);
+  EXPECT_LT(left.at("tables").at("rms_um"), 0.2);
+  EXPECT_TRUE(json.at("corrections").at(0).contains("rotary_correction_urad"));
+  EXPECT_EQ(json.at("corrections").at(0).at("position").at("A"), -40.0);
+}
+
+TEST(RotaryTablesProgram, OwnPositioningAloneIsSaidToBeAPart) {
+  const FiveAxisFolder given;
+  const auto run = run_program("tables " + given.model + " --format sinumerik --rotary-step 10 -o " +
+                               given.out("siemens"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("of the errors of axis C the tables hold R-POS alone"));
+  const std::string file = testing::content(std::filesystem::path(given.out("siemens")) / "AX_EEC.INI");
+  EXPECT_THAT(file, HasSubstr("$AA_ENC_COMP_STEP[0,C1]=10.000000\n"));
+  EXPECT_THAT(file, HasSubstr("$AA_ENC_COMP_IS_MODULO[0,C1]=1\n"));
+  const auto refused = run_program("tables " + given.model + " --format linuxcnc --type L-POS+FOR --dry-run");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("which no table holds"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -1,6 +1,7 @@
 #include "volcal/identify/cli/reference/command_table.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace volcal::cli {

@@ -1,6 +1,7 @@
 #include "volcal/identify/cli/reference/manual_pages.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 
 #include "volcal/identify/cli/command.h"

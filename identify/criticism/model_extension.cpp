@@ -37,9 +37,9 @@ void give_back(const ModelToExtend& extended, const EffectSpec& spec, const Exte
 
 /// Of an error left out alone and of several left out together one can be given back by the other.
 bool is_given_back(const EffectSpec& spec, const ModelSpec& model) {
-  return spec.kind == kLeftOut &&
-         std::ranges::none_of(left_out_symbols(spec),
-                              [&](const std::string& name) { return is_left_out(name, model); });
+  return spec.kind == kLeftOut && std::ranges::none_of(left_out_symbols(spec), [&](const std::string& name) {
+           return is_left_out(name, model);
+         });
 }
 
 }  // namespace

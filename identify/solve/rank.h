@@ -30,8 +30,8 @@ namespace volcal {
 GaussianPrior wide_prior(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& z,
                          const std::vector<double>& sigma);
 
-/// Priors that the files, or an instrument's weak default, give to the blocks' parameters, and the conventions
-/// of rotary axes (rotary_gauge.h); none elsewhere.
+/// Priors that the files, or an instrument's weak default, give to the blocks' parameters, and the
+/// conventions of rotary axes (rotary_gauge.h); none elsewhere.
 GaussianPrior stated_priors(const MeasurementModel& model, const DatumSpace& datum);
 
 struct RankAnalysis {

@@ -21,8 +21,8 @@ Size difference(const Campaign& a, const Campaign& b) {
   double square_within = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < a.setups.size(); ++i) {
-    const auto all_before = measured_components(a.setups[i]);
-    const auto all_after = measured_components(b.setups[i]);
+    const auto& all_before = a.setups[i].readings.value;
+    const auto& all_after = b.setups[i].readings.value;
     for (std::size_t channel = 0; channel < all_before.size(); ++channel) {
       const auto& before = all_before[channel];
       const auto& after = all_after[channel];

@@ -361,19 +361,17 @@ double independent_sigma(const SetupPlan& plan, const Reading& reading, std::siz
   return std::hypot(reading.sigma[channel], is_length ? plan.noise.repeatability : 0.0);
 }
 
-}  // namespace
-
-std::vector<std::vector<double>> measured_components(const Setup& setup) {
-  const auto& columns = setup.readings.value;
-  if (setup.instrument != kProbedSphere || setup.readings.column_set != kContactColumns) return columns;
-  std::vector<double> along;
-  for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) sum += columns[k][row] * columns[k + 3][row];
-    along.push_back(sum);
+/// Tip and normal are given; the reading is the tip along the normal.
+void give_contacts(Readings& readings) {
+  readings.given = std::move(readings.value);
+  std::vector<double> reach(readings.size(), 0.0);
+  for (std::size_t row = 0; row < reach.size(); ++row) {
+    for (std::size_t k = 0; k < 3; ++k) reach[row] += readings.given[k][row] * readings.given[k + 3][row];
   }
-  return {along};
+  readings.value = {std::move(reach)};
 }
+
+}  // namespace
 
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time) {
   if (plan.points.empty()) throw std::invalid_argument("setup " + plan.name + " has no points");
@@ -404,6 +402,7 @@ Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, doub
     append_point(record.point, state, conditions.machine.machine(), plan.records_feed, setup.readings);
     time += plan.seconds_per_reading;
   }
+  if (reads_contacts(plan)) give_contacts(setup.readings);
   return setup;
 }
 

@@ -44,10 +44,6 @@ struct MeasuringConditions {
   const Interference* interference = nullptr;  ///< nothing interferes
 };
 
-/// Readings as independent components, by [component][row]: the columns, of single contacts the tip along its
-/// normal.
-std::vector<std::vector<double>> measured_components(const Setup& setup);
-
 /// `start_time`: of the first reading, s. Throws std::invalid_argument for an instrument that is not
 /// simulated and for a setup without points.
 Setup measure(const SetupPlan& plan, const MeasuringConditions& conditions, double start_time);

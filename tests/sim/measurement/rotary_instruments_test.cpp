@@ -190,7 +190,8 @@ TEST(SingleContacts, TouchTheSphereWithTheErrorsOfTheirOwnJoints) {
   for (const SetupPlan& plan : plans) {
     const volcal::Setup setup = measure(plan, {truth, environment, {tool, tool, tool}, 1, false, true}, 0.0);
     EXPECT_EQ(setup.readings.column_set, 1U);
-    ASSERT_EQ(setup.readings.value.size(), 6U);
+    ASSERT_EQ(setup.readings.value.size(), 1U);
+    ASSERT_EQ(setup.readings.given.size(), 6U);
     EXPECT_EQ(setup.readings.size(), plan.name.ends_with("W") ? 12U : 24U) << "both sides across the tool";
     EXPECT_EQ(*setup.options.text("sphere"), "P1");
     EXPECT_EQ(*setup.options.text("contact"), plan.name.substr(plan.name.size() - 1));
@@ -198,7 +199,7 @@ TEST(SingleContacts, TouchTheSphereWithTheErrorsOfTheirOwnJoints) {
     double radius_error = std::abs(plan.truth.contact_radius - settings.radius);
     EXPECT_GT(radius_error, 1e-9);
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
-      const auto column = [&](std::size_t k) { return setup.readings.value[k][row]; };
+      const auto column = [&](std::size_t k) { return setup.readings.given[k][row]; };
       const Eigen::Vector3d tip{column(0), column(1), column(2)}, normal{column(3), column(4), column(5)};
       MachineState state;
       for (const AxisName axis : kAllAxes) {
@@ -233,14 +234,14 @@ TEST(SingleContacts, NoiseActsAlongTheNormal) {
   const std::vector<Eigen::Vector3d> tools(3, machine.tools[0].offset);
   const volcal::Setup quiet = measure(plan, {truth, environment, tools, 1, false, true}, 0.0);
   const volcal::Setup noisy = measure(plan, {truth, environment, tools, 1, false, false}, 0.0);
-  const auto before = measured_components(quiet), after = measured_components(noisy);
+  const auto &before = quiet.readings.value, &after = noisy.readings.value;
   ASSERT_EQ(before.size(), 1U);
   double square = 0.0;
   for (std::size_t row = 0; row < quiet.readings.size(); ++row) {
     Eigen::Vector3d shift, normal;
     for (std::size_t k = 0; k < 3; ++k) {
-      shift[static_cast<int>(k)] = noisy.readings.value[k][row] - quiet.readings.value[k][row];
-      normal[static_cast<int>(k)] = quiet.readings.value[k + 3][row];
+      shift[static_cast<int>(k)] = noisy.readings.given[k][row] - quiet.readings.given[k][row];
+      normal[static_cast<int>(k)] = quiet.readings.given[k + 3][row];
     }
     const double along = after[0][row] - before[0][row];
     EXPECT_LT((shift - along * normal).norm(), 1e-15);

@@ -102,7 +102,9 @@ struct FunctionSummary {
   std::string prior;      ///< kind that its spectrum is about (function_prior.h); empty = not smoothed
   double correlation_length = 0.0;  ///< of the prior, m or rad; 0 = not smoothed
   double effective_parameters = 0.0;
-  double measured_min = 0.0;  ///< range of positions with readings, m or rad
+  /// Range of positions with readings, m or rad; the travel where a periodic function was measured over three
+  /// quarters of a turn.
+  double measured_min = 0.0;
   double measured_max = 0.0;
 };
 

@@ -3,12 +3,29 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/functions/registry.h"
 
 namespace volcal {
+
+namespace {
+
+constexpr double kMostOfATurn = 0.75 * 2.0 * std::numbers::pi;
+
+/// Of positions with readings. What is periodic and was measured over most of a turn is known everywhere.
+MeasuredRange known_range(const Campaign& campaign, AxisName name, const FunctionSpec& function) {
+  const MeasuredRange range = measured_range(campaign, name);
+  const Axis& axis = campaign.machine.axis(name);
+  const bool is_periodic = find_basis(function.basis)->is_periodic;
+  if (!is_periodic || range.max - range.min < kMostOfATurn) return range;
+  return {std::min(range.min, axis.travel_min), std::max(range.max, axis.travel_max)};
+}
+
+}  // namespace
 
 std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const ModelSpec& spec,
                                                 const DatumSpace& datum,
@@ -30,7 +47,7 @@ std::vector<FunctionSummary> function_summaries(const Campaign& campaign, const 
       summary.effective_parameters -=
           term.lambda * covariance.block(term.offset, term.offset, n, n).cwiseProduct(term.precision()).sum();
     }
-    const MeasuredRange range = measured_range(campaign, function.symbol.axis);
+    const MeasuredRange range = known_range(campaign, function.symbol.axis, function_spec);
     summary.measured_min = range.min;
     summary.measured_max = range.max;
     summaries.push_back(summary);

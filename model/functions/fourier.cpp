@@ -89,6 +89,7 @@ extern const BasisKind kFourierBasis = {
     .rotary_axes = true,
     .uses_knots = false,
     .has_automatic_degree = true,
+    .is_periodic = true,
     .make = make_fourier,
 };
 

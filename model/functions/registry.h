@@ -23,6 +23,7 @@ struct BasisKind {
   bool rotary_axes;
   bool uses_knots;
   bool has_automatic_degree = false;  ///< `degree = "auto"`: follows from the readings
+  bool is_periodic = false;           ///< repeats with every turn
   /// `spec` must be resolved: with `uses_knots`, `breakpoints` holds the pieces. Throws
   /// std::invalid_argument.
   std::unique_ptr<Basis> (*make)(const FunctionSpec& spec, const Axis& axis);

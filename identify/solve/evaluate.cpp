@@ -9,6 +9,8 @@
 #include "volcal/identify/solve/normals/minimise.h"
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/residuals.h"
+#include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/observation/channels.h"
 
 namespace volcal {
@@ -117,6 +119,14 @@ ModelSpec frozen_model(const ModelSpec& model) {
   frozen.default_function.basis = "zero";
   std::erase_if(frozen.functions, [](const auto& entry) { return entry.second.coefficients.empty(); });
   return frozen;
+}
+
+std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const ModelSpec& model) {
+  std::vector<Finding> findings;
+  for (const AxisName axis : rotary_axes_without_errors(campaign, model)) {
+    findings.push_back({FindingCode::RotaryErrorsNotInModel, {{"axis", std::string(1, letter_of(axis))}}});
+  }
+  return findings;
 }
 
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model_spec, const FitResult* identified,

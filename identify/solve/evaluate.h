@@ -29,6 +29,9 @@ struct Evaluation {
   std::shared_ptr<const Adjustment> adjustment;
 };
 
+/// One per rotary axis that moves in the campaign and has no errors in a model that states some.
+std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const ModelSpec& model);
+
 /// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
 /// Throws InputError when the campaign does not fit the model's machine.
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,

@@ -34,6 +34,14 @@ std::string rotary_partly_in_tables(const Finding& finding) {
                      finding.text("type"));
 }
 
+std::string rotary_not_in_model(const Finding& finding) {
+  const std::string& axis = finding.text("axis");
+  return fmt::format(
+      "axis {} moves in these readings, and the model has no errors of it: what they do is in the residuals; "
+      "identify them by volcal fit from readings that move {}",
+      axis, axis);
+}
+
 }  // namespace
 
 std::span<const SentenceMaker> error_sentences() {
@@ -42,6 +50,7 @@ std::span<const SentenceMaker> error_sentences() {
       {FindingCode::EffectInNoTable, effect_in_no_table},
       {FindingCode::RotaryErrorsInNoTable, rotary_in_no_table},
       {FindingCode::RotaryErrorsPartlyInTables, rotary_partly_in_tables},
+      {FindingCode::RotaryErrorsNotInModel, rotary_not_in_model},
   });
   return kSentences;
 }

@@ -90,6 +90,7 @@ constexpr auto kFindingCodes = std::to_array<FindingCodeRow>({
     {EffectInNoTable, "effect.in-no-table", Severity::Warning},
     {RotaryErrorsInNoTable, "errors.rotary-in-no-table", Severity::Warning},
     {RotaryErrorsPartlyInTables, "errors.rotary-partly-in-tables", Severity::Warning},
+    {RotaryErrorsNotInModel, "errors.rotary-not-in-model", Severity::Warning},
 });
 static_assert(kFindingCodes.size() == static_cast<std::size_t>(End), "every code has one name");
 static_assert(

@@ -86,6 +86,7 @@ enum class FindingCode : std::uint8_t {
   EffectInNoTable,
   RotaryErrorsInNoTable,
   RotaryErrorsPartlyInTables,
+  RotaryErrorsNotInModel,
   End,  ///< none: how many there are
 };
 

@@ -88,6 +88,15 @@ std::vector<AxisName> moving_rotary_axes(const Campaign& campaign) {
   return moving;
 }
 
+std::vector<AxisName> rotary_axes_without_errors(const Campaign& campaign, const ModelSpec& model) {
+  std::vector<AxisName> axes = moving_rotary_axes(campaign);
+  std::erase_if(axes, [&](AxisName axis) {
+    const auto of_axis = [&](const auto& entry) { return entry.first.axis == axis; };
+    return std::ranges::any_of(model.functions, of_axis) || std::ranges::any_of(model.locations, of_axis);
+  });
+  return axes;
+}
+
 std::vector<ErrorSymbol> motions_in_campaign(const Campaign& campaign) {
   std::vector<ErrorSymbol> symbols = linear_axis_motions(campaign.machine);
   for (const AxisName axis : moving_rotary_axes(campaign)) add_motions(axis, symbols);

@@ -24,6 +24,8 @@ std::vector<LocationSymbol> possible_locations(const Machine& machine);
 /// Rotary axes that the readings move by more than a thousandth of their travel; readings that are left out
 /// do not count.
 std::vector<AxisName> moving_rotary_axes(const Campaign& campaign);
+/// Rotary axes that the readings move and of which the model has neither an error motion nor a location.
+std::vector<AxisName> rotary_axes_without_errors(const Campaign& campaign, const ModelSpec& model);
 /// linear_axis_motions(), and the six error motions of every rotary axis that moves.
 std::vector<ErrorSymbol> motions_in_campaign(const Campaign& campaign);
 /// A full turn, or nearly: its functions are periodic.

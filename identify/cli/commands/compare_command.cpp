@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -133,13 +134,24 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   return judged;
 }
 
+/// Of models that state errors, each axis once.
+void note_missing_rotary_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
+  std::set<std::string> said;
+  for (const NamedModel& model : models) {
+    if (!states_errors(model.spec)) continue;
+    for (Finding& missing : missing_rotary_errors(campaign, model.spec)) {
+      if (said.insert(missing.text("axis")).second) campaign.notes.push_back(std::move(missing));
+    }
+  }
+}
+
 int run_compare(const CompareArguments& arguments) {
   if (!arguments.output.empty()) {
     std::vector<std::string> inputs = {arguments.campaign};
     std::ranges::remove_copy(arguments.models, std::back_inserter(inputs), kNominal);
     require_output_folder(arguments.output, inputs);
   }
-  const Campaign campaign = read_campaign(arguments.campaign);
+  Campaign campaign = read_campaign(arguments.campaign);
   ComparisonOptions comparison;
   comparison.worst = arguments.worst;
   std::vector<NamedModel> named;
@@ -157,6 +169,7 @@ int run_compare(const CompareArguments& arguments) {
           circle_causes(readings, model.spec, evaluation.parameters, model.result ? &*model.result : nullptr,
                         models.back().figures.circles);
   }
+  note_missing_rotary_errors(named, campaign);
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
   const std::string json = comparison_json(campaign, models, heldout);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -75,6 +77,7 @@ int run_validate(const ValidateArguments& arguments) {
     throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,
                      "validate on a campaign of the same machine");
   }
+  std::ranges::move(missing_rotary_errors(campaign, result.identified), std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);
   auto figures = validation_json(validation.figures, fitted);
   add_notes(campaign.notes, figures);

@@ -7,7 +7,9 @@
 #include <cstdio>
 
 #include "tests/support/five_axis.h"
+#include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
+#include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
 namespace {
@@ -70,6 +72,21 @@ TEST_P(RotaryAxes, AreIdentifiedBesideErrorsOfLinearAxes) {
 INSTANTIATE_TEST_SUITE_P(Structures, RotaryAxes,
                          ::testing::Values("w C' A' b X Y Z t", "w X' b Y Z C B t", "w C' X' b Y Z B t",
                                            "w C' B' b X Y Z t"));
+
+TEST(RotaryErrors, OfAModelThatHasNoneAreMissedAloud) {
+  const sim::TruthMachine truth = five_axis_truth(five_axis_machine("w C' A' b X Y Z t"), {}, 5);
+  GridPlan plan;
+  plan.turns = plan.tilts = 3;
+  const Campaign campaign = r_test_campaign(truth, plan, 17);
+  const std::vector<Finding> missing = missing_rotary_errors(campaign, ModelSpec{});
+  ASSERT_EQ(missing.size(), 2U);
+  EXPECT_EQ(missing[0].code, FindingCode::RotaryErrorsNotInModel);
+  EXPECT_EQ(missing[0].text("axis"), "C");
+  EXPECT_EQ(missing[1].text("axis"), "A");
+  ModelSpec located;
+  located.locations[{Component::X, AxisName::C}] = 12e-6;
+  EXPECT_EQ(missing_rotary_errors(campaign, located).size(), 1U);
+}
 
 /// Constants are locations: a tilt EBA of 30 urad at every position is EB0A, with the sign of its side.
 TEST(RotaryLocations, TakeTheConstantPartOfErrorMotions) {

@@ -469,6 +469,9 @@ const std::vector<WordedFinding>& examples() {
        "errors of axis C were identified and are in no table: tables are for linear axes with C at 0"},
       {{FindingCode::RotaryErrorsPartlyInTables, {{"axis", "C"}, {"type", "R-POS"}}},
        "of the errors of axis C the tables hold R-POS alone"},
+      {{FindingCode::RotaryErrorsNotInModel, {{"axis", "C"}}},
+       "axis C moves in these readings, and the model has no errors of it: what they do is in the residuals; "
+       "identify them by volcal fit from readings that move C"},
   };
   return all;
 }

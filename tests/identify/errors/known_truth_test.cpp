@@ -92,8 +92,13 @@ Campaign measured_without_noise(const Machine& machine, const ModelSpec& errors)
   study.measurements.push_back({"", circles});
   sim::AxisLines lines;
   study.measurements.push_back({"", lines});
-  for (sim::Measurement& measurement : study.measurements)
-    std::visit([](auto& settings) { settings.noise = {}; }, measurement.settings);
+  for (sim::Measurement& measurement : study.measurements) {
+    std::visit(
+        [](auto& settings) {
+          if constexpr (requires { settings.noise; }) settings.noise = {};
+        },
+        measurement.settings);
+  }
   Campaign campaign = sim::simulate(study).campaign;
   for (Setup& setup : campaign.setups) {
     setup.noise.set("constant", 0.1e-6);

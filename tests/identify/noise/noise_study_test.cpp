@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTwoSided99 = 2.576;
 
-struct Moments {
+struct FoundMoments {
   std::vector<double> values;
 
   double mean() const {
@@ -47,7 +47,7 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
   NoiseProblem problem = campaign_of_grids(generator);
   const NoiseParameters truth{1.3, 0.4e-6, 90.0, 0.3e-6, 0.0};
   const int campaigns = testing::short_or_long(24, 60);
-  Moments white, drift, tau, line;
+  FoundMoments white, drift, tau, line;
   int drift_on = 0, line_on = 0, per_metre_on = 0, covered = 0, intervals = 0;
   const auto cover = [&](double found, double expected, double u) {
     covered += std::abs(std::log(found / expected)) < 1.96 * u ? 1 : 0;
@@ -72,7 +72,7 @@ TEST(NoiseStudy, RecoversWhatWasPutIn) {
       cover(own.parameters.line, truth.line, own.log_uncertainty.line);
     }
   }
-  const auto within = [](const Moments& found, double expected) {
+  const auto within = [](const FoundMoments& found, double expected) {
     return std::abs(found.mean() - expected) < kTwoSided99 * found.of_mean();
   };
   RecordProperty("drift_on", drift_on);

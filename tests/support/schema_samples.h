@@ -93,19 +93,20 @@ inline std::string sample_study() {
 }
 
 inline std::string sample_points() {
-  return "x_mm,y_mm,z_mm,c_deg,dir_x,line,run\n0,0,0,0,1,0,0\n250.5,-1e2,3,90,0,1,0\n500,400,-300,360,-1,1,"
+  return "x_mm,y_mm,z_mm,a_deg,c_deg,dir_x,line,run\n0,0,0,0,0,1,0,0\n250.5,-1e2,3,-10,90,0,1,0\n500,400,-"
+         "300,0,360,-1,1,"
          "2\n";
 }
 
 /// Readings of one column set of an instrument; positions run along the body diagonal.
 inline std::string sample_csv(const std::vector<ColumnSchema>& columns) {
-  std::string text = "time_s,line,run,x_mm,y_mm,z_mm,c_deg,dir_x,feed_mm_min,T_X_degC";
+  std::string text = "time_s,line,run,x_mm,y_mm,z_mm,a_deg,c_deg,dir_x,feed_mm_min,T_X_degC";
   for (const ColumnSchema& column : columns) text += "," + column.column;
   text += "\n";
   for (int i = 0; i < 8; ++i) {
     const std::string n = std::to_string(i);
     text += n + ",0,1," + std::to_string(50 * i) + "," + std::to_string(40 * i) + ",-" +
-            std::to_string(30 * i) + ",0," + (i % 2 ? "1" : "-1") + ",1000,20." + n;
+            std::to_string(30 * i) + ",0,0," + (i % 2 ? "1" : "-1") + ",1000,20." + n;
     for (std::size_t c = 0; c < columns.size(); ++c) text += "," + std::to_string(0.25 * (i % 3) + 0.5);
     text += "\n";
   }

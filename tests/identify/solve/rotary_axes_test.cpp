@@ -59,7 +59,7 @@ double left_by_a_fit(const char* structure, const FiveAxisErrors& errors) {
 }
 
 /// Noise of 1.5 um a component on 972 poses.
-TEST_P(RotaryAxes, AreIdentifiedByDefault) { EXPECT_LT(left_by_a_fit(GetParam(), {}), 0.5); }
+TEST_P(RotaryAxes, AreIdentifiedByDefault) { EXPECT_LT(left_by_a_fit(GetParam(), {}), 0.6); }
 
 /// Errors of linear axes that the model does not know: their share at other places of the travel remains.
 TEST_P(RotaryAxes, AreIdentifiedBesideErrorsOfLinearAxes) {

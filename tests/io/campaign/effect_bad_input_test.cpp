@@ -31,7 +31,7 @@ const std::string kHead = "format = \"volcal-model-1\"\n\n[functions]\ndefault =
 
 /// What reading the model, and binding it to a campaign that has everything, say; nothing when accepted.
 std::optional<InputError> refusal_of_effect(const std::string& effect) {
-  static const Campaign campaign = testing_support::effect_campaign();
+  static const Campaign campaign = testing_support::five_axis_effect_campaign();
   try {
     const MeasurementModel model(campaign, parse_model(kHead + effect, "model.toml", campaign.machine));
   } catch (const InputError& error) {
@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// What was written is what is read: quotes, backslashes and identified values included.
 TEST(CustomEffectInAFile, RoundTrips) {
-  const Campaign campaign = testing_support::effect_campaign();
+  const Campaign campaign = testing_support::five_axis_effect_campaign();
   const std::string text = kHead +
                            "\n[[effects]]\nkind = \"custom\"\ntarget = \"tool side z\"\n"
                            "expression = \"z < 200 ? 0 : (1 - exp(-t / p)) * (T_air - 20)\"\n"

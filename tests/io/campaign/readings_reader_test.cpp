@@ -13,7 +13,7 @@ using ::testing::HasSubstr;
 
 Readings read_vectors(const std::string& components, const std::string& values) {
   const std::string text =
-      "x_mm,y_mm,z_mm,c_deg," + components + "\n0,0,0,0," + values + "\n9,0,0,0," + values + "\n";
+      "x_mm,y_mm,z_mm,a_deg,c_deg," + components + "\n0,0,0,0,0," + values + "\n9,0,0,0,0," + values + "\n";
   return read_readings(CsvTable::parse(text, "plate.csv", {}), {}, testing::harness_machine(),
                        find_instrument("volumetric-points")->schema());
 }

@@ -286,7 +286,8 @@ TEST(RotaryStudy, HiddenEffectsOnSingleContactsCountAlongTheNormal) {
   const SimulatedCampaign simulated = simulate(study);
   ASSERT_EQ(simulated.hidden.size(), 1U);
   EXPECT_NEAR(simulated.hidden[0].rms, 2e-6, 1e-9);
-  EXPECT_EQ(simulated.campaign.setups[0].readings.value.size(), 6U);
+  EXPECT_EQ(simulated.campaign.setups[0].readings.value.size(), 1U);
+  EXPECT_EQ(simulated.campaign.setups[0].readings.given.size(), 6U);
 }
 
 }  // namespace

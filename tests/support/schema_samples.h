@@ -4,6 +4,7 @@
 /// covered without touching either.
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -107,7 +108,10 @@ inline std::string sample_csv(const std::vector<ColumnSchema>& columns) {
     const std::string n = std::to_string(i);
     text += n + ",0,1," + std::to_string(50 * i) + "," + std::to_string(40 * i) + ",-" +
             std::to_string(30 * i) + ",0,0," + (i % 2 ? "1" : "-1") + ",1000,20." + n;
-    for (std::size_t c = 0; c < columns.size(); ++c) text += "," + std::to_string(0.25 * (i % 3) + 0.5);
+    for (const ColumnSchema& column : columns) {
+      const bool is_direction = unit_of_key(column.column).suffix.empty();
+      text += "," + std::to_string(is_direction ? 1.0 / std::sqrt(3.0) : 0.25 * (i % 3) + 0.5);
+    }
     text += "\n";
   }
   return text;

@@ -15,7 +15,8 @@ constexpr int kPosesPerUnknown = 2;
 constexpr int kFewestPoses = 200;
 // Singular value beside the largest: splines resolve a rotation less well than Fourier series do.
 constexpr double kExchangeable = 1e-3;
-constexpr double kHeld = 1e-7;  // m or rad: nothing beside the wide prior, and no rounding beside readings
+constexpr double kHeldExchange =
+    1e-7;  // m or rad: nothing beside the wide prior, and no rounding beside readings
 // Of locations beside functions: an exchange between the two is settled in the functions.
 constexpr double kWeightOfLocations = 1e-3;
 
@@ -39,8 +40,8 @@ class RotaryGauge {
     if (exchanged.cols() == 0) return precision;
     const Eigen::MatrixXd held = weights().asDiagonal() * exchanged;
     const Eigen::MatrixXd gram = held.transpose() * held;
-    precision(index, index) =
-        held * solve_positive_definite(gram, Eigen::MatrixXd(held.transpose())) / (kHeld * kHeld);
+    precision(index, index) = held * solve_positive_definite(gram, Eigen::MatrixXd(held.transpose())) /
+                              (kHeldExchange * kHeldExchange);
     return precision;
   }
 

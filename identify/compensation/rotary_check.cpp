@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "volcal/identify/compensation/five_axis_compensation.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 
 namespace volcal {
 namespace {
-
-/// Digits of the number in the base, mirrored behind the point.
-double halton(int number, int base) {
-  double value = 0.0, digit = 1.0;
-  for (; number > 0; number /= base) {
-    digit /= base;
-    value += digit * (number % base);
-  }
-  return value;
-}
 
 JointErrorSource of_rotary_axes(const JointErrorSource& all) {
   return [all](const AxisPosition& position, const ApproachDirection& direction) {
@@ -47,20 +37,6 @@ RotaryLeft left_under(const FiveAxisCompensation& ideal, const std::vector<AxisP
 }
 
 }  // namespace
-
-std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count) {
-  constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13};
-  std::vector<AxisPosition> poses(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i) {
-    for (const Axis& axis : machine.axes) {
-      const double length =
-          is_rotary(axis.name) ? std::min(axis.travel(), 2.0 * std::numbers::pi) : axis.travel();
-      poses[static_cast<std::size_t>(i)][index_of(axis.name)] =
-          axis.travel_min + length * halton(i + 1, kBases[index_of(axis.name)]);
-    }
-  }
-  return poses;
-}
 
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,

@@ -22,9 +22,6 @@ struct RotaryCheck {
   RotaryLeft before, ideal, exported;
 };
 
-/// Poses spread evenly over the travel of all axes, of a rotary axis over a turn at most (Halton 1960).
-std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count);
-
 /// By the exact model with the identified errors of the rotary axes alone, mean of both directions; what the
 /// tables correct of linear axes is taken off as the ideal compensation has it. Nothing for a type without
 /// rotary axes.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
 namespace {
@@ -74,13 +75,6 @@ bool acts_on_machine(const Effect& effect) {
   return std::ranges::any_of(effect.amplitudes(), [](const EffectAmplitude& amplitude) {
     return amplitude.target.kind == TargetKind::Motion || amplitude.target.kind == TargetKind::ToolOffset;
   });
-}
-
-/// Share of a low-discrepancy sequence, 0..1 (van der Corput).
-double radical_inverse(int index, int base) {
-  double value = 0.0, digit = 1.0 / base;
-  for (int i = index; i > 0; i /= base, digit /= base) value += digit * (i % base);
-  return value;
 }
 
 /// Poses that fill the travel, with both directions of approach.

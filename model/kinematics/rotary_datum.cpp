@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <utility>
 
 #include "volcal/model/description/unknowns.h"
@@ -9,16 +10,10 @@
 namespace volcal {
 namespace {
 
+constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kDatumPoses = 120;
 constexpr double kDependent = 1e-6;  // share of a column that its predecessors leave
 constexpr double kLever = 0.3;       // m: makes rotations comparable with displacements
-
-/// Element `index` of the van der Corput sequence of a base, in [0, 1).
-double radical_inverse(int index, int base) {
-  double share = 0.0, place = 1.0 / base;
-  for (; index > 0; index /= base, place /= base) share += place * (index % base);
-  return share;
-}
 
 /// From the bed outwards, workpiece side first.
 std::vector<AxisName> rotary_axes_from_bed(const Machine& machine) {
@@ -94,13 +89,20 @@ void project_out(const Eigen::MatrixXd& span, Eigen::Index count, Eigen::VectorX
 
 }  // namespace
 
+double radical_inverse(int index, int base) {
+  double share = 0.0, place = 1.0 / base;
+  for (; index > 0; index /= base, place /= base) share += place * (index % base);
+  return share;
+}
+
 std::vector<AxisPosition> spread_poses(const Machine& machine, int count) {
   constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13};
   std::vector<AxisPosition> poses(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     for (const Axis& axis : machine.axes) {
+      const double length = is_rotary(axis.name) ? std::min(axis.travel(), kTurn) : axis.travel();
       const double share = radical_inverse(i + 1, kBases[index_of(axis.name)]);
-      poses[static_cast<std::size_t>(i)][index_of(axis.name)] = axis.travel_min + share * axis.travel();
+      poses[static_cast<std::size_t>(i)][index_of(axis.name)] = axis.travel_min + share * length;
     }
   }
   return poses;

@@ -10,7 +10,10 @@
 
 namespace volcal {
 
-/// Poses spread over the travel of every axis, the same at every call (Halton sequence).
+/// Element `index` of the van der Corput sequence of a base, in [0, 1): digits mirrored behind the point.
+double radical_inverse(int index, int base);
+/// Poses spread over the travel of every axis, of a rotary axis over a turn at most, the same at every call
+/// (Halton 1960).
 std::vector<AxisPosition> spread_poses(const Machine& machine, int count);
 
 /// Displacements of the functional point that are no error of an axis: of the workpiece (shift, rotation),

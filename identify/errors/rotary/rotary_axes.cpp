@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
 
@@ -32,6 +33,10 @@ void require_identified_rotary_axes(const FitResult& result, const AxisPosition&
                          " at 0, or identify its errors: name its functions and locations in the model file "
                          "and measure with the axis in several positions");
   }
+}
+
+std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count) {
+  return spread_poses(machine, count);
 }
 
 AxisLineErrors line_at_machine_zero(const Machine& machine, const PoseErrors<double>& errors, AxisName axis) {

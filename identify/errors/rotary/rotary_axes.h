@@ -15,6 +15,9 @@ std::vector<AxisName> identified_rotary_axes(const FitResult& result);
 /// Throws InputError where a rotary axis stands away from 0 whose errors were not identified.
 void require_identified_rotary_axes(const FitResult& result, const AxisPosition& position);
 
+/// Poses spread evenly over the travel of all axes, of a rotary axis over a turn at most.
+std::vector<AxisPosition> poses_of_all_axes(const Machine& machine, int count);
+
 /// Errors of an axis average line in the machine frame, all axes at 0.
 struct AxisLineErrors {
   Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< at the axis' nominal centre, m

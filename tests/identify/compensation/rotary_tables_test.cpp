@@ -12,6 +12,7 @@
 #include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/compensation/rotary_grid_csv.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/finding_codes.h"
 
 namespace volcal {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "tests/support/five_axis.h"
@@ -86,6 +87,23 @@ TEST(RotaryErrors, OfAModelThatHasNoneAreMissedAloud) {
   ModelSpec located;
   located.locations[{Component::X, AxisName::C}] = 12e-6;
   EXPECT_EQ(missing_rotary_errors(campaign, located).size(), 1U);
+}
+
+/// What turns with the table, Rot(-q) eta of EXC and EYC, is a shift of the workpiece and stays in no error
+/// motion; what turns the other way is an error motion.
+TEST(RotaryGauge, LeavesWhatTurnsWithTheTableToTheWorkpiece) {
+  constexpr double kSize = 10e-6;
+  for (const double sense : {-1.0, 1.0}) {
+    sim::TruthMachine truth(five_axis_machine("w C' A' b X Y Z t"));
+    truth.set_error({Component::X, AxisName::C}, [](double q) { return kSize * std::cos(q); });
+    truth.set_error({Component::Y, AxisName::C}, [=](double q) { return sense * kSize * std::sin(q); });
+    const FitResult result = fit(r_test_campaign(truth, GridPlan{}, 17), rotary_model(), {});
+    const ErrorSymbol radial{Component::X, AxisName::C};
+    const auto group = static_cast<std::size_t>(result.layout.find(radial)->group);
+    const Eigen::VectorXd coefficients = result.layout.coefficients(radial, result.parameters);
+    const double at_zero = result.layout.groups[group].basis->value(0.0, coefficients);
+    EXPECT_NEAR(at_zero, sense < 0.0 ? 0.0 : kSize, 0.3e-6);
+  }
 }
 
 /// Constants are locations: a tilt EBA of 30 urad at every position is EB0A, with the sign of its side.

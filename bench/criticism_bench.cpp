@@ -21,6 +21,7 @@
 #include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/noise/noise_estimate.h"
+#include "volcal/identify/numeric/blas_core.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/sim/machine/reference_machines.h"

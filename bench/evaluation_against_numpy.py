@@ -1,6 +1,6 @@
 """Times what an identified machine is evaluated with, against numpy, Ceres and the machine's own limits.
 
-    evaluation_against_numpy.py EVALUATION_BENCH [--repeats N] [--rounds N] [--noisy] [--write PAGE]
+    evaluation_against_numpy.py EVALUATION_BENCH PROGRAM_BENCH [--repeats N] [--rounds N] [--noisy] [--write PAGE]
 
 Programs that are compared run one after the other in every round. Results must agree: covariances to 1e-9 of the
 largest, numbers of a file to rounding. When other programs used the processors during a measurement it is repeated,
@@ -55,6 +55,8 @@ class Measured:
         if threads > 1:
             return
         own("points")
+        own("effect")
+        self._add("program", threads, machine.run([arguments.program_bench], threads))
         own("grid_file")
         for axes in AXES:
             require("twists and transforms, m,", own(f"transforms_{axes}")["largest_difference_m"], SAME_ERROR)
@@ -132,6 +134,21 @@ def grid_file_rows(parts):
            f"{own:.1f} s", f"writing as many bytes: {write:.2f} s", f"{own / write:.1f} times as long")
 
 
+def effect_table(parts):
+    figures, program = parts[("effect", 1)], parts[("program", 1)]
+    lines = ["| What | without | with the effect | times |", "|---|--:|--:|--:|"]
+    for name, what in (("covariances", f"3 x 3 covariances at {figures['nodes']:,} nodes, ms"),
+                       ("grid_file", f"spatial grid of {figures['file_points']:,} points for three tools, as text, ms"),
+                       ("points", f"errors at {figures['points']:,} points at random, one by one, ms")):
+        rigid, extended = figures[f"{name}_s"], figures[f"{name}_effect_s"]
+        lines.append(f"| {what}{mark(figures)} | {milliseconds(rigid)} | {milliseconds(extended)} "
+                     f"| {statistics.median(extended) / statistics.median(rigid):.2f} |")
+    plain, extended = (median(program, name) for name in ("rewritten", "rewritten_effect"))
+    lines.append(f"| `volcal compensate`, {program['lines']:,} short blocks, ms{mark(program)} | {1e3 * plain:,.0f} "
+                 f"| {1e3 * extended:,.0f} | {extended / plain:.2f} |")
+    return lines
+
+
 def transforms_table(parts):
     lines = ["| Axes | Exact transforms | Small angles | Twists, pose by pose | Twists side by side | Ratio to exact |",
              "|--:|--:|--:|--:|--:|--:|"]
@@ -154,12 +171,14 @@ def measured_text(machine, arguments):
     return "\n".join([machine.conditions(f"{own['blas']} (volcal), {numpy['blas']} (numpy)") + "  ",
                       f"Covariances differ by {parts[('covariance', 1)]['difference']:.0e} of u u (Ceres) and "
                       f"{numpy['difference']:.0e} of the largest (numpy); medians of {repeats}.", "", *table, "",
-                      "Mpoint/s of 16,384 poses with errors of their own, one thread:", "", *transforms_table(parts)])
+                      "The same work for a machine with one effect, EAY by the product of y and z, one thread:", "",
+                      *effect_table(parts), "", "Mpoint/s of 16,384 poses with errors of their own, one thread:", "", *transforms_table(parts)])
 
 
 def main():
     parser = quiet_machine.parser(__doc__)
     parser.add_argument("evaluation_bench")
+    parser.add_argument("program_bench")
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--rounds", type=int, default=3)
     arguments = parser.parse_args()

@@ -2,9 +2,9 @@
 //
 //   evaluation_bench PART --folder DIR [--threads N] [--repeats N]
 //
-// PART: covariance, volume, field, points, transforms_3, transforms_5, csv. `volume` and `csv` leave in DIR
-// what the peer reads: covariance.f64, rows.f64 (three per node), covariances.f64 (six numbers per node);
-// readings.csv.
+// PART: covariance, volume, field, points, effect, transforms_3, transforms_5, csv, grid_file. `volume` and
+// `csv` leave in DIR what the peer reads: covariance.f64, rows.f64 (three per node), covariances.f64 (six
+// numbers per node); readings.csv.
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -31,6 +31,7 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/linear_axis_errors.h"
 #include "volcal/identify/io/campaign/readings_reader.h"
+#include "volcal/identify/numeric/blas_core.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/plain_number.h"
@@ -51,6 +52,7 @@ constexpr int kCovarianceNodes = 21;      // per axis
 constexpr int kFieldNodes = 300;          // per axis
 constexpr std::size_t kPoints = 200'000;  // at random
 constexpr int kFileNodes = 215;           // per axis of a grid of 10^7 points
+constexpr int kSmallFileNodes = 60;       // per axis
 constexpr std::size_t kPoses = 16384;
 constexpr std::size_t kReadings = 1'000'000;
 constexpr std::uint64_t kSeedOfEvaluation = 5;
@@ -96,7 +98,8 @@ class Rounds {
 
 /// The reference problem, identified.
 struct Identified {
-  explicit Identified(int threads) : problem(reference_problem(kGrid)) {
+  explicit Identified(int threads, std::vector<EffectSpec> effects = {}) : problem(reference_problem(kGrid)) {
+    problem.model.effects = std::move(effects);
     FitOptions options;
     options.noise = NoisePolicy::White;
     options.threads = threads;
@@ -211,14 +214,19 @@ double largest_difference(const std::vector<Eigen::Vector3d>& a, const std::vect
   return largest;
 }
 
-Json points_part(const EvaluationArguments& arguments) {
-  const Identified machine(arguments.threads);
+std::vector<AxisPosition> random_positions(const Machine& machine) {
   sim::RandomStream random(kSeedOfEvaluation, "points");
   std::vector<AxisPosition> positions(kPoints);
   for (AxisPosition& position : positions) {
-    for (const Axis& axis : machine.result.machine.axes)
+    for (const Axis& axis : machine.axes)
       position[index_of(axis.name)] = random.uniform(axis.travel_min, axis.travel_max);
   }
+  return positions;
+}
+
+Json points_part(const EvaluationArguments& arguments) {
+  const Identified machine(arguments.threads);
+  const std::vector<AxisPosition> positions = random_positions(machine.result.machine);
   const Conditions conditions = default_conditions(machine.result);
   const auto many = LinearAxisErrors::make(machine.result, machine.tool().offset,
                                            MachineEffects(machine.result, machine.tool(), conditions));
@@ -235,6 +243,38 @@ Json points_part(const EvaluationArguments& arguments) {
   rounds.add("plain", [&] { one_by_one(plain); });
   Json json = rounds.json(arguments.repeats);
   json["largest_difference_m"] = largest_difference(errors, same);
+  json["points"] = kPoints;
+  return json;
+}
+
+/// What one effect costs: the same work on the machine identified without and with it.
+Json effect_part(const EvaluationArguments& arguments) {
+  const Identified rigid(arguments.threads), extended(arguments.threads, {coupling()});
+  const std::vector<AxisPosition> positions = random_positions(rigid.result.machine);
+  Rounds rounds;
+  std::vector<Eigen::Vector3d> errors(kPoints);
+  std::size_t bytes = 0;
+  for (const auto& [machine, name] : {std::pair(&rigid, ""), std::pair(&extended, "_effect")}) {
+    const FitResult& result = machine->result;
+    const Tool& tool = machine->tool();
+    const std::string suffix = name;
+    rounds.add("covariances" + suffix, [&result, &tool] {
+      ErrorGrid(result, tool, axis_grid(result.machine, kCovarianceNodes)).displacement_covariances();
+    });
+    rounds.add("grid_file" + suffix, [&result, &bytes] {
+      const TableFile grid = spatial_grid_file("volumetric_grid.csv", result, kSmallFileNodes,
+                                               default_conditions(result), TableContent::Errors);
+      bytes = 0;
+      grid.further([&bytes](std::string_view text) { bytes += text.size(); });
+    });
+    const DisplacementField field = displacement_field(result, tool, default_conditions(result));
+    rounds.add("points" + suffix, [&positions, &errors, field] {
+      for (std::size_t i = 0; i < kPoints; ++i) errors[i] = field(positions[i], kTowardsPlus);
+    });
+  }
+  Json json = rounds.json(arguments.repeats);
+  json["nodes"] = kCovarianceNodes * kCovarianceNodes * kCovarianceNodes;
+  json["file_points"] = kSmallFileNodes * kSmallFileNodes * kSmallFileNodes;
   json["points"] = kPoints;
   return json;
 }
@@ -346,6 +386,7 @@ Json run_evaluation(const EvaluationArguments& arguments) {
       {"volume", volume_part},
       {"field", field_part},
       {"points", points_part},
+      {"effect", effect_part},
       {"transforms_3", transforms_3_part},
       {"transforms_5", transforms_5_part},
       {"csv", csv_part},

@@ -17,6 +17,7 @@
 
 #include "measure.h"
 #include "reference_problem.h"
+#include "volcal/identify/numeric/blas_core.h"
 #include "volcal/identify/solve/normals/minimise.h"
 #include "volcal/identify/solve/normals/stated_sigma.h"
 

@@ -10,8 +10,6 @@ namespace volcal::bench {
 
 /// Wall-clock time of the work, s.
 double seconds(const std::function<void()>& work);
-/// Processor that OpenBLAS has found: "SkylakeX"; "not OpenBLAS" with another library.
-std::string blas_core();
 /// Largest resident size of this process so far, bytes.
 std::size_t peak_memory();
 

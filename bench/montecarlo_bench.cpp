@@ -16,6 +16,7 @@
 #include "reference_problem.h"
 #include "volcal/identify/montecarlo/draw_projection.h"
 #include "volcal/identify/montecarlo/path_solvers.h"
+#include "volcal/identify/numeric/blas_core.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"

@@ -1,6 +1,7 @@
 /// Throughput of `volcal compensate` on a finishing pass of short straight blocks, which need no splitting:
-/// program_bench [--lines N] [--step MM]. Prints JSON: MB/s of reading and interpreting alone and of
-/// rewriting, and the peak memory, which does not depend on the number of lines.
+/// program_bench [--lines N] [--step MM]. Prints JSON: seconds of reading and interpreting alone, of
+/// rewriting and of rewriting for a machine with an effect beside its error functions, and the peak memory,
+/// which does not depend on the number of lines.
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "measure.h"
+#include "reference_problem.h"
 #include "tests/support/identified_machines.h"
 #include "volcal/identify/program/nc_rewriter.h"
 #include "volcal/sim/machine/random_truth.h"
@@ -92,30 +94,59 @@ Timing timed(const ProgramArguments& arguments, Work work) {
   return timing;
 }
 
+FitResult with_coupling(FitResult result) {
+  constexpr double kPerSquareMetre = 1.8e-4;  // rad/m^2
+  result.identified.effects.push_back(coupling());
+  ParameterBlock block;
+  block.kind = ParameterKind::Effect;
+  block.name = "EAY by y z";
+  block.offset = result.layout.size++;
+  block.guess = Eigen::VectorXd::Zero(1);
+  result.layout.blocks.push_back(block);
+  result.parameters.conservativeResize(result.layout.size);
+  result.parameters[block.offset] = kPerSquareMetre;
+  result.covariance = Eigen::MatrixXd::Zero(result.layout.size, result.layout.size);
+  return result;
+}
+
+struct Rewriting {
+  Timing timing;
+  double written = 0.0;  // bytes
+  std::int64_t lines = 0;
+};
+
+Rewriting rewriting(const ProgramArguments& arguments, const FitResult& result) {
+  FunctionalPoint point;
+  point.without_length = result.machine.tools[0].offset;
+  NcRewriter rewriter(program_errors(result, "", default_conditions(result)), setup_of(result.machine), point,
+                      {}, "pass.ngc");
+  Rewriting done;
+  const NcRewriter::Sink sink = [&](std::string_view, std::span<const NcWrittenLine> lines) {
+    for (const NcWrittenLine& line : lines) done.written += static_cast<double>(line.text.size());
+  };
+  done.timing = timed(arguments, [&](const std::string& line) { rewriter.rewrite(line, sink); });
+  done.lines = rewriter.summary().lines_written;
+  return done;
+}
+
 nlohmann::ordered_json run_program_bench(const ProgramArguments& arguments) {
   sim::RandomTruthOptions options;
   options.reversal_max = 4e-6;
   const sim::TruthMachine truth = sim::random_truth(sim::reference_machines()[1], 1, options);
   const FitResult result = testing::result_of(truth);
-  const NcSetup setup = setup_of(truth.machine());
-  NcInterpreter interpreter(setup, "pass.ngc");
+  NcInterpreter interpreter(setup_of(truth.machine()), "pass.ngc");
   const Timing read = timed(arguments, [&](const std::string& line) { interpreter.execute(line); });
-  FunctionalPoint point;
-  point.without_length = truth.machine().tools[0].offset;
-  NcRewriter rewriter(program_errors(result, "", default_conditions(result)), setup, point, {}, "pass.ngc");
-  double written = 0.0;
-  const NcRewriter::Sink sink = [&](std::string_view, std::span<const NcWrittenLine> lines) {
-    for (const NcWrittenLine& line : lines) written += static_cast<double>(line.text.size());
-  };
-  const Timing rewritten = timed(arguments, [&](const std::string& line) { rewriter.rewrite(line, sink); });
-  constexpr double kMega = 1e6;
+  const Rewriting plain = rewriting(arguments, result);
+  const Rewriting extended = rewriting(arguments, with_coupling(result));
+  const auto once = [](const Timing& timing) { return std::vector<double>{timing.seconds}; };
   return {{"lines", arguments.lines},
-          {"megabytes", read.bytes / kMega},
-          {"interpreted_mb_per_s", read.bytes / kMega / read.seconds},
-          {"rewritten_mb_per_s", rewritten.bytes / kMega / rewritten.seconds},
-          {"written_megabytes", written / kMega},
-          {"lines_written", rewriter.summary().lines_written},
-          {"peak_megabytes", static_cast<double>(peak_memory()) / kMega}};
+          {"bytes", read.bytes},
+          {"interpreted_s", once(read)},
+          {"rewritten_s", once(plain.timing)},
+          {"rewritten_effect_s", once(extended.timing)},
+          {"bytes_written", plain.written},
+          {"lines_written", plain.lines},
+          {"peak_bytes", peak_memory()}};
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ def free_bytes():
 
 def environment(threads):
     clean = {key: value for key, value in os.environ.items()
-             if not key.startswith(("OPENBLAS_", "GOTO_", "OMP_", "MKL_"))}
+             if key == "OPENBLAS_CORETYPE" or not key.startswith(("OPENBLAS_", "GOTO_", "OMP_", "MKL_"))}
     return clean | {"OPENBLAS_NUM_THREADS": str(threads)}
 
 

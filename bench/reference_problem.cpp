@@ -140,4 +140,13 @@ ReferenceProblem reference_problem(const std::array<int, 3>& grid) {
   return problem;
 }
 
+EffectSpec coupling() {
+  EffectSpec effect;
+  effect.kind = "product-coupling";
+  effect.options.set("symbol", std::string("EAY"));
+  effect.options.set("axis", std::string("Y"));
+  effect.options.set("second_axis", std::string("Z"));
+  return effect;
+}
+
 }  // namespace volcal::bench

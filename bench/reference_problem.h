@@ -19,4 +19,7 @@ struct ReferenceProblem {
 /// the bit.
 ReferenceProblem reference_problem(const std::array<int, 3>& grid);
 
+/// EAY by the product of y and z: an effect that makes the error motion of an axis depend on another.
+EffectSpec coupling();
+
 }  // namespace volcal::bench

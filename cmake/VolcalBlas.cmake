@@ -6,3 +6,22 @@ function(volcal_one_blas target)
   list(APPEND libraries ${LAPACK_LIBRARIES} ${BLAS_LIBRARIES})
   set_target_properties(${target} PROPERTIES INTERFACE_LINK_LIBRARIES "${libraries}")
 endfunction()
+
+# Sets VARIABLE to what OPENBLAS_CORETYPE should be on this machine (identify/numeric/blas_core.h), often nothing:
+# tests and benchmarks run with it, as the program starts itself again with it.
+function(volcal_better_blas_core variable)
+  if(NOT DEFINED CACHE{VOLCAL_BETTER_BLAS_CORE})
+    try_run(run compiled
+      SOURCES ${PROJECT_SOURCE_DIR}/cmake/better_blas_core.cpp ${PROJECT_SOURCE_DIR}/identify/numeric/blas_core.cpp
+      CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${PROJECT_SOURCE_DIR}/include"
+      LINK_LIBRARIES ${BLAS_LIBRARIES} ${CMAKE_DL_LIBS}
+      CXX_STANDARD 20
+      RUN_OUTPUT_VARIABLE core
+      COMPILE_OUTPUT_VARIABLE said)
+    if(NOT compiled)
+      message(FATAL_ERROR "cmake/better_blas_core.cpp does not compile: ${said}")
+    endif()
+    set(VOLCAL_BETTER_BLAS_CORE "${core}" CACHE INTERNAL "OPENBLAS_CORETYPE where OpenBLAS does not know the processor")
+  endif()
+  set(${variable} "${VOLCAL_BETTER_BLAS_CORE}" PARENT_SCOPE)
+endfunction()

@@ -1,5 +1,5 @@
 # Writes the ctest entries of a test program, one for every suite, into OUTPUT:
-#   cmake -D PROGRAM=... -D FOLDER=... -D "LONG=FOLDER SUITE SECONDS SHARDS;..." -D RESULTS=... -D OUTPUT=... -P list_suites.cmake
+#   cmake -D PROGRAM=... -D FOLDER=... -D "LONG=FOLDER SUITE SECONDS SHARDS;..." -D ENVIRONMENT=... -D RESULTS=... -D OUTPUT=... -P list_suites.cmake
 # Each entry leaves the outcome of its cases as RESULTS/ENTRY.xml, which scripts/count-tests reads.
 
 cmake_policy(VERSION 3.25)
@@ -21,7 +21,7 @@ function(volcal_entry name suite cost)
   string(APPEND entries "add_test([=[${name}]=] \"${PROGRAM}\" \"--gtest_filter=${suite}.*\" "
                         "\"--gtest_output=xml:${RESULTS}/${file}.xml\")\n"
                         "set_tests_properties([=[${name}]=] PROPERTIES COST ${cost} LABELS \"${labels}\" "
-                        "ENVIRONMENT \"OPENBLAS_NUM_THREADS=1;${ARGN}\"")
+                        "ENVIRONMENT \"${ENVIRONMENT};${ARGN}\"")
   if(FOLDER STREQUAL "linuxcnc")  # two rs274 at once crash each other: they share memory
     string(APPEND entries " RESOURCE_LOCK linuxcnc")
   endif()

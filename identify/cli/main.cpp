@@ -96,6 +96,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  volcal::cli::start_with_better_kernels(argv);
   volcal::cli::remember_command_line(argc, argv);
   FLAGS_minloglevel = google::GLOG_FATAL;  // what Ceres warns of, the status of the result says
   volcal::cli::prepare_process();

@@ -8,11 +8,13 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <mutex>
 #include <system_error>
 #include <thread>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/numeric/blas_core.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/text/temporary_paths.h"
 
@@ -113,6 +115,12 @@ void hear_of_processor_limit() {
 }
 
 }  // namespace
+
+void start_with_better_kernels(char** arguments) {
+  const auto core = better_blas_core();
+  if (!core || ::setenv("OPENBLAS_CORETYPE", core->c_str(), 0) != 0) return;
+  ::execv("/proc/self/exe", arguments);  // returns where that is not possible: the kernels stay what they are
+}
 
 void prepare_process() {
   occupy_closed_streams();

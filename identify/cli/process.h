@@ -6,6 +6,10 @@
 
 namespace volcal::cli {
 
+/// First of all, since OpenBLAS reads its variable when it is loaded: where it does not know the processor,
+/// the program starts again with the kernels that the processor has (blas_core.h).
+void start_with_better_kernels(char** arguments);
+
 /// Once, at the beginning of main(): standard streams that are closed cannot be taken by a file of the
 /// result; a limit of file sizes (ulimit -f) becomes an error of writing; at an interruption (SIGINT,
 /// SIGTERM, SIGHUP) and at the end of the processor time (ulimit -t) temporary files are removed and the

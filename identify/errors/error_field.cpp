@@ -93,6 +93,7 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
   for (const EffectColumn& column : effects_.columns()) {
     if (std::ranges::find(condition_parameters_, column.parameter) == condition_parameters_.end())
       condition_parameters_.push_back(column.parameter);
+    places_of_columns_.push_back(place_of(column.parameter));
   }
   if (const ParameterBlock* block = layout_.find_block("tool " + tool.name)) {
     tool_parameter_ = block->offset;
@@ -150,7 +151,7 @@ Eigen::Index ErrorField::place_of(int parameter) const {
 }
 
 void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition& position,
-                                    PoseErrorRows& rows) const {
+                                    Eigen::Ref<PoseErrorRows> rows) const {
   for (const Expansion& expansion : expansions_) {
     if (expansion.parameter < 0) continue;
     const JointLever& lever = joint_lever(levers, chain_.joint_count(), expansion.axis);
@@ -161,47 +162,53 @@ void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition
 }
 
 void ErrorField::add_effect_rows(const JointLever* levers, const AxisPosition& position,
-                                 const ApproachDirection& direction, PoseErrorRows& rows) const {
-  if (effects_.empty()) return;
-  const AxisPosition held = measured_.held(position);
-  const Eigen::MatrixXd drivers = effects_.drivers_and_slopes({&held, 1}, {&direction, 1});
-  const Eigen::Matrix3d rotation_wt = chain_.nominal_rotation_wt(position);
+                                 const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& drivers,
+                                 Eigen::Ref<PoseErrorRows> rows) const {
   for (std::size_t c = 0; c < effects_.columns().size(); ++c) {
     const EffectColumn& column = effects_.columns()[c];
-    double driver = drivers(0, static_cast<Eigen::Index>(c));
+    double driver = drivers[static_cast<Eigen::Index>(c)];
     if (column.shape >= 0) driver *= parameters_[column.amplitude_parameter];
+    auto row = rows.col(places_of_columns_[c]);
     if (column.target.kind == TargetKind::ToolOffset) {
-      rows.col(place_of(column.parameter)).head<3>() += driver * rotation_wt.col(column.target.component);
+      row.head<3>() += driver * chain_.nominal_rotation_wt(position).col(column.target.component);
     } else if (column.target.kind == TargetKind::Motion) {
       const JointLever& lever = joint_lever(levers, chain_.joint_count(), column.target.symbol.axis);
-      rows.col(place_of(column.parameter)) += driver * motion_column(lever, column.target.symbol.component);
+      row += driver * motion_column(lever, column.target.symbol.component);
     }
   }
 }
 
-PoseErrorRows ErrorField::condition_rows(const AxisPosition& position,
+PoseErrorRows ErrorField::condition_rows(std::span<const AxisPosition> positions,
                                          const ApproachDirection& direction) const {
-  PoseErrorRows rows = PoseErrorRows::Zero(6, static_cast<Eigen::Index>(condition_parameters_.size()));
+  const auto count = static_cast<Eigen::Index>(condition_parameters_.size());
+  PoseErrorRows rows = PoseErrorRows::Zero(6, count * static_cast<Eigen::Index>(positions.size()));
   if (condition_parameters_.empty()) return rows;
-  JointLever levers[kAxisCount];
-  chain_.levers(position, tool_.offset, levers);
-  add_expansion_rows(levers, position, rows);
-  add_effect_rows(levers, position, direction, rows);
+  Eigen::MatrixXd drivers;
+  if (!effects_.empty()) {
+    std::vector<AxisPosition> held(positions.size());
+    std::ranges::transform(positions, held.begin(), [this](const auto& at) { return measured_.held(at); });
+    drivers = effects_.drivers_and_slopes(held, {&direction, 1});
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto pose = static_cast<Eigen::Index>(i);
+    JointLever levers[kAxisCount];
+    chain_.levers(positions[i], tool_.offset, levers);
+    add_expansion_rows(levers, positions[i], rows.middleCols(pose * count, count));
+    if (!effects_.empty())
+      add_effect_rows(levers, positions[i], drivers.row(pose), rows.middleCols(pose * count, count));
+  }
   return rows;
 }
 
 PoseErrorVector ErrorField::condition_value(const AxisPosition& position,
-                                            const ApproachDirection& direction) const {
+                                            const Eigen::Ref<const PoseErrorRows>& rows) const {
   PoseErrorVector error = known_expansion(position);
-  const PoseErrorRows rows = condition_rows(position, direction);
   for (const Expansion& expansion : expansions_) {
     if (expansion.parameter >= 0)
       error += rows.col(place_of(expansion.parameter)) * parameters_[expansion.parameter];
   }
-  for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
-    const int parameter = effects_.columns()[c].parameter;
-    error += rows.col(place_of(parameter)) * parameters_[parameter];
-  }
+  for (std::size_t c = 0; c < effects_.amplitude_count(); ++c)
+    error += rows.col(places_of_columns_[c]) * parameters_[effects_.columns()[c].parameter];
   return error;
 }
 
@@ -314,41 +321,57 @@ struct LinearDisplacements::Parts {
   MachineEffects single;                        ///< effects of one axis; empty where `polynomials` hold them
   std::optional<LinearAxisErrors> polynomials;  ///< in place of the chain
 
-  Vector3d of_effects(const MachineEffects& effects, const AxisPosition& position,
-                      const ApproachDirection& direction) const;
-  /// Displacements per unit of every amplitude.
-  Eigen::Matrix<double, 3, Eigen::Dynamic> unit_columns(const MachineEffects& effects,
-                                                        const Eigen::MatrixXd& drivers, Eigen::Index row,
-                                                        const AxisPosition& position) const;
+  /// Displacement by one unit of an amplitude's driver: linear in the positions of the linear axes.
+  struct Lever {
+    Vector3d at_zero;
+    Eigen::Matrix3d per_metre;
+
+    Vector3d at(const AxisPosition& position) const {
+      return at_zero + per_metre * Vector3d(position[0], position[1], position[2]);
+    }
+  };
+  std::vector<Lever> coupled_levers, single_levers;  ///< by amplitude
+
+  std::vector<Lever> levers_of(const MachineEffects& effects) const;
+  Vector3d of_effects(const MachineEffects& effects, std::span<const Lever> levers,
+                      const AxisPosition& position, const ApproachDirection& direction) const;
 };
 
-Eigen::Matrix<double, 3, Eigen::Dynamic> LinearDisplacements::Parts::unit_columns(
-    const MachineEffects& effects, const Eigen::MatrixXd& drivers, Eigen::Index row,
-    const AxisPosition& position) const {
-  JointLever levers[kAxisCount];
-  chain.levers(position, tool.offset, levers);
-  Eigen::Matrix<double, 3, Eigen::Dynamic> units =
-      Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, static_cast<Eigen::Index>(effects.amplitude_count()));
-  for (Eigen::Index c = 0; c < units.cols(); ++c) {
-    const EffectTarget& target = effects.columns()[static_cast<std::size_t>(c)].target;
-    if (target.kind == TargetKind::ToolOffset) {
-      units(target.component, c) = drivers(row, c);
-    } else if (target.kind == TargetKind::Motion && !is_rotary(target.symbol.axis)) {
-      units.col(c) = drivers(row, c) * KinematicChain::motion_lever_w(
-                                           joint_lever(levers, chain.joint_count(), target.symbol.axis),
-                                           target.symbol.component);
+std::vector<LinearDisplacements::Parts::Lever> LinearDisplacements::Parts::levers_of(
+    const MachineEffects& effects) const {
+  const auto at = [&](const EffectTarget& target, const AxisPosition& position) -> Vector3d {
+    if (target.kind == TargetKind::ToolOffset) return Vector3d::Unit(target.component);
+    if (target.kind != TargetKind::Motion || is_rotary(target.symbol.axis)) return Vector3d::Zero();
+    JointLever levers[kAxisCount];
+    chain.levers(position, tool.offset, levers);
+    return KinematicChain::motion_lever_w(joint_lever(levers, chain.joint_count(), target.symbol.axis),
+                                          target.symbol.component);
+  };
+  std::vector<Lever> levers;
+  for (std::size_t c = 0; c < effects.amplitude_count(); ++c) {
+    const EffectTarget& target = effects.columns()[c].target;
+    Lever lever{at(target, {}), Eigen::Matrix3d::Zero()};
+    for (const AxisName axis : kLinearAxes) {
+      AxisPosition a_metre_on{};
+      a_metre_on[index_of(axis)] = 1.0;
+      lever.per_metre.col(direction_of(axis)) = at(target, a_metre_on) - lever.at_zero;
     }
+    levers.push_back(lever);
   }
-  return units;
+  return levers;
 }
 
-Vector3d LinearDisplacements::Parts::of_effects(const MachineEffects& effects, const AxisPosition& position,
+Vector3d LinearDisplacements::Parts::of_effects(const MachineEffects& effects, std::span<const Lever> levers,
+                                                const AxisPosition& position,
                                                 const ApproachDirection& direction) const {
   const AxisPosition held = measured.held(position);
-  const auto units = unit_columns(effects, effects.drivers({&held, 1}, {&direction, 1}), 0, position);
+  const Eigen::MatrixXd drivers = effects.drivers({&held, 1}, {&direction, 1});
   Vector3d displacement = Vector3d::Zero();
-  for (Eigen::Index c = 0; c < units.cols(); ++c)
-    displacement += units.col(c) * parameters[effects.columns()[static_cast<std::size_t>(c)].parameter];
+  for (std::size_t c = 0; c < levers.size(); ++c) {
+    const double value =
+        parameters[effects.columns()[c].parameter] * drivers(0, static_cast<Eigen::Index>(c));
+    displacement += value * levers[c].at(position);
+  }
   return displacement;
 }
 
@@ -380,6 +403,8 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
                                              {},
                                              effects.subset(coupled),
                                              effects.subset(single),
+                                             {},
+                                             {},
                                              {}});
   for (const Axis& axis : result.machine.axes) {
     if (!axis.expansion || is_rotary(axis.name)) continue;
@@ -394,6 +419,8 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
   if (parts->polynomials) {
     parts->single = parts->single.subset(parts->polynomials->effects_left_out());
   }
+  parts->coupled_levers = parts->levers_of(parts->coupled);
+  parts->single_levers = parts->levers_of(parts->single);
   parts_ = std::move(parts);
 }
 
@@ -414,21 +441,20 @@ Vector3d LinearDisplacements::rigid(const AxisPosition& position, const Approach
   for (const Parts::Strain& each : parts_->strains)
     displacement[static_cast<Eigen::Index>(each.axis)] += each.strain * (position[each.axis] - each.home);
   if (!parts_->single.empty())
-    displacement += parts_->of_effects(parts_->single, without_rotary_axes(position), direction);
+    displacement +=
+        parts_->of_effects(parts_->single, parts_->single_levers, without_rotary_axes(position), direction);
   return displacement;
 }
 
 Vector3d LinearDisplacements::at(const AxisPosition& position, const ApproachDirection& direction) const {
-  Vector3d displacement = rigid(position, direction);
-  if (has_coupled())
-    displacement += parts_->of_effects(parts_->coupled, without_rotary_axes(position), direction);
-  return displacement;
+  return rigid(position, direction) + coupled(position, direction);
 }
 
 Vector3d LinearDisplacements::coupled(const AxisPosition& position,
                                       const ApproachDirection& direction) const {
-  return has_coupled() ? parts_->of_effects(parts_->coupled, without_rotary_axes(position), direction)
-                       : Vector3d(Vector3d::Zero());
+  if (!has_coupled()) return Vector3d::Zero();
+  return parts_->of_effects(parts_->coupled, parts_->coupled_levers, without_rotary_axes(position),
+                            direction);
 }
 
 std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> LinearDisplacements::coupled_units(
@@ -438,10 +464,15 @@ std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> LinearDisplacements::coupl
     linear[i] = without_rotary_axes(positions[i]);
     held[i] = parts_->measured.held(linear[i]);
   }
-  const Eigen::MatrixXd drivers = parts_->coupled.drivers(held, directions);
+  const MachineEffects& effects = parts_->coupled;
+  const Eigen::MatrixXd drivers = effects.drivers(held, directions);
   std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> units;
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    units.push_back(parts_->unit_columns(parts_->coupled, drivers, static_cast<Eigen::Index>(i), linear[i]));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    auto& of_pose = units.emplace_back(3, drivers.cols());
+    for (Eigen::Index c = 0; c < drivers.cols(); ++c)
+      of_pose.col(c) = drivers(static_cast<Eigen::Index>(i), c) *
+                       parts_->coupled_levers[static_cast<std::size_t>(c)].at(linear[i]);
+  }
   return units;
 }
 

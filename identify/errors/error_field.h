@@ -78,9 +78,15 @@ class ErrorField {
 
   /// Parameters of expansions and effects, and the part of rows() that belongs to them.
   const std::vector<int>& condition_parameters() const { return condition_parameters_; }
-  PoseErrorRows condition_rows(const AxisPosition& position, const ApproachDirection& direction) const;
-  /// Share of the error by expansions and effects.
-  PoseErrorVector condition_value(const AxisPosition& position, const ApproachDirection& direction) const;
+  PoseErrorRows condition_rows(const AxisPosition& position, const ApproachDirection& direction) const {
+    return condition_rows({&position, 1}, direction);
+  }
+  /// The same at many positions, side by side.
+  PoseErrorRows condition_rows(std::span<const AxisPosition> positions,
+                               const ApproachDirection& direction) const;
+  /// Share of the error by expansions and effects, of the condition_rows() there.
+  PoseErrorVector condition_value(const AxisPosition& position,
+                                  const Eigen::Ref<const PoseErrorRows>& rows) const;
   /// Whether there are expansions or effects.
   bool depends_on_conditions() const { return !effects_.empty() || !expansions_.empty(); }
   /// Share of the error that is no parameter's: known expansions of all scales, or of one axis.
@@ -105,9 +111,12 @@ class ErrorField {
   Eigen::Index place_of(int parameter) const;
   PoseErrorRows rows_at(const AxisPosition& position, const AxisPosition& functions_at,
                         const ApproachDirection& direction) const;
-  void add_expansion_rows(const JointLever* levers, const AxisPosition& position, PoseErrorRows& rows) const;
+  void add_expansion_rows(const JointLever* levers, const AxisPosition& position,
+                          Eigen::Ref<PoseErrorRows> rows) const;
+  /// `drivers`: of every column of the effects at that position.
   void add_effect_rows(const JointLever* levers, const AxisPosition& position,
-                       const ApproachDirection& direction, PoseErrorRows& rows) const;
+                       const Eigen::Ref<const Eigen::RowVectorXd, 0, Eigen::InnerStride<>>& drivers,
+                       Eigen::Ref<PoseErrorRows> rows) const;
 
   KinematicChain chain_;
   Tool tool_;
@@ -117,6 +126,7 @@ class ErrorField {
   MachineEffects effects_;
   std::vector<Expansion> expansions_;
   std::vector<int> condition_parameters_;
+  std::vector<Eigen::Index> places_of_columns_;  ///< in condition_parameters_, of the effects' columns
   int tool_parameter_ = -1;
   double stated_tool_variance_ = 0.0;
 };

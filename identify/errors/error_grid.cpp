@@ -376,14 +376,17 @@ MatrixXd ErrorGrid::at_nodes(Rows rows, std::size_t axis, Eigen::Index count) co
 /// What effects and expansions add to a plane of nodes.
 class ErrorGrid::Conditional {
  public:
-  explicit Conditional(const ErrorGrid& grid) : grid_(grid), parameters_(grid.field_.condition_parameters()) {
+  enum class Needs { Displacements, Rotations };  ///< the second beside the first
+
+  Conditional(const ErrorGrid& grid, Needs needs)
+      : grid_(grid), parameters_(grid.field_.condition_parameters()) {
     const Eigen::MatrixXd& covariance = grid.result_.covariance;
     if (covariance.size() == 0) return;
     own_ = covariance(parameters_, parameters_);
     for (const int parameter : parameters_) {
       const Eigen::VectorXd column = covariance.col(parameter);
       shared_displacement_.push_back(grid.displacements_by(column));
-      shared_rotation_.push_back(grid.rotations_by(column));
+      if (needs == Needs::Rotations) shared_rotation_.push_back(grid.rotations_by(column));
     }
   }
 
@@ -394,24 +397,27 @@ class ErrorGrid::Conditional {
     AxisGrid plane = grid_.grid_;
     plane.nodes[0] = {grid_.grid_.nodes[0][first]};
     positions_ = plane.positions();
+    rows_ = grid_.field_.condition_rows(positions_, {});
     displacement_.clear();
     rotation_.clear();
-    for (std::size_t j = 0; j < shared_displacement_.size(); ++j) {
-      displacement_.push_back(sum_planes(plane_of(shared_displacement_[j], first)));
-      rotation_.push_back(sum_planes(plane_of(shared_rotation_[j], first)));
-    }
+    for (const PlaneTables& shared : shared_displacement_)
+      displacement_.push_back(sum_planes(plane_of(shared, first)));
+    for (const PlaneTables& shared : shared_rotation_)
+      rotation_.push_back(sum_planes(plane_of(shared, first)));
   }
 
   /// Adds to the covariance of the displacement.
   void add_covariance(std::size_t node, Covariance3& covariance) const {
-    const Eigen::Matrix<double, 3, Eigen::Dynamic> rows =
-        grid_.field_.condition_rows(positions_[node], {}).topRows<3>();
+    const auto rows = rows_of(node).topRows<3>();
     Matrix3d added = Matrix3d::Zero();
     for (std::size_t j = 0; j < displacement_.size(); ++j) {
       const Matrix3d both = rows.col(static_cast<Eigen::Index>(j)) * displacement_[j][node].transpose();
       added += both + both.transpose();
     }
-    if (own_.size() > 0) added += rows * own_ * rows.transpose();
+    for (Eigen::Index j = 0; j < own_.cols(); ++j) {
+      for (Eigen::Index i = 0; i < own_.rows(); ++i)
+        added += own_(i, j) * (rows.col(i) * rows.col(j).transpose());
+    }
     covariance.xx += added(0, 0);
     covariance.xy += added(0, 1);
     covariance.xz += added(0, 2);
@@ -421,19 +427,28 @@ class ErrorGrid::Conditional {
   }
 
   void add(std::size_t node, NodeError& error) const {
-    const PoseErrorRows rows = grid_.field_.condition_rows(positions_[node], {});
-    error.value += grid_.field_.condition_value(positions_[node], {});
+    const auto rows = rows_of(node);
+    error.value += grid_.field_.condition_value(positions_[node], rows);
     for (std::size_t j = 0; j < displacement_.size(); ++j) {
       PoseErrorVector shared;
       shared << displacement_[j][node], rotation_[j][node];
       error.variance += 2.0 * rows.col(static_cast<Eigen::Index>(j)).cwiseProduct(shared);
     }
-    if (own_.size() > 0) error.variance += (rows * own_).cwiseProduct(rows).rowwise().sum();
+    for (Eigen::Index j = 0; j < own_.cols(); ++j) {
+      for (Eigen::Index i = 0; i < own_.rows(); ++i)
+        error.variance += own_(i, j) * rows.col(i).cwiseProduct(rows.col(j));
+    }
   }
 
  private:
+  PoseErrorRows::ConstColsBlockXpr rows_of(std::size_t node) const {
+    const auto count = static_cast<Eigen::Index>(parameters_.size());
+    return rows_.middleCols(static_cast<Eigen::Index>(node) * count, count);
+  }
+
   const ErrorGrid& grid_;
   std::vector<int> parameters_;
+  PoseErrorRows rows_;  ///< of the plane's nodes
   MatrixXd own_;
   std::vector<PlaneTables> shared_displacement_, shared_rotation_;  ///< by parameter
   std::vector<AxisPosition> positions_;
@@ -447,7 +462,7 @@ void ErrorGrid::for_each_plane_of_covariances(const UseOfPlane& use) const {
   const auto [a, b, c] = grid_.counts();
   std::vector<Covariance3> plane(b * c);
   CovarianceSums sums(grid_, blocks);
-  Conditional conditional(*this);
+  Conditional conditional(*this, Conditional::Needs::Displacements);
   for (std::size_t i = 0; i < a; ++i) {
     for (std::size_t j = 0; j < b; ++j) sums.along_third(i, j, plane.data() + j * c);
     if (!conditional.empty()) {
@@ -497,7 +512,7 @@ void ErrorGrid::for_each_plane(const UseOfNodes& use) const {
   const ErrorBlocks blocks{own(0), own(1), own(2), both(0, 1), both(0, 2), both(1, 2)};
   const auto [a, b, c] = grid_.counts();
   CovarianceSums sums(grid_, blocks);
-  Conditional conditional(*this);
+  Conditional conditional(*this, Conditional::Needs::Rotations);
   std::vector<Covariance3> covariances(b * c);
   std::vector<NodeError> nodes(b * c);
   for (std::size_t i = 0; i < a; ++i) {

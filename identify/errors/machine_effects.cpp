@@ -43,12 +43,18 @@ class PoseReadings {
       }
     }
     for (std::size_t i = 0; i < positions.size(); ++i)
-      view_->nominal_point_w[i] = chain_.nominal_point_w(positions[i], tool_offset_);
+      view_->nominal_point_w[i] = nominal_point(positions[i]);
     return *view_;
   }
 
  private:
   Readings& readings() { return campaign_.setups.front().readings; }
+
+  Eigen::Vector3d nominal_point(const AxisPosition& position) const {
+    const bool turned = position[3] != 0.0 || position[4] != 0.0 || position[5] != 0.0;
+    if (turned) return chain_.nominal_point_w(position, tool_offset_);
+    return tool_offset_ + Eigen::Vector3d(position[0], position[1], position[2]);
+  }
 
   void resize(std::size_t size) {
     Readings& all = readings();

@@ -24,15 +24,17 @@ struct ProgramRun {
   std::string errors;
 };
 
-/// `arguments` as in a shell; standard input is empty.
-inline ProgramRun run_program(const std::string& arguments) {
+/// `arguments` as in a shell, `before` what stands before the program: "env X=1"; standard input is empty.
+inline ProgramRun run_with(const std::string& before, const std::string& arguments) {
   const ScratchFolder folder;
   const std::string output = (folder.path() / "output").string(),
                     errors = (folder.path() / "errors").string();
   const std::string command =
-      std::string(VOLCAL_PROGRAM) + " " + arguments + " >" + output + " 2>" + errors + " </dev/null";
+      before + " " + VOLCAL_PROGRAM + " " + arguments + " >" + output + " 2>" + errors + " </dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(output), content(errors)};
 }
+
+inline ProgramRun run_program(const std::string& arguments) { return run_with("", arguments); }
 
 }  // namespace volcal::testing

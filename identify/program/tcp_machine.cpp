@@ -22,15 +22,20 @@ FiveAxisSettings tcp_settings(const Eigen::Vector3d& tool_offset, bool orientati
 }
 
 /// Rotary positions within a travel of a turn.
+AxisPosition counted_within(const Machine& machine, AxisPosition position) {
+  for (const Axis& axis : machine.axes) {
+    double& q = position[index_of(axis.name)];
+    const bool turns = is_rotary(axis.name) && axis.travel() > kTcpTurn - 1e-6;
+    if (turns && (q < axis.travel_min || q > axis.travel_max))
+      q -= kTcpTurn * std::floor((q - axis.travel_min) / kTcpTurn);
+  }
+  return position;
+}
+
 JointErrorSource within_a_turn(const Machine& machine, JointErrorSource errors) {
-  return [machine, errors = std::move(errors)](AxisPosition position, const ApproachDirection& direction) {
-    for (const Axis& axis : machine.axes) {
-      double& q = position[index_of(axis.name)];
-      const bool turns = is_rotary(axis.name) && axis.travel() > kTcpTurn - 1e-6;
-      if (turns && (q < axis.travel_min || q > axis.travel_max))
-        q -= kTcpTurn * std::floor((q - axis.travel_min) / kTcpTurn);
-    }
-    return errors(position, direction);
+  return [machine, errors = std::move(errors)](const AxisPosition& position,
+                                               const ApproachDirection& direction) {
+    return errors(counted_within(machine, position), direction);
   };
 }
 
@@ -56,6 +61,10 @@ AxisPosition TcpMachine::with_linear(const Eigen::Vector3d& linear, const Eigen:
     position[k + 3] = rotary[static_cast<Eigen::Index>(k)];
   }
   return position;
+}
+
+AxisPosition TcpMachine::counted(const AxisPosition& position) const {
+  return counted_within(machine_, position);
 }
 
 Eigen::Matrix3d TcpMachine::directions_at(const AxisPosition& position) const {

@@ -30,6 +30,8 @@ class TcpMachine {
 
   /// Where the control sends the axes. Throws std::runtime_error where X, Y, Z do not reach the point.
   AxisPosition axes_at(const TcpPose& pose) const;
+  /// The same place with rotary positions within the travel of axes that travel a turn.
+  AxisPosition counted(const AxisPosition& position) const;
   /// What to program so that the functional point is at the pose's: to 1 nm by the exact model. The rotary
   /// axes take back their own rotation, and with `orientation` what FOR adds, which is bounded at a pole
   /// (five_axis_compensation.h).

@@ -328,7 +328,7 @@ void TcpRewriter::note_node(const Node& node) {
       std::max(summary_.largest_correction, (node.sent.point_w - meant.point_w).norm());
   summary_.largest_turn =
       std::max(summary_.largest_turn, (node.sent.rotary - meant.rotary).cwiseAbs().maxCoeff());
-  if (options_.measured && options_.measured->is_beyond(tcp_->axes_at(meant))) {
+  if (options_.measured && options_.measured->is_beyond(tcp_->counted(tcp_->axes_at(meant)))) {
     if (options_.within_readings)
       place().refuse("the motion goes beyond the positions that were measured",
                      "measure there, or leave --no-extrapolation out: the last measured error is then held");

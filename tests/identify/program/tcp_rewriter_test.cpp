@@ -316,6 +316,25 @@ TEST(TcpRewriter, RefusesWhatItCannotFollow) {
     EXPECT_THAT(testing::refusal([&] { tcp_rewritten(begin + program, result); }), HasSubstr("part.ngc:5"));
 }
 
+/// C is measured from -180 to 180 degrees, all of a turn; A up to 20 degrees.
+TEST(TcpRewriter, SaysWhatLiesBeyondTheReadings) {
+  FitResult result = five_axis_result(testing::kTrunnion);
+  const std::string begin = "G21 G90 G54\nG0 A0 C0\nG43.4 H1\nG0 X0 Y0 Z0\n";
+  TcpRewriteOptions options;
+  options.measured = MeasuredTravel(result);
+  options.measured->min[index_of(AxisName::A)] = -20.0 * kRadianPerDegree;
+  options.measured->max[index_of(AxisName::A)] = 20.0 * kRadianPerDegree;
+  options.measured->min[index_of(AxisName::C)] = -180.0 * kRadianPerDegree;
+  options.measured->max[index_of(AxisName::C)] = 180.0 * kRadianPerDegree;
+  EXPECT_EQ(tcp_rewritten(begin + "G1 A10 C200 F100\n", result, options).summary.beyond_readings, 0);
+  const TcpSummary beyond = tcp_rewritten(begin + "G1 A30 F100\n", result, options).summary;
+  EXPECT_GT(beyond.beyond_readings, 0);
+  EXPECT_EQ(beyond.first_beyond, 5);
+  options.within_readings = true;
+  EXPECT_THAT(testing::refusal([&] { tcp_rewritten(begin + "G1 A30 F100\n", result, options); }),
+              HasSubstr("beyond the positions that were measured"));
+}
+
 TEST(TcpRewriter, FollowsTraoriAndInverseTime) {
   const FitResult result = five_axis_result(testing::kHead);
   const std::string begin = "G21 G90 G54\nG0 B0 C0\nN20 TRAORI\nG0 X40 Y10 Z30\n";

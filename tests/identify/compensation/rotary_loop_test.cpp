@@ -108,6 +108,10 @@ TEST_P(RotaryTablesInTheLoop, LeaveWhatIsPrinted) {
   expect_as_printed(after.rms, made.rotary_check->exported.rms, 0.05e-6, "RMS");
   expect_as_printed(after.max, made.rotary_check->exported.max, 0.1e-6, "largest");
   expect_as_printed(after.axis_rms, made.rotary_check->exported.axis_rms, 0.5e-6, "axis");
+  EXPECT_NEAR(after.rms, made.rotary_check->ideal.rms, 0.2e-6);
+  const bool turns = std::string(GetParam().format) != "isg-csv";
+  EXPECT_NEAR(after.axis_rms, (turns ? made.rotary_check->ideal : made.rotary_check->before).axis_rms,
+              0.6e-6);
   if (loop_options(GetParam()).type.has(CompensationPart::RotaryLocation)) {
     EXPECT_LT(after.rms, 0.5 * before.rms);  // R-POS alone may leave more: errors of lines may cancel its own
   }
@@ -320,6 +324,31 @@ TEST(IsgRotaryBlocks, ByHand) {
   EXPECT_THAT(find_file(of_component, "volcomp.csv")->content, HasSubstr("\n0.000000 -0.010000000000 "));
   EXPECT_THAT(find_file(of_component, "volcomp.csv")->content, HasSubstr("0.012000000000 0.000000000000"))
       << "location errors are those of the axis line on both sides";
+}
+
+/// Displacements of a linear axis on the workpiece side change their sign with the setting, and the control
+/// takes them as what they are: EXX = 10 um at X = 100 mm.
+TEST(IsgRotaryBlocks, LinearAxesOfTheWorkpieceSideFollowTheSetting) {
+  const FitResult result = testing::result_with(
+      testing::rotary_machine(testing::kHead),
+      {.functions = {{"EXX", [](double q) { return 1e-4 * q; }}}, .locations = {{"EX0C", 5e-6}}}, 6);
+  for (const char* type : {"L-VOL+R-VOL", "L-POS+R-VOL"}) {
+    for (const char* meaning : {"relative", "component"}) {
+      const auto files = write_tables(*find_table_format("isg-csv"), result,
+                                      loop_options({"isg-csv", type, "", {{"workpiece_errors", meaning}}}));
+      const bool relative = std::string(meaning) == "relative";
+      EXPECT_THAT(find_file(files, "volcomp.csv")->content,
+                  HasSubstr(relative ? "300.000000 0.030000000" : "300.000000 -0.030000000"))
+          << type;
+      const CompensationTables tables = find_table_format("isg-csv")->read(files);
+      sim::MachineState state;
+      state.position = {0.1, 0.0, 0.0, 0.0, 0.0, 0.0};
+      const auto control =
+          sim::command_correction({control_tables(*find_table_format("isg-csv"), files), 0.0, {}});
+      EXPECT_NEAR(tables.correction(state.position, {}).linear.x(), -15e-6, 1e-9) << type << meaning;
+      EXPECT_NEAR(control(state).linear.x(), -15e-6, 1e-9) << type << meaning;
+    }
+  }
 }
 
 /// Of a table at 90 degrees, 100 mm from its axis: ECC = 20 urad moves the tool 2 um towards -x of the

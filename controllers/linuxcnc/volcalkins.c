@@ -1,13 +1,19 @@
-/* volcalkins: LinuxCNC kinematics of a machine with linear axes X Y Z and volumetric compensation.
+/* volcalkins: LinuxCNC kinematics of a machine with linear axes X Y Z, rotary axes of the table or of the
+ * head, and volumetric compensation.
  *
  * Copyright 2026 The volcal authors
  * SPDX-License-Identifier: GPL-2.0-or-later
  *
- * This file alone of volcal is under the GNU General Public License, version 2 or (at your option) any
- * later version: it is compiled against headers of LinuxCNC and loaded into it, which are under the GPL. It
- * comes WITHOUT ANY WARRANTY. The licence: https://www.gnu.org/licenses/old-licenses/gpl-2.0.html
+ * This file and volcalkins_rotary.h alone of volcal are under the GNU General Public License, version 2 or
+ * (at your option) any later version: they are compiled against headers of LinuxCNC and loaded into it, which
+ * are under the GPL. They come WITHOUT ANY WARRANTY. The licence:
+ * https://www.gnu.org/licenses/old-licenses/gpl-2.0.html
  *
- *   joint = axis + correction(axis, direction)        joints 0 1 2 = X Y Z; joints 3 4 5 = A B C, unchanged
+ *   joint = axis + correction(axis, direction)        joints 0 1 2 = X Y Z, then the rotary axes
+ *
+ * Programs are in axis positions, as with trivkins: the module adds corrections and no tool centre point
+ * motion. Without a file of rotary axes, joints 3 4 5 are A B C, unchanged; with it, the joints from 3 on are
+ * those of A B C that the machine has, in this order.
  *
  * The correction comes from a file of `volcal tables --format linuxcnc-grid`: trilinear between the nodes,
  * held beyond them. In every servo period the function volcalkins.directions looks which way each axis was
@@ -15,12 +21,19 @@
  * moves after homing an axis counts as approached towards +, where the tables are zero at home. Without this
  * function the mean of both directions is applied.
  *
- *   loadrt volcalkins grid=/path/to/volcal.grid
+ * A second file, rotary=/path/to/volcal.rotary, holds errors of rotary axes: what is added to the command of
+ * each (degrees, a row per position, towards + and towards -), and rigid twists of table and tool over the
+ * positions of the rotary axes of that side, linear between them. With x the nominal functional point of the
+ * tool in the file, in the body that carries these axes, the linear axes move by displacement + rotation
+ * x (x - reference), turned into their directions. A rotary axis that stands between two linear ones is
+ * refused.
+ *
+ *   loadrt volcalkins grid=/path/to/volcal.grid rotary=/path/to/volcal.rotary
  *   addf volcalkins.directions servo-thread           (before motion-controller)
- *   net volcal-x axis.x.pos-cmd => volcalkins.x       (and y, z)
+ *   net volcal-x axis.x.pos-cmd => volcalkins.x       (and y, z; a, b, c where the machine has them)
  *   net volcal-homed motion.is-all-homed => volcalkins.homed
  *
- * Build and install: halcompile --install volcalkins.c
+ * Build and install, volcalkins_rotary.h beside it: halcompile --install volcalkins.c
  */
 #include <errno.h>
 #include <math.h>
@@ -34,11 +47,14 @@
 #include "rtapi_app.h"
 
 MODULE_AUTHOR("The volcal authors");
-MODULE_DESCRIPTION("X Y Z kinematics with volumetric compensation");
+MODULE_DESCRIPTION("X Y Z A B C kinematics with volumetric compensation");
 MODULE_LICENSE("GPL");
 
 static char *grid = "volcal.grid";
 RTAPI_MP_STRING(grid, "file of volcal tables --format linuxcnc-grid, in LINEAR_UNITS");
+
+static char *rotary = "";
+RTAPI_MP_STRING(rotary, "file of volcal tables --format linuxcnc-grid with rotary axes; empty = none");
 
 KINS_NOT_SWITCHABLE
 EXPORT_SYMBOL(kinematicsType);
@@ -46,6 +62,7 @@ EXPORT_SYMBOL(kinematicsForward);
 EXPORT_SYMBOL(kinematicsInverse);
 
 #define AXES 3
+#define ALL_AXES 6     /* X Y Z A B C */
 #define NODE_VALUES 12 /* mean, then half the reversal of X, Y, Z; each dx dy dz */
 #define ROW_VALUES (AXES + NODE_VALUES)
 #define MOST_NODES 1000000
@@ -69,19 +86,20 @@ static struct {
   double farthest;        /* in the present direction */
   int direction;          /* +1, -1 */
   double share;           /* of half the reversal, from -1 to +1 */
-} axis[AXES];
+} axis[ALL_AXES];
 
 static struct {
   hal_bit_t **pin;
   int periods; /* since homing; the first ones do not count, positions jump in them */
 } homed;
 
-/* ---- the file ---- */
+/* ---- the files ---- */
 
+static const char *file_name;
 static int line_number;
 
 static int fail(const char *problem) {
-  rtapi_print_msg(RTAPI_MSG_ERR, "volcalkins: %s:%d: %s\n", grid, line_number, problem);
+  rtapi_print_msg(RTAPI_MSG_ERR, "volcalkins: %s:%d: %s\n", file_name, line_number, problem);
   return -EINVAL;
 }
 
@@ -159,6 +177,7 @@ static int read_rows(FILE *file) {
 static int read_grid(void) {
   int result;
   FILE *file = fopen(grid, "r");
+  file_name = grid;
   if (file == NULL) return fail("cannot be opened");
   result = read_header(file);
   if (result == 0) result = read_rows(file);
@@ -169,30 +188,30 @@ static int read_grid(void) {
 /* ---- the correction ---- */
 
 /* Lower node of the piece that `position` lies in, and how far along the piece, 0..1. */
-static int piece_of(int i, double position, double *along) {
-  int lower = 0, upper = map.size[i] - 1;
+static int piece_of(const double *node, int size, double position, double *along) {
+  int lower = 0, upper = size - 1;
   *along = 0.0;
-  if (upper == 0 || position <= map.node[i][0]) return 0;
-  if (position >= map.node[i][upper]) {
+  if (upper == 0 || position <= node[0]) return 0;
+  if (position >= node[upper]) {
     *along = 1.0;
     return upper - 1;
   }
   while (upper - lower > 1) {
     const int middle = (lower + upper) / 2;
-    if (map.node[i][middle] <= position)
+    if (node[middle] <= position)
       lower = middle;
     else
       upper = middle;
   }
-  *along = (position - map.node[i][lower]) / (map.node[i][upper] - map.node[i][lower]);
+  *along = (position - node[lower]) / (node[upper] - node[lower]);
   return lower;
 }
 
-static void correction(const double *position, double *sum) {
+static void grid_correction(const double *position, double *sum) {
   int lower[AXES], corner, i, k;
   double along[AXES];
   for (i = 0; i < AXES; ++i) {
-    lower[i] = piece_of(i, position[i], &along[i]);
+    lower[i] = piece_of(map.node[i], map.size[i], position[i], &along[i]);
     sum[i] = 0.0;
   }
   for (corner = 0; corner < 8; ++corner) {
@@ -212,6 +231,15 @@ static void correction(const double *position, double *sum) {
       sum[k] += weight * of_node;
     }
   }
+}
+
+#include "volcalkins_rotary.h"
+
+static void correction(const double *position, double *sum) {
+  int i;
+  grid_correction(position, sum);
+  for (i = AXES; i < ALL_AXES; ++i) sum[i] = own_correction(i, position[i]);
+  twist_correction(position, sum);
 }
 
 static double moved_towards(double from, double to, double step) {
@@ -240,7 +268,7 @@ static void follow_directions(void *unused, long period) {
   (void)unused;
   if (!**homed.pin) homed.periods = 0;
   if (homed.periods < HOMING_PERIODS) ++homed.periods;
-  for (i = 0; i < AXES; ++i) {
+  for (i = 0; i < ALL_AXES; ++i) {
     if (homed.periods < HOMING_PERIODS)
       start_at_home(i);
     else
@@ -252,33 +280,46 @@ static void follow_directions(void *unused, long period) {
 
 KINEMATICS_TYPE kinematicsType(void) { return KINEMATICS_BOTH; }
 
+/* Joint of an axis; -1 where the chain lacks it. Without a chain every axis has its place. */
+static int joint_of(int i) {
+  int joint = AXES, other, k;
+  if (i < AXES || chain.joints == 0) return i;
+  for (other = AXES; other <= i; ++other) {
+    for (k = 0; k < chain.joints && chain.axis[k] != other; ++k) {
+    }
+    if (k < chain.joints && other == i) return joint;
+    if (k < chain.joints) ++joint;
+  }
+  return -1;
+}
+
 int kinematicsInverse(const EmcPose *world, double *joint, const KINEMATICS_INVERSE_FLAGS *iflags,
                       KINEMATICS_FORWARD_FLAGS *fflags) {
-  const double position[AXES] = {world->tran.x, world->tran.y, world->tran.z};
-  double added[AXES];
+  const double position[ALL_AXES] = {world->tran.x, world->tran.y, world->tran.z,
+                                     world->a,      world->b,      world->c};
+  double added[ALL_AXES];
   int i;
   (void)iflags;
   (void)fflags;
   correction(position, added);
-  for (i = 0; i < AXES; ++i) joint[i] = position[i] + added[i];
-  joint[3] = world->a;
-  joint[4] = world->b;
-  joint[5] = world->c;
+  for (i = 0; i < ALL_AXES; ++i)
+    if (joint_of(i) >= 0) joint[joint_of(i)] = position[i] + added[i];
   return 0;
 }
 
 /* axis = joint - correction(axis): the correction changes by far less than the position does. */
 int kinematicsForward(const double *joint, EmcPose *world, const KINEMATICS_FORWARD_FLAGS *fflags,
                       KINEMATICS_INVERSE_FLAGS *iflags) {
-  double position[AXES] = {joint[0], joint[1], joint[2]}, added[AXES], change = 0.0;
+  double told[ALL_AXES], position[ALL_AXES], added[ALL_AXES], change = 0.0;
   int step, i;
   (void)fflags;
   (void)iflags;
+  for (i = 0; i < ALL_AXES; ++i) told[i] = position[i] = joint_of(i) >= 0 ? joint[joint_of(i)] : 0.0;
   for (step = 0; step < FORWARD_STEPS; ++step) {
     correction(position, added);
     change = 0.0;
-    for (i = 0; i < AXES; ++i) {
-      const double next = joint[i] - added[i];
+    for (i = 0; i < ALL_AXES; ++i) {
+      const double next = told[i] - added[i];
       change = fmax(change, fabs(next - position[i]));
       position[i] = next;
     }
@@ -288,17 +329,18 @@ int kinematicsForward(const double *joint, EmcPose *world, const KINEMATICS_FORW
   world->tran.x = position[0];
   world->tran.y = position[1];
   world->tran.z = position[2];
-  world->a = joint[3];
-  world->b = joint[4];
-  world->c = joint[5];
+  world->a = position[3];
+  world->b = position[4];
+  world->c = position[5];
   world->u = world->v = world->w = 0.0;
   return 0;
 }
 
 static int export_pins(void) {
-  static const char *const names[AXES] = {"volcalkins.x", "volcalkins.y", "volcalkins.z"};
+  static const char *const names[ALL_AXES] = {"volcalkins.x", "volcalkins.y", "volcalkins.z",
+                                              "volcalkins.a", "volcalkins.b", "volcalkins.c"};
   int i, result;
-  for (i = 0; i < AXES; ++i) {
+  for (i = 0; i < ALL_AXES; ++i) {
     axis[i].position = hal_malloc(sizeof(*axis[i].position));
     if (axis[i].position == NULL) return -ENOMEM;
     result = hal_pin_float_new(names[i], HAL_IN, axis[i].position, component);
@@ -313,6 +355,7 @@ static int export_pins(void) {
 
 int rtapi_app_main(void) {
   int result = read_grid();
+  if (result == 0) result = read_rotary();
   if (result != 0) return result;
   component = hal_init("volcalkins");
   if (component < 0) return component;

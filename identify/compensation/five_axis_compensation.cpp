@@ -118,8 +118,8 @@ void FiveAxisCompensation::add_rotary(const JointLever& lever, const Levers& at,
   add(Part::RotaryAngular, tilt.cross(lever.arm_s - reference));
   add(Part::RotaryLocation, sign * (dp + alpha.cross(lever.arm_s)));
   shares.own[own] = own_rotation;
-  if (!settings_.type.has(Part::RotaryPositioning))
-    shares.uncorrected += lever.rotation_ws * (own_rotation * Vector3d::Unit(own)).cross(lever.arm_s);
+  if (!settings_.turns_axes || !settings_.type.has(Part::RotaryPositioning))
+    add(Part::RotaryPositioning, (own_rotation * Vector3d::Unit(own)).cross(lever.arm_s));
 }
 
 FiveAxisCompensation::Shares FiveAxisCompensation::shares_at(const AxisPosition& position,
@@ -211,7 +211,7 @@ Correction FiveAxisCompensation::correction(const AxisPosition& position,
   const Shares shares = shares_at(position, direction, at);
   Correction correction;
   correction.linear = -linear_moves(at.linear_w, shares.rotary + shares.linear);
-  if (settings_.type.has(Part::RotaryPositioning)) correction.rotary = -shares.own;
+  if (settings_.turns_axes && settings_.type.has(Part::RotaryPositioning)) correction.rotary = -shares.own;
   if (settings_.type.has(Part::Orientation)) {
     correction.rotary += orientation_moves(at, position, direction, correction);
     if (settings_.type.has(Part::Angular) || settings_.type.has(Part::RotaryAngular))

@@ -41,6 +41,9 @@ struct FiveAxisSettings {
   Eigen::Vector3d tool_offset = Eigen::Vector3d::Zero();  ///< as the control knows it, m
   RotaryReference reference;
   double damping = kOrientationDamping;
+  /// False: a control that turns no axis. The linear axes undo what R-POS corrects, too: the functional point
+  /// is the same, the orientation stays.
+  bool turns_axes = true;
 };
 
 /// Errors of every axis at a pose.

@@ -1,5 +1,8 @@
 #include "volcal/identify/compensation/rotary_tables.h"
 
+#include <cmath>
+#include <numbers>
+
 #include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/errors/rotary/rotary_grid.h"
@@ -41,6 +44,30 @@ std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, c
     tables.push_back({axis, std::move(table)});
   }
   return tables;
+}
+
+AxisTable turn_from_zero(const AxisTable& table) {
+  if (table.beyond != BeyondEnds::Repeat) return table;
+  AxisTable turned = table;
+  const auto count = static_cast<double>(table.position.size() - 1);
+  for (std::size_t i = 0; i < table.position.size(); ++i) {
+    turned.position[i] = static_cast<double>(i) / count * (table.position.back() - table.position.front());
+    AxisPosition at{};
+    at[index_of(table.input)] = turned.position[i];
+    ApproachDirection direction{};
+    direction[index_of(table.input)] = 1;
+    turned.forward[i] = table.value(at, direction);
+    direction[index_of(table.input)] = -1;
+    turned.backward[i] = table.value(at, direction);
+  }
+  turned.forward.back() = turned.forward.front();
+  turned.backward.back() = turned.backward.front();
+  return turned;
+}
+
+bool make_a_turn(const std::vector<double>& positions) {
+  constexpr double kTurn = 2.0 * std::numbers::pi, kSame = 1e-6;  // rad
+  return positions.size() > 1 && std::abs(positions.back() - positions.front() - kTurn) < kSame;
 }
 
 }  // namespace volcal

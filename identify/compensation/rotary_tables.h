@@ -19,4 +19,10 @@ double rotary_table_step(const TableFormatOptions& options);
 std::vector<SampledTable> sample_rotary_positioning(const TableFormat& format, const FitResult& result,
                                                     const TableFormatOptions& options);
 
+/// One turn from 0, as a modulo axis counts it, its end as its beginning; a table that does not repeat as it
+/// is.
+AxisTable turn_from_zero(const AxisTable& table);
+/// Whether positions make a turn.
+bool make_a_turn(const std::vector<double>& positions);
+
 }  // namespace volcal

@@ -19,6 +19,9 @@ using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as f
 constexpr double kHolds = 1e-9;         // largest misfit of 1, or of a slope over the travel, in a basis
 constexpr double kSameOrigin = 1e-9;    // m
 constexpr double kLargestTilt = 10e-3;  // rad
+constexpr const char* kFitAnew =
+    "alignment turns the frame of linear axes alone; name the axes as datum and the origin as home_mm in the "
+    "machine file and fit again: a fit carries the lines of the rotary axes along";
 
 Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
@@ -309,14 +312,12 @@ bool moves_origin(const Machine& machine, const Alignment& alignment) {
 void check_parameters(const FitResult& result, bool origin_moves) {
   for (const FunctionGroup& group : result.layout.groups) {
     if (is_rotary(group.axis))
-      throw InputError({},
-                       std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified",
-                       "alignment is for machines whose linear axes alone are identified");
+      throw InputError(
+          {}, std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified", kFitAnew);
   }
   for (const ParameterBlock& block : result.layout.blocks) {
     if (block.location && is_rotary(block.location->axis))
-      throw InputError({}, block.name + " of a rotary axis is identified",
-                       "alignment is for machines whose linear axes alone are identified");
+      throw InputError({}, block.name + " of a rotary axis is identified", kFitAnew);
     const bool refers_to_origin =
         block.kind == ParameterKind::Expansion ||
         ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&

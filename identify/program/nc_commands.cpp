@@ -150,8 +150,10 @@ void add_m(const NcWord& word, const NcPlace& place, NcCommands& commands) {
 void refuse_axis(char letter, const NcPlace& place) {
   const bool rotary = letter == 'A' || letter == 'B' || letter == 'C';
   if (rotary)
-    place.refuse(fmt::format("{} moves a rotary axis", letter),
-                 "only programs of X, Y and Z are compensated");
+    place.refuse(
+        fmt::format("{} moves a rotary axis", letter),
+        "only programs of X, Y and Z are compensated, and those with tool centre point motion (G43.4 H "
+        "or TRAORI)");
   if (letter == 'U' || letter == 'V' || letter == 'W')
     place.refuse(fmt::format("{} moves a secondary axis or increments", letter),
                  "write X, Y and Z with G90 or G91");

@@ -4,33 +4,10 @@
 #include <memory>
 #include <utility>
 
+#include "volcal/sim/machine/control_kinematics.h"
+
 namespace volcal::sim {
 namespace {
-
-double sign_of(TableValue meaning) { return meaning == TableValue::Error ? -1.0 : 1.0; }
-
-/// Index of the upper end of the interval that q lies in, and how far q is in it, 0 to 1.
-std::pair<std::size_t, double> interval_of(const std::vector<double>& position, double q) {
-  if (position.size() < 2 || q <= position.front()) return {position.size() < 2 ? 0 : 1, 0.0};
-  if (q >= position.back()) return {position.size() - 1, 1.0};
-  std::size_t upper = 1;
-  while (position[upper] < q) ++upper;
-  return {upper, (q - position[upper - 1]) / (position[upper] - position[upper - 1])};
-}
-
-double interpolated_between(const std::vector<double>& value, std::size_t upper, double share) {
-  if (upper == 0) return value.empty() ? 0.0 : value.front();
-  return (1.0 - share) * value[upper - 1] + share * value[upper];
-}
-
-double table_value(const ControlAxisTable& table, const MachineState& state) {
-  const std::size_t axis = index_of(table.input);
-  const auto [upper, share] = interval_of(table.position, state.position[axis]);
-  const double plus = interpolated_between(table.towards_plus, upper, share);
-  const double minus = interpolated_between(table.towards_minus, upper, share);
-  const std::int8_t direction = state.direction[axis];
-  return direction > 0 ? plus : direction < 0 ? minus : (plus + minus) / 2.0;
-}
 
 /// Trilinear value of vectors at the nodes.
 Eigen::Vector3d grid_value(const std::array<std::vector<double>, 3>& nodes,
@@ -64,47 +41,30 @@ Eigen::Vector3d skew_correction(const ControlSkew& skew, const MachineState& sta
   return {-(y * skew.xy) - z * (skew.xz - skew.xy * skew.yz), -(z * skew.yz), 0.0};
 }
 
-/// The machine that the tables of single errors describe.
-TruthMachine described_machine(const ControlModel& model) {
-  TruthMachine machine(model.machine);
-  const double to_error = -sign_of(model.meaning);
-  for (const auto& [symbol, table] : model.motions)
-    machine.add_state_error(symbol, [=, table = table](const MachineState& state) {
-      return to_error * table_value(table, state);
-    });
-  for (const auto& [symbol, value] : model.locations) machine.set_location(symbol, to_error * value);
-  return machine;
-}
-
-CommandCorrection model_correction(const ControlModel& model) {
-  const auto machine = std::make_shared<const TruthMachine>(described_machine(model));
-  MachineState home;
-  home.direction.fill(1);
-  for (const Axis& axis : model.machine.axes) home.position[index_of(axis.name)] = axis.home;
-  const Eigen::Vector3d at_home = machine->point_error(home, model.tool);
-  return [machine, at_home, tool = model.tool](const MachineState& state) {
-    return Eigen::Vector3d(at_home - machine->point_error(state, tool));
-  };
+double& moved_by(CommandMoves& moves, AxisName output) {
+  return (is_rotary(output) ? moves.rotary : moves.linear)[direction_of(output)];
 }
 
 }  // namespace
 
 CommandCorrection command_correction(const ActiveCompensation& compensation) {
-  std::vector<CommandCorrection> models;
-  for (const ControlModel& model : compensation.tables.models) models.push_back(model_correction(model));
+  std::vector<CommandCorrection> computed;
+  for (const ControlModel& model : compensation.tables.models) computed.push_back(model_correction(model));
+  for (const ControlTwistGrid& grid : compensation.tables.twist_grids)
+    computed.push_back(twist_correction(grid));
   const auto tables = std::make_shared<const ControlTables>(compensation.tables);
-  return [models, tables, step = compensation.least_increment](const MachineState& state) {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  return [computed, tables, step = compensation.least_increment](const MachineState& state) {
+    CommandMoves sum;
     for (const ControlAxisTable& table : tables->axis_tables)
-      sum[direction_of(table.output)] += sign_of(table.meaning) * table_value(table, state);
+      moved_by(sum, table.output) += sign_of(table.meaning) * table_value(table, state);
     for (const auto& [table, factor] : tables->products)
-      sum[direction_of(table.output)] +=
+      moved_by(sum, table.output) +=
           sign_of(table.meaning) * table_value(table, state) * table_value(factor, state);
-    for (const ControlGrid& grid : tables->grids) sum += grid_correction(grid, state);
-    for (const ControlSkew& skew : tables->skews) sum += skew_correction(skew, state);
-    for (const CommandCorrection& model : models) sum += model(state);
+    for (const ControlGrid& grid : tables->grids) sum.linear += grid_correction(grid, state);
+    for (const ControlSkew& skew : tables->skews) sum.linear += skew_correction(skew, state);
+    for (const CommandCorrection& of_computed : computed) sum += of_computed(state);
     if (step > 0.0) {
-      for (double& component : sum) component = step * std::floor(component / step + 0.5);
+      for (double& component : sum.linear) component = step * std::floor(component / step + 0.5);
     }
     return sum;
   };

@@ -19,8 +19,8 @@ enum class TableValue {
   Error        ///< actual minus nominal: the control subtracts it
 };
 
-/// Linear between positions, the end values beyond them; a column per direction of approach, the mean of both
-/// where the direction is unknown.
+/// Linear between positions, the end values beyond them unless they repeat; a column per direction of
+/// approach, the mean of both where the direction is unknown. A rotary output is turned, rad.
 struct ControlAxisTable {
   AxisName input = AxisName::X;
   AxisName output = AxisName::X;
@@ -28,6 +28,7 @@ struct ControlAxisTable {
   std::vector<double> position;  ///< of `input`, ascending
   std::vector<double> towards_plus;
   std::vector<double> towards_minus;
+  double period = 0.0;  ///< of `input`, after which the table begins anew; 0 = it does not
 };
 
 /// What the product of two tables adds to the first one's output: value times value of `factor` as a number.
@@ -50,14 +51,38 @@ struct ControlSkew {
   double xy = 0.0, xz = 0.0, yz = 0.0;
 };
 
-/// A control that computes the functional point from tables of single errors and the tool it was told. Uses
-/// the exact transforms of truth_machine.h; zero at home approached towards +.
+/// Rigid twists over positions of the rotary axes of one body, multilinear between nodes (ISO/TR
+/// 16907, 9.3.2, Table 3). The control knows its axes and the tool, and moves its linear axes so that the
+/// functional point goes where the twist took it from, first order.
+struct ControlTwistGrid {
+  Machine machine;
+  Eigen::Vector3d tool = Eigen::Vector3d::Zero();
+  TableValue meaning = TableValue::Correction;
+  bool of_table = true;                                 ///< else of the tool
+  Eigen::Vector3d reference = Eigen::Vector3d::Zero();  ///< of the displacements, in the carrying body
+  std::vector<AxisName> axes;
+  std::vector<std::vector<double>> nodes;          ///< per axis, ascending
+  std::vector<bool> full_turn;                     ///< per axis: modulo a turn, else end values held
+  std::vector<Eigen::Matrix<double, 6, 1>> twist;  ///< displacement, rotation; the last axis fastest
+};
+
+/// How a control that computes with single errors corrects those of rotary axes.
+enum class RotaryModel {
+  None,            ///< it does not
+  TurnsTheAxes,    ///< an axis takes back its own rotation, linear axes the rest
+  MovesLinearAxes  ///< linear axes alone: the position is right, the orientation stays
+};
+
+/// A control that computes the functional point from tables of single errors and the tool it was told, with
+/// the exact transforms of truth_machine.h. Errors of linear axes count with the rotary axes at 0 and are
+/// zero at home approached towards +.
 struct ControlModel {
   Machine machine;
   Eigen::Vector3d tool = Eigen::Vector3d::Zero();
   TableValue meaning = TableValue::Correction;
   std::map<ErrorSymbol, ControlAxisTable> motions;  ///< `output` is not used; angles in rad
   std::map<LocationSymbol, double> locations;
+  RotaryModel rotary = RotaryModel::None;
 };
 
 /// Tables of one folder; their corrections add up.
@@ -66,21 +91,23 @@ struct ControlTables {
   std::vector<ControlProduct> products;
   std::vector<ControlGrid> grids;
   std::vector<ControlSkew> skews;
+  std::vector<ControlTwistGrid> twist_grids;
   std::vector<ControlModel> models;
 
   bool empty() const {
-    return axis_tables.empty() && products.empty() && grids.empty() && skews.empty() && models.empty();
+    return axis_tables.empty() && products.empty() && grids.empty() && skews.empty() && twist_grids.empty() &&
+           models.empty();
   }
 };
 
 struct ActiveCompensation {
   ControlTables tables;
-  double least_increment =
-      0.0;                  ///< m; corrections come in whole steps of it (ISO/TR 16907, 11.2 c); 0 = none
+  /// m; corrections of linear axes come in whole steps of it (ISO/TR 16907, 11.2 c); 0 = none
+  double least_increment = 0.0;
   std::string description;  ///< for the campaign file
 };
 
-/// What the control adds to the commands of X, Y, Z.
+/// What the control adds to the commands of all axes.
 CommandCorrection command_correction(const ActiveCompensation& compensation);
 
 }  // namespace volcal::sim

@@ -151,8 +151,9 @@ Eigen::Matrix4d TruthMachine::nominal_joint_transform(const Joint& joint, const 
 MachineState TruthMachine::corrected(const MachineState& state) const {
   MachineState actual = state;
   if (!correction_) return actual;
-  const Eigen::Vector3d added = correction_(state);
-  for (const AxisName axis : kLinearAxes) actual.position[index_of(axis)] += added[direction_of(axis)];
+  const CommandMoves added = correction_(state);
+  for (const AxisName axis : kAllAxes)
+    actual.position[index_of(axis)] += (is_rotary(axis) ? added.rotary : added.linear)[direction_of(axis)];
   return actual;
 }
 

@@ -19,6 +19,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/model/description/machine.h"
@@ -40,8 +41,22 @@ struct MachineState {
 
 using ErrorFunction = std::function<double(double position)>;         ///< m or rad
 using StateError = std::function<double(const MachineState& state)>;  ///< m or rad
-/// What the control adds to the commands of X, Y and Z, m.
-using CommandCorrection = std::function<Eigen::Vector3d(const MachineState& state)>;
+/// What a control adds to the commands.
+struct CommandMoves {
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();  ///< of X, Y, Z, m
+  Eigen::Vector3d rotary = Eigen::Vector3d::Zero();  ///< of A, B, C, rad
+
+  CommandMoves() = default;
+  // NOLINTNEXTLINE(google-explicit-constructor): most controls move linear axes alone
+  CommandMoves(Eigen::Vector3d of_linear, Eigen::Vector3d of_rotary = Eigen::Vector3d::Zero())
+      : linear(std::move(of_linear)), rotary(std::move(of_rotary)) {}
+  CommandMoves& operator+=(const CommandMoves& other) {
+    linear += other.linear;
+    rotary += other.rotary;
+    return *this;
+  }
+};
+using CommandCorrection = std::function<CommandMoves(const MachineState& state)>;
 
 inline constexpr double kReferenceTemperature = 20.0;  ///< degC, ISO 1
 

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <filesystem>
 #include <map>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -11,21 +12,17 @@
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/files/control_words.h"
+#include "volcal/studies/files/rotary_control_tables.h"
 #include "volcal/studies/files/typed_control_tables.h"
 
 namespace volcal {
 namespace {
 
 constexpr double kMillimetre = 1e-3, kInch = 25.4e-3, kMicrometre = 1e-6;  // m; also rad of a microradian
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 const std::string& content_of(std::span<const TableFile> files, const std::string& name) {
   return file_named(files, name).content;
-}
-
-/// The simulated control moves linear axes alone.
-[[noreturn]] void refuse_rotary(const std::string& file, std::string_view type) {
-  throw InputError({file, 0}, "the tables move rotary axes or depend on them, the simulated control does not",
-                   "write them for the linear axes: --type " + std::string(type));
 }
 
 /// Tables of one input and one output axis in one row per position: appended in the order of the file.
@@ -79,8 +76,9 @@ void add_grid_row(sim::ControlGrid& grid, const Words& row, double position_unit
 // compensation_tables.csv holds what is to be added, with its own kinematics and the tool of metadata.csv.
 sim::ControlTables csv_control(std::span<const TableFile> files) {
   const TableMetadata metadata = read_table_metadata(file_named(files, "metadata.csv"));
-  if (!metadata.type.rotary().empty()) refuse_rotary("metadata.csv", "L-VOL");
+  const bool rotary = !metadata.type.rotary().empty();
   sim::ControlModel model{metadata.machine, {}, sim::TableValue::Correction, {}, {}};
+  if (rotary) model.rotary = sim::RotaryModel::TurnsTheAxes;
   model.tool = metadata.machine.tools[*metadata.machine.tool_index(metadata.tool)].offset;
   std::istringstream text(content_of(files, "compensation_tables.csv"));
   std::string line;
@@ -91,10 +89,11 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
     const double value = std::stod(cells.at(5)) * kMicrometre;
     if (const auto location = LocationSymbol::parse(cells.at(0))) {
-      if (is_rotary(location->axis)) continue;
+      if (is_rotary(location->axis) && !rotary) continue;
       const auto squareness = metadata.machine.datum.squareness();
-      if (std::ranges::find(squareness, *location) == squareness.end() ||
-          !metadata.machine.has_axis(location->axis))
+      const bool known =
+          is_rotary(location->axis) || std::ranges::find(squareness, *location) != squareness.end();
+      if (!known || !metadata.machine.has_axis(location->axis))
         throw InputError({"compensation_tables.csv", 0},
                          location->name() + " is no squareness of the datum in metadata.csv",
                          "take metadata.csv of the same run");
@@ -102,12 +101,12 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
       continue;
     }
     const ErrorSymbol symbol = *ErrorSymbol::parse(cells.at(0));
-    if (is_rotary(symbol.axis)) continue;
+    if (is_rotary(symbol.axis) && !rotary) continue;
     sim::ControlAxisTable& table = model.motions[symbol];
     table.input = symbol.axis;
     const int direction = std::stoi(cells.at(4));
     if (direction >= 0) {
-      table.position.push_back(std::stod(cells.at(2)) * kMillimetre);
+      table.position.push_back(std::stod(cells.at(2)) * (is_rotary(symbol.axis) ? kDegree : kMillimetre));
       table.towards_plus.push_back(value);
     }
     if (direction <= 0) table.towards_minus.push_back(value);
@@ -119,9 +118,6 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
 
 // Corrections to add; the grid has the whole reversal.
 sim::ControlTables neutral_control(std::span<const TableFile> files) {
-  for (const TableFile& file : files) {
-    if (file.name.starts_with("rotary_")) refuse_rotary(file.name, "L-VOL");
-  }
   sim::ControlTables tables;
   if (const TableFile* file = find_file(files, "axis_corrections.csv")) {
     AxisTables axes(sim::TableValue::Correction);
@@ -137,6 +133,7 @@ sim::ControlTables neutral_control(std::span<const TableFile> files) {
     for (std::size_t i = 1; i < rows.size(); ++i) add_grid_row(grid, rows[i], kMillimetre, kMicrometre, 1.0);
     tables.grids.push_back(std::move(grid));
   }
+  add_neutral_rotary_tables(files, tables);
   return tables;
 }
 
@@ -181,6 +178,7 @@ sim::ControlTables linuxcnc_grid_control(std::span<const TableFile> files) {
   }
   sim::ControlTables tables;
   tables.grids.push_back(std::move(grid));
+  if (const TableFile* file = find_file(files, "volcal.rotary")) add_kins_rotary_tables(*file, tables);
   return tables;
 }
 
@@ -214,12 +212,13 @@ sim::ControlTables marlin_control(std::span<const TableFile> files) {
 /// Rows of the block of an ISG file below its header.
 class IsgControlBlock {
  public:
-  explicit IsgControlBlock(const Words& header) {
+  IsgControlBlock(const Words& header, const std::array<double, kAxisCount>& signs) {
     for (const std::string& name : header) {
       if (name.size() == 1) {
         arguments_.push_back(axis_in(name));
       } else {
         outputs_.push_back(direction_of(ErrorSymbol::parse(name)->component));
+        signs_.push_back(signs.at(index_of(axis_in(name.substr(2)))));
       }
     }
     grid_.meaning = sim::TableValue::Error;
@@ -231,7 +230,7 @@ class IsgControlBlock {
     add_node(grid_, position);
     Eigen::Vector3d value = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < outputs_.size(); ++i)
-      value[outputs_[i]] += std::stod(row.at(arguments_.size() + i)) * kMillimetre;
+      value[outputs_[i]] += signs_[i] * std::stod(row.at(arguments_.size() + i)) * kMillimetre;
     grid_.mean.push_back(value);
   }
   const sim::ControlGrid& grid() const { return grid_; }
@@ -239,6 +238,7 @@ class IsgControlBlock {
  private:
   std::vector<AxisName> arguments_;
   std::vector<int> outputs_;
+  std::vector<double> signs_;
   sim::ControlGrid grid_;
 };
 
@@ -260,25 +260,34 @@ void add_leadscrew_lists(std::span<const TableFile> files, sim::ControlTables& t
   axes.move_to(tables);
 }
 
-// Names of ISO 230-1: errors, mm; # begins a new block.
+// Names of ISO 230-1: errors, mm; # begins a new block. With a chain in the list, rotary axes have blocks
+// too.
 sim::ControlTables isg_control(std::span<const TableFile> files) {
   sim::ControlTables tables;
+  IsgChainControl chain(content_of(files, "volcomp.lis"), content_of(files, "volcomp.csv"));
   std::optional<IsgControlBlock> block;
+  bool of_chain = false;
   const auto close = [&] {
     if (block) tables.grids.push_back(block->grid());
     block.reset();
+    of_chain = false;
   };
   for (const Words& line : lines_of_words(content_of(files, "volcomp.csv"), " \t")) {
     if (line[0].starts_with("//")) continue;
     if (line[0].front() == '#') {
       close();
-    } else if (!block) {
-      block.emplace(line);
-    } else {
+    } else if (of_chain) {
+      chain.add_row(line);
+    } else if (block) {
       block->add(line);
+    } else if (chain.opens(line)) {
+      of_chain = true;
+    } else {
+      block.emplace(line, chain.signs());
     }
   }
   close();
+  chain.move_to(tables);
   add_leadscrew_lists(files, tables);
   return tables;
 }
@@ -326,14 +335,15 @@ std::vector<Words> sinumerik_words(const std::string& text) {
 // $AA_ENC_COMP[encoder, point, axis]: a positive value moves the axis in the negative direction.
 sim::ControlTables sinumerik_control(std::span<const TableFile> files) {
   std::map<AxisName, std::map<int, double>> values;
-  std::map<AxisName, double> first, step;
+  std::map<AxisName, double> first, step, period;
   for (const Words& line : sinumerik_words(content_of(files, "AX_EEC.INI"))) {
-    const double value = std::stod(line.back()) * kMillimetre;
     const AxisName axis = axis_in(line.at(line.size() - 2));
-    if (is_rotary(axis)) refuse_rotary("AX_EEC.INI", "L-POS");
+    const double value = std::stod(line.back()) * (is_rotary(axis) ? kDegree : kMillimetre);
     if (line[0] == "$AA_ENC_COMP") values[axis][std::stoi(line.at(2))] = value;
     if (line[0] == "$AA_ENC_COMP_STEP") step[axis] = value;
     if (line[0] == "$AA_ENC_COMP_MIN") first[axis] = value;
+    if (line[0] == "$AA_ENC_COMP_IS_MODULO" && std::stoi(line.back()) == 1)
+      period[axis] = 2.0 * std::numbers::pi;
   }
   AxisTables axes(sim::TableValue::Error);
   for (const auto& [axis, points] : values) {
@@ -342,6 +352,7 @@ sim::ControlTables sinumerik_control(std::span<const TableFile> files) {
   }
   sim::ControlTables tables;
   axes.move_to(tables);
+  for (sim::ControlAxisTable& table : tables.axis_tables) table.period = period[table.input];
   return tables;
 }
 

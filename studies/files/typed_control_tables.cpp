@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -12,16 +13,18 @@ namespace {
 
 constexpr const char* kBlanks = " \t";
 constexpr double kTypedMillimetre = 1e-3, kTypedMicrometre = 1e-6, kTypedTenth = 1e-7;  // m
+constexpr double kTypedDegree = std::numbers::pi / 180.0;
 
 /// Rows of one .COM: what the position of `cause` does to the axes of the columns.
 void add_com_rows(const std::string& text, AxisName cause, sim::ControlTables& tables) {
+  const double unit = is_rotary(cause) ? kTypedDegree : kTypedMillimetre;
   const bool errors = text.find("VALUES ARE ERRORS") != std::string::npos;
   double datum = 0.0, spacing = 0.0;
   std::vector<sim::ControlAxisTable> columns;
   for (const auto& words : lines_of_words(text, kBlanks)) {
     if (words[0] == ";") continue;
     if (words[0] == "DATUM") {
-      datum = std::stod(words.at(1)) * kTypedMillimetre;
+      datum = std::stod(words.at(1)) * unit;
     } else if (words[0] == "SPACING") {
       spacing = kTypedTenth * std::pow(2.0, std::stoi(words.at(1)));
     } else if (columns.empty()) {
@@ -34,12 +37,18 @@ void add_com_rows(const std::string& text, AxisName cause, sim::ControlTables& t
     } else {
       const double first = std::stod(words.at(0));
       for (std::size_t i = 0; i < columns.size(); ++i) {
-        const double value = std::stod(words.at(i + 1)) * kTypedMillimetre;
-        columns[i].position.push_back(spacing > 0.0 ? datum + first * spacing : first * kTypedMillimetre);
+        const double value = std::stod(words.at(i + 1)) * unit;
+        columns[i].position.push_back(spacing > 0.0 ? datum + first * spacing : first * unit);
         columns[i].towards_plus.push_back(value);
         columns[i].towards_minus.push_back(value);
       }
     }
+  }
+  for (sim::ControlAxisTable& column : columns) {
+    const bool turn =
+        column.position.size() > 1 &&
+        std::abs(column.position.back() - column.position.front() - 360.0 * kTypedDegree) < 1e-9;
+    if (is_rotary(cause) && turn) column.period = 360.0 * kTypedDegree;
   }
   tables.axis_tables.insert(tables.axis_tables.end(), columns.begin(), columns.end());
 }
@@ -85,12 +94,15 @@ struct TypedAmounts {
   std::vector<double> position, plus, minus;
 };
 
-TypedAmounts amounts_of_axis(const TypedPitch& pitch, const std::map<std::string, double>& parameter) {
+TypedAmounts amounts_of_axis(const TypedPitch& pitch, const std::map<std::string, double>& parameter,
+                             bool rotary) {
   const auto whole = [&](const char* key) { return static_cast<int>(parameter.at(key)); };
   const int lowest = whole("3621"), highest = whole("3622"), reference = whole("3620");
-  const double magnification = parameter.at("3623"), interval = parameter.at("3624") * kTypedMillimetre;
-  const double home = parameter.at("REFERENCE") * kTypedMillimetre;
-  const double unit = std::stod(pitch.head.at("DETECTION_UNIT_UM")) * kTypedMicrometre;
+  const double length = rotary ? kTypedDegree : kTypedMillimetre;
+  const double magnification = parameter.at("3623"), interval = parameter.at("3624") * length;
+  const double home = parameter.at("REFERENCE") * length;
+  const double unit = rotary ? std::stod(pitch.head.at("DETECTION_UNIT_DEG")) * kTypedDegree
+                             : std::stod(pitch.head.at("DETECTION_UNIT_UM")) * kTypedMicrometre;
   const bool both = whole("3605#0") == 1;
   const auto plus = walked_amounts(pitch, lowest, highest, reference, magnification);
   const int shift = both ? whole("3626") - lowest : 0;
@@ -124,6 +136,26 @@ TypedAmounts in_the_middle(const TypedAmounts& points) {
   return flat;
 }
 
+/// One turn up to the last point; what lies before it belongs to the turn before.
+void turn_round(sim::ControlAxisTable& table, double turn) {
+  std::size_t outside = 0;
+  while (table.position.at(outside) < table.position.back() - turn - 1e-9) ++outside;
+  for (auto* const column : {&table.position, &table.towards_plus, &table.towards_minus})
+    column->erase(column->begin(), column->begin() + static_cast<std::ptrdiff_t>(outside));
+  table.period = turn;
+}
+
+/// The axis stands farther by the shift everywhere.
+sim::ControlAxisTable shifted_reference(const sim::ControlAxisTable& axis,
+                                        const std::map<std::string, double>& parameter) {
+  sim::ControlAxisTable shift;
+  shift.input = axis.input;
+  shift.output = axis.output;
+  shift.position = {0.0};
+  shift.towards_plus = shift.towards_minus = {parameter.at("SHIFT") * kTypedDegree};
+  return shift;
+}
+
 }  // namespace
 
 // TNC 407 Technical Manual, 4-27 and 4-28; MANUALplus 620 Technical Manual, 716 to 718: the axis of a column
@@ -144,7 +176,8 @@ sim::ControlTables fanuc_control(std::span<const TableFile> files) {
   const TypedPitch pitch = typed_pitch(file_named(files, "pitch_error.txt").content);
   sim::ControlTables tables;
   for (const auto& [letter, parameter] : pitch.parameters) {
-    TypedAmounts amounts = amounts_of_axis(pitch, parameter);
+    const bool rotary = letter == 'A' || letter == 'B' || letter == 'C';
+    TypedAmounts amounts = amounts_of_axis(pitch, parameter, rotary);
     if (pitch.head.at("OUTPUT") == "MIDDLE") amounts = in_the_middle(amounts);
     sim::ControlAxisTable table;
     table.input = table.output = axis_in(std::string(1, letter));
@@ -153,7 +186,9 @@ sim::ControlTables fanuc_control(std::span<const TableFile> files) {
     table.position = amounts.position;
     table.towards_plus = amounts.plus;
     table.towards_minus = amounts.minus;
+    if (parameter.contains("3625")) turn_round(table, parameter.at("3625") * kTypedDegree);
     tables.axis_tables.push_back(table);
+    if (parameter.contains("SHIFT")) tables.axis_tables.push_back(shifted_reference(table, parameter));
   }
   return tables;
 }

@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -207,6 +210,82 @@ TEST(RotaryTablesProgram, OwnPositioningAloneIsSaidToBeAPart) {
   const auto refused = run_program("tables " + given.model + " --format linuxcnc --type L-POS+FOR --dry-run");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.errors, HasSubstr("which no table holds"));
+}
+
+/// A program with tool centre point motion, rewritten for the same machine.
+TEST(RotaryTablesProgram, RewritesAProgramWithToolCentrePointMotion) {
+  const FiveAxisFolder given;
+  write_text(given.folder.path() / "part.ngc",
+             "G21 G90 G54\nG0 A-10 C0\nG43.4 H1\nG0 X40 Y10 Z30 A-10 C0\nG1 X60 Y20 Z25 A-30 C40 F800\n"
+             "X20 Y50 A10 C120\nG49\nM30\n");
+  const std::string program = "compensate " + given.model + " " + given.out("part.ngc") + " --check" +
+                              " --work-offset G54=X0,Y0,Z0 --tool-length H1=200";
+  const auto run = run_program(program + " -o " + given.out("new.ngc"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("3 motions with tool centre point motion"));
+  EXPECT_THAT(run.output, HasSubstr("1 rapids outside it are copied as they are"));
+  EXPECT_THAT(run.output, ::testing::Not(HasSubstr("are in no table")));
+  const std::string text = testing::content(given.out("new.ngc"));
+  EXPECT_THAT(text, ::testing::StartsWith("(volcal compensate: result "));
+  EXPECT_THAT(text, HasSubstr("\nG0 A-10 C0\nG43.4 H1\n"));
+  const auto figures = run_program(program + " --json --orientation");
+  ASSERT_EQ(figures.exit_code, 0) << figures.errors;
+  const Json json = Json::parse(figures.output);
+  EXPECT_GT(json.at("check").at("before").at("rms_um"), 5.0);
+  EXPECT_LT(json.at("check").at("after").at("rms_um"), 0.3);
+  EXPECT_LT(json.at("check").at("after").at("axis_rms_urad").get<double>(),
+            0.5 * json.at("check").at("before").at("axis_rms_urad").get<double>());
+  EXPECT_GT(json.at("positions_near_poles"), 0);
+  const auto twice = run_program("compensate " + given.model + " " + given.out("new.ngc") + " --check" +
+                                 " --work-offset G54=X0,Y0,Z0 --tool-length H1=200");
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.errors, HasSubstr("compensated already"));
+  write_text(given.folder.path() / "three.ngc", "G21 G90 G54\nG0 X0 Y0 Z0\n");
+  const auto plain = run_program("compensate " + given.model + " " + given.out("three.ngc") +
+                                 " --check --orientation --work-offset G54=X0,Y0,Z0");
+  EXPECT_EQ(plain.exit_code, 2);
+  EXPECT_THAT(plain.errors, HasSubstr("no tool centre point motion"));
+}
+
+/// The tables that a rehearsal's control had active are those of rotary axes, too.
+TEST(RotaryTablesProgram, AreAppliedByASimulatedMachine) {
+  const FiveAxisFolder given;
+  ASSERT_EQ(
+      run_program("tables " + given.model + " --format linuxcnc-grid --step 200 -o " + given.out("tables"))
+          .exit_code,
+      0);
+  write_text(given.folder.path() / "study.toml",
+             "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = 3\n[[measurements]]\n"
+             "kind = \"r-test\"\ntools = [\"t\"]\npositions = { A = 5, C = 6 }\nposes = \"grid\"\n"
+             "noise = { constant_um = 0.01, repeatability_um = 0.01 }\n[[measurements.spheres]]\n"
+             "name = \"S\"\nposition_mm = [60.0, 20.0, 0.0]\n");
+  const auto spread_um = [&](const std::string& options, const char* name) {
+    const auto run = run_program("simulate " + given.out("study.toml") + " --errors " + given.model + " -o " +
+                                 given.out(name) + options);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    std::istringstream rows(testing::content(std::filesystem::path(given.out(name)) / "rtest_S_t.csv"));
+    std::string line;
+    std::getline(rows, line);
+    std::vector<std::array<double, 3>> readings;
+    while (std::getline(rows, line)) {
+      std::vector<std::string> cells;
+      std::istringstream row(line);
+      for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+      const std::size_t n = cells.size();
+      readings.push_back(
+          {std::stod(cells.at(n - 3)), std::stod(cells.at(n - 2)), std::stod(cells.at(n - 1))});
+    }
+    EXPECT_GT(readings.size(), 20U);
+    std::array<double, 3> mean{};
+    for (const auto& reading : readings)
+      for (std::size_t k = 0; k < 3; ++k) mean[k] += reading[k] / static_cast<double>(readings.size());
+    double square = 0.0;
+    for (const auto& reading : readings)
+      for (std::size_t k = 0; k < 3; ++k) square += std::pow(reading[k] - mean[k], 2);
+    return std::sqrt(square / static_cast<double>(readings.size()));
+  };
+  EXPECT_GT(spread_um("", "before"), 5.0);
+  EXPECT_LT(spread_um(" --compensation " + given.out("tables"), "after"), 0.4);
 }
 
 }  // namespace

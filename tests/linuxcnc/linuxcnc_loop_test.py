@@ -54,8 +54,16 @@ def identify(folder):
     return folder / "result"
 
 
-def loop(*words):
-    return run(sys.executable, LOOP, "--volcal", PROGRAM, RESULT, *words)
+def identify_five_axes(structure, folder):
+    """Folder of the result of a simulated machine with rotary axes."""
+    volcal("init", structure, "-o", folder / "start")
+    volcal("simulate", folder / "start" / "study.toml", "-o", folder / "campaign")
+    volcal("fit", folder / "campaign" / "campaign.toml", "--noise", "white", "-o", folder / "result")
+    return folder / "result"
+
+
+def loop(*words, result=None):
+    return run(sys.executable, LOOP, "--volcal", PROGRAM, result or RESULT, *words)
 
 
 def mapped(path, change):
@@ -64,25 +72,39 @@ def mapped(path, change):
     path.write_text("\n".join(rows) + "\n")
 
 
+def turned_by_3_nanoradians(text):
+    """The rows of what is added to C."""
+    lines, rows = [], 0
+    for line in text.splitlines():
+        words = line.split()
+        if rows:
+            rows -= 1
+            line = " ".join([words[0], *(f"{float(word) + 1.8e-7:.12f}" for word in words[1:])])
+        elif words[:2] == ["own", "C"]:
+            rows = int(words[2])
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
 def negated(word):
     return word[1:] if word.startswith("-") else "-" + word
 
 
 class Loop(unittest.TestCase):
-    def assert_agrees(self, done, points):
+    def assert_agrees(self, done, points, joints=3):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         self.assertIn("agrees within 1 nm", done.stdout)
-        self.assertIn(f"{points} positions from both sides, 3 joints", done.stdout)
+        self.assertIn(f"{points} positions from both sides, {joints} joints", done.stdout)
         print(re.search("^LinuxCNC.*$", done.stdout, re.MULTILINE).group())
 
     def assert_disagrees(self, done):
         self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
         self.assertIn("DISAGREES", done.stdout)
 
-    def damaged(self, form, *options):
+    def damaged(self, form, *options, result=None):
         """A folder of tables, to be damaged."""
         folder = pathlib.Path(tempfile.mkdtemp(dir=WORK)) / "tables"
-        volcal("tables", RESULT, "--format", form, *options, "-o", folder)
+        volcal("tables", result or RESULT, "--format", form, *options, "-o", folder)
         return folder
 
 
@@ -160,7 +182,63 @@ class Volume(Loop):
             self.assertIn(what, done.stderr)
 
 
+class RotaryAxes(Loop):
+    """A table on a cradle, X Y Z A C, and a head on a moving table, X Y Z B C."""
+
+    OPTIONS = ("--step", 100, "--rotary-step", 15)
+
+    def setUp(self):
+        for name, structure in {"table": "w C' A' b X Y Z t", "head": "w X' b Y Z C B t"}.items():
+            if name not in FIVE_AXES:
+                folder = pathlib.Path(tempfile.mkdtemp(dir=WORK))
+                FIVE_AXES[name] = identify_five_axes(structure, folder)
+
+    def five(self, name, points, *options):
+        return loop("--volumetric", "--points", points, "--", *self.OPTIONS, *options, result=FIVE_AXES[name])
+
+    def wrong(self, name, change):
+        tables = self.damaged("linuxcnc-grid", *self.OPTIONS, result=FIVE_AXES[name])
+        text = (tables / "volcal.rotary").read_text()
+        changed = change(text)
+        self.assertNotEqual(text, changed)
+        (tables / "volcal.rotary").write_text(changed)
+        return loop("--volumetric", "--points", FEW, "--tables", tables, "--", *self.OPTIONS,
+                    result=FIVE_AXES[name])
+
+    def test_of_a_table_are_applied_as_predicted(self):
+        self.assert_agrees(self.five("table", POINTS), POINTS, 5)
+
+    def test_of_a_head_are_applied_as_predicted(self):
+        self.assert_agrees(self.five("head", POINTS), POINTS, 5)
+
+    def test_in_inches(self):
+        self.assert_agrees(self.five("head", FEW, "--set", "units=inch"), FEW, 5)
+
+    def test_a_part_of_the_types(self):
+        self.assert_agrees(self.five("table", FEW, "--type", "L-VOL+R-POR"), FEW, 5)
+
+    def test_mistakes_are_seen(self):
+        for name, what in {"table": lambda text: text.replace("tool 0.000000 0.000000 -", "tool 0.000000 0.000000 "),
+                           "head": lambda text: re.sub(r"^(centre B) \S+", r"\1 90.0", text, flags=re.MULTILINE)
+                           }.items():
+            self.assert_disagrees(self.wrong(name, what))
+        self.assert_disagrees(self.wrong("table", turned_by_3_nanoradians))
+
+    def test_damaged_files_are_not_loaded(self):
+        for what, change in {"no axis": lambda text: text.replace("chain C'", "chain Q'"),
+                             "between linear axes": lambda text: text.replace("b X Y Z", "b X Y C Z"),
+                             "do not make a turn": lambda text: re.sub("^own A (.*) 0$", r"own A \1 1", text,
+                                                                       flags=re.MULTILINE),
+                             "the other body": lambda text: text.replace("twists table", "twists tool"),
+                             "3 numbers": lambda text: re.sub(r"^(own A .*\n\S+ \S+) \S+$", r"\1", text,
+                                                              flags=re.MULTILINE)}.items():
+            done = self.wrong("table", change)
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn(what, done.stderr)
+
+
 if __name__ == "__main__":
+    FIVE_AXES = {}
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()

@@ -106,7 +106,8 @@ inline bool accepts_tables(const std::string& text, std::size_t format_index) {
       sim::MachineState state;
       state.position = {0.1, -0.2, 0.3, 0.0, 0.0, 0.0};
       state.direction = approach;
-      if (!control(state).allFinite())
+      const sim::CommandMoves added = control(state);
+      if (!added.linear.allFinite() || !added.rotary.allFinite())
         throw std::logic_error("the simulated control adds what is not finite");
     }
   });

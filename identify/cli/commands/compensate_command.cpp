@@ -11,15 +11,18 @@
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/program_setup.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/program/tcp_rewriter.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal::cli {
@@ -35,7 +38,9 @@ struct CompensateArguments {
   double tolerance_um = 0.5;
   double arc_tolerance_um = 0.5;
   int decimals = 4;
+  int rotary_decimals = 5;
   ConditionsArguments conditions;
+  bool orientation = false;
   bool check = false;
   bool json = false;
 };
@@ -113,9 +118,86 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
+/// Whether some line begins tool centre point motion.
+bool has_tcp(const std::string& program) {
+  LineFile lines(program);
+  for (std::string_view line; lines.next(line);) {
+    if (begins_tcp(line)) return true;
+  }
+  return false;
+}
+
+TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments& arguments) {
+  TcpRewriteOptions options;
+  options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
+  options.decimals_mm = arguments.decimals;
+  options.decimals_deg = arguments.rotary_decimals;
+  options.orientation = arguments.orientation;
+  options.check = arguments.check;
+  options.measured = MeasuredTravel(result);
+  options.within_readings = arguments.conditions.no_extrapolation;
+  options.header = header(arguments);
+  options.identified.fill(false);
+  for (const AxisName axis : identified_rotary_axes(result))
+    options.identified[static_cast<std::size_t>(direction_of(axis))] = true;
+  return options;
+}
+
+TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& arguments) {
+  Tool tool;
+  if (const auto index = result.machine.tool_index(arguments.tool)) tool = result.machine.tools[*index];
+  TcpRewriter rewriter(result.machine,
+                       joint_errors(result, tool, conditions_of(result, arguments.conditions)),
+                       program_setup(arguments.setup, result.machine),
+                       functional_point(result.machine, arguments.tool, arguments.lengths_from),
+                       tcp_options(result, arguments), arguments.program);
+  LineFile program(arguments.program);
+  std::optional<AtomicFile> output;
+  if (!arguments.output.empty()) output.emplace(arguments.output);
+  const TcpRewriter::Sink sink = [&](std::string_view, std::span<const std::string> written) {
+    for (const std::string& text : written) {
+      if (output) output->write(text);
+    }
+  };
+  for (std::string_view line; program.next(line);) rewriter.rewrite(line, sink);
+  if (output) output->commit();
+  return rewriter.summary();
+}
+
+/// Effects that no correction holds; errors of rotary axes are corrected here.
+std::vector<Finding> left_by_tcp(const FitResult& result) {
+  std::vector<Finding> findings = errors_in_no_table(result);
+  std::erase_if(findings,
+                [](const Finding& finding) { return finding.code == FindingCode::RotaryErrorsInNoTable; });
+  return findings;
+}
+
+int run_tcp(const FitResult& result, const CompensateArguments& arguments) {
+  const TcpSummary summary = rewrite_tcp(result, arguments);
+  const Conditions conditions = conditions_of(result, arguments.conditions);
+  if (arguments.json) {
+    nlohmann::ordered_json json = tcp_summary_json(summary, arguments.check);
+    add_findings("effects_not_compensated", left_by_tcp(result), json);
+    json["conditions"] = conditions_json(result, conditions);
+    add_findings("invisible", result.rank.invisible, json);
+    if (!arguments.output.empty()) json["file"] = arguments.output;
+    fmt::print("{}\n", json_text(json, 2));
+  } else {
+    fmt::print("{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
+               findings_text(left_by_tcp(result)), findings_text(result.rank.invisible));
+    if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
+  }
+  return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
+}
+
 int run_compensate(const CompensateArguments& arguments) {
   require_output(arguments);
   const FitResult result = read_known_errors(arguments.result);
+  if (has_tcp(arguments.program)) return run_tcp(result, arguments);
+  if (arguments.orientation)
+    throw InputError({arguments.program, 0},
+                     "--orientation turns rotary axes, and the program has no tool centre point motion",
+                     "leave the option out, or write G43.4 H or TRAORI in the program");
   const RewrittenProgram done = rewrite(result, arguments);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
@@ -154,7 +236,11 @@ std::function<int()> define_compensate(CLI::App& app) {
   app.add_option("RESULT", arguments->result,
                  "result folder of volcal fit, model.toml with values, or folder of tables --format csv")
       ->required();
-  app.add_option("PROGRAM", arguments->program, "NC program (RS-274, ISO 6983) of X, Y and Z")->required();
+  app.add_option(
+         "PROGRAM", arguments->program,
+         "NC program (RS-274, ISO 6983) of X, Y and Z, or with rotary axes and tool centre point motion "
+         "(G43.4 H, TRAORI)")
+      ->required();
   app.add_option("-o,--output", arguments->output, "rewritten program");
   add_setup_options(app, arguments->setup);
   app.add_option(
@@ -173,6 +259,12 @@ std::function<int()> define_compensate(CLI::App& app) {
       ->check(positive());
   app.add_option("--decimals", arguments->decimals, "of coordinates in mm, inches have one more; default 4")
       ->check(CLI::Range(4, 7));
+  app.add_option("--rotary-decimals", arguments->rotary_decimals,
+                 "of positions of rotary axes in deg; default 5")
+      ->check(CLI::Range(3, 8));
+  app.add_flag("--orientation", arguments->orientation,
+               "with tool centre point motion: turn the tool's axis to where it is meant, too (FOR, ISO/TR "
+               "16907, 8.2.6)");
   add_conditions_options(app, arguments->conditions);
   app.add_flag(
       "--check", arguments->check,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/compensation/sampled_tables.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
@@ -18,7 +19,8 @@ namespace {
 constexpr std::string_view kCmaFile = "CONFIG.CMA.txt";
 constexpr std::string_view kTypedSuffix = ".txt";  // behind the name that the table has in the control
 constexpr std::string_view kComSign = "; VOLCAL VALUES ARE ";
-constexpr double kComDigit = 1e-7;     // m, of positions and values, and unit of a spacing
+constexpr double kComDigit = 1e-7;  // m, of positions and values, and unit of a spacing
+constexpr double kComRotaryDigit = 1e-4 * kRadianPerDegree;
 constexpr double kSteepestCom = 64.0;  // spacing over the largest difference of neighbouring values
 constexpr int kLargestSpacing = 23;    // exponent
 constexpr std::size_t kMostComPoints = 256;
@@ -35,7 +37,11 @@ constexpr std::array<TableSetting, 2> kComSettings = {
       "0.1 um, as in TNC 407, 415, 425, for which --step is rounded down",
       "axispos", "axispos"}}};
 
-/// What one axis does to others, values as they are typed, m.
+double com_digit(AxisName axis) { return is_rotary(axis) ? kComRotaryDigit : kComDigit; }
+/// m of a mm, rad of a degree.
+double com_unit(AxisName axis) { return is_rotary(axis) ? kRadianPerDegree : kMetrePerMillimetre; }
+
+/// What one axis does to others, values as they are typed, m; what a rotary axis does to itself, rad.
 struct ComTable {
   AxisName input = AxisName::X;
   std::vector<double> position;
@@ -51,8 +57,9 @@ void check_com_slope(const ComTable& table, std::size_t row, const SourcePlace& 
   for (const auto& [output, values] : table.columns) {
     if (std::abs(values[row] - values[row - 1]) <= most) continue;
     throw InputError(place,
-                     fmt::format("{} = F({}) changes by more than {:.4f} mm between neighbouring points",
-                                 letter_of(output), letter_of(table.input), most / kMetrePerMillimetre),
+                     fmt::format("{} = F({}) changes by more than {:.4f} {} between neighbouring points",
+                                 letter_of(output), letter_of(table.input), most / com_unit(output),
+                                 is_rotary(output) ? "deg" : "mm"),
                      "HEIDENHAIN controls take a 64th of the spacing at most; correct the machine first");
   }
 }
@@ -91,19 +98,34 @@ double com_step(const TableFormatOptions& options) {
   return has_spacing(options) ? std::ldexp(kComDigit, spacing_below(options.step)) : options.step;
 }
 
-/// 0.0 in place of what would be written as -0.0000.
-double com_value(double value) {
-  return without_negative_zero(std::round(value / kComDigit) * kComDigit) / kMetrePerMillimetre;
+/// mm or deg; 0.0 in place of what would be written as -0.0000.
+double com_value(double value, AxisName axis) {
+  const double digit = com_digit(axis);
+  return without_negative_zero(std::round(value / digit) * digit) / com_unit(axis);
 }
 
 /// With a spacing the curve begins with 0 at the datum, which moves the zero of the axis.
-std::vector<double> com_column(const AxisTable& table, double sign, bool spacing) {
+std::vector<double> com_column(const AxisTable& table, AxisName output, double sign, bool spacing) {
   std::vector<double> values;
   for (const double correction : table.forward) {
     const double from_datum = correction - (spacing ? table.forward.front() : 0.0);
-    values.push_back(com_value(sign * from_datum) * kMetrePerMillimetre);
+    values.push_back(com_value(sign * from_datum, output) * com_unit(output));
   }
   return values;
+}
+
+/// R-POS: each rotary axis by its own position, a turn from 0 to 360.
+void add_com_rotary(const FitResult& result, const TableFormatOptions& options, double sign,
+                    std::vector<ComTable>& tables) {
+  if (!options.type.has(CompensationPart::RotaryPositioning)) return;
+  if (has_spacing(options))
+    throw InputError({}, "heidenhain: rows of a spacing of 2^n x 0.0001 deg end no turn",
+                     "give --set rows=axispos where the control has the column, or leave R-POS out");
+  for (const SampledTable& sampled : sample_rotary_positioning(heidenhain_format(), result, options)) {
+    const AxisTable table = turn_from_zero(sampled.table);
+    tables.push_back({table.input, table.position, {}});
+    tables.back().columns.emplace_back(sampled.output, com_column(table, sampled.output, sign, false));
+  }
 }
 
 std::vector<ComTable> com_tables(const FitResult& result, const TableFormatOptions& options) {
@@ -113,8 +135,10 @@ std::vector<ComTable> com_tables(const FitResult& result, const TableFormatOptio
   for (const SampledTable& sampled : sample_axis_tables(heidenhain_format(), result, options)) {
     if (tables.empty() || tables.back().input != sampled.table.input)
       tables.push_back({sampled.table.input, sampled.table.position, {}});
-    tables.back().columns.emplace_back(sampled.output, com_column(sampled.table, sign, spacing));
+    tables.back().columns.emplace_back(sampled.output,
+                                       com_column(sampled.table, sampled.output, sign, spacing));
   }
+  add_com_rotary(result, options, sign, tables);
   for (const ComTable& table : tables) {
     for (std::size_t row = 0; row < table.position.size(); ++row) check_com_slope(table, row, {});
   }
@@ -124,13 +148,17 @@ std::vector<ComTable> com_tables(const FitResult& result, const TableFormatOptio
 
 std::string com_text(const ComTable& table, double sign, bool spacing, int exponent) {
   std::string text = fmt::format("{}{}\n", kComSign, sign > 0.0 ? "COMPENSATIONS" : "ERRORS");
-  if (spacing) text += fmt::format("DATUM {:.4f}\nSPACING {}\n", com_value(table.position.front()), exponent);
+  if (spacing)
+    text +=
+        fmt::format("DATUM {:.4f}\nSPACING {}\n", com_value(table.position.front(), table.input), exponent);
   text += spacing ? "NR" : "AXISPOS";
   for (const auto& [output, values] : table.columns) text += fmt::format(" {}", letter_of(output));
   text += '\n';
   for (std::size_t row = 0; row < table.position.size(); ++row) {
-    text += spacing ? fmt::format("{}", row) : fmt::format("{:.4f}", com_value(table.position[row]));
-    for (const auto& [output, values] : table.columns) text += fmt::format(" {:.4f}", com_value(values[row]));
+    text +=
+        spacing ? fmt::format("{}", row) : fmt::format("{:.4f}", com_value(table.position[row], table.input));
+    for (const auto& [output, values] : table.columns)
+      text += fmt::format(" {:.4f}", com_value(values[row], output));
     text += '\n';
   }
   return text;
@@ -155,14 +183,17 @@ std::vector<TableFile> write_com(const FitResult& result, const TableFormatOptio
 
 // ---- Reading
 
-/// Axes that the columns behind the first one are for, each once.
-std::vector<AxisName> com_columns(const TableLines& lines, std::span<const std::string_view> words) {
+/// Axes that the columns behind the first one are for, each once. `cause`: the axis that causes what they
+/// hold; a rotary axis causes something in itself alone, and nothing else does.
+std::vector<AxisName> com_columns(const TableLines& lines, std::span<const std::string_view> words,
+                                  std::optional<AxisName> cause = {}) {
   std::vector<AxisName> axes;
   for (const std::string_view word : words) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
-    if (!axis || is_rotary(*axis) || std::ranges::find(axes, *axis) != axes.end())
+    const bool right = axis && (!cause || *axis == *cause || (!is_rotary(*axis) && !is_rotary(*cause)));
+    if (!right || std::ranges::find(axes, *axis) != axes.end())
       lines.fail("a column is named \"" + std::string(word.substr(0, 40)) + "\"",
-                 "columns are for the axes X, Y and Z, each once");
+                 "columns are for the axes X, Y and Z, each once; a rotary axis has its own alone");
     axes.push_back(*axis);
   }
   if (axes.empty()) lines.fail("no column is for an axis", "write the tables again");
@@ -199,7 +230,7 @@ class ComReader {
     for (std::vector<std::string_view> words; lines_.advance_to_content();) {
       words = words_of(lines_.current());
       if (words.size() == 2 && words[0] == "DATUM") {
-        datum_ = lines_.number(words[1], "the datum") * kMetrePerMillimetre;
+        datum_ = lines_.number(words[1], "the datum") * com_unit(table_.input);
       } else if (words.size() == 2 && words[0] == "SPACING") {
         exponent_ = lines_.integer(words[1], "the spacing");
         if (*exponent_ < 0 || *exponent_ > kLargestSpacing)
@@ -210,7 +241,7 @@ class ComReader {
         if (words[0] != (has_datum() ? "NR" : "AXISPOS"))
           lines_.fail("the first column is neither AXISPOS nor, below DATUM and SPACING, NR",
                       "write the names of the columns above the rows");
-        for (const AxisName axis : com_columns(lines_, std::span(words).subspan(1)))
+        for (const AxisName axis : com_columns(lines_, std::span(words).subspan(1), table_.input))
           table_.columns.emplace_back(axis, std::vector<double>());
         return;
       }
@@ -219,11 +250,11 @@ class ComReader {
   }
 
   double position_in(std::string_view word) {
-    if (!has_datum()) return lines_.number(word, "the position") * kMetrePerMillimetre;
+    if (!has_datum()) return lines_.number(word, "the position") * com_unit(table_.input);
     const auto row = static_cast<int>(table_.position.size());
     if (lines_.integer(word, "the number") != row)
       lines_.fail(fmt::format("the row is not number {}", row), "number the rows from 0");
-    return *datum_ + row * std::ldexp(kComDigit, *exponent_);
+    return *datum_ + row * std::ldexp(com_digit(table_.input), *exponent_);
   }
 
   void read_row(const std::vector<std::string_view>& words) {
@@ -237,7 +268,8 @@ class ComReader {
     require_ascending(table_.position, position, lines_.place());
     table_.position.push_back(position);
     for (std::size_t i = 0; i < table_.columns.size(); ++i)
-      table_.columns[i].second.push_back(lines_.number(words[i + 1], "the value") * kMetrePerMillimetre);
+      table_.columns[i].second.push_back(lines_.number(words[i + 1], "the value") *
+                                         com_unit(table_.columns[i].first));
     check_com_slope(table_, table_.position.size() - 1, lines_.place());
   }
 
@@ -253,6 +285,7 @@ void add_com_terms(const ComTable& table, double sign, CompensationTables& table
     AxisTable axis_table{.input = table.input, .position = table.position, .forward = {}, .backward = {}};
     for (const double value : values) axis_table.forward.push_back(sign * value);
     axis_table.backward = axis_table.forward;
+    if (is_rotary(table.input) && make_a_turn(table.position)) axis_table.beyond = BeyondEnds::Repeat;
     tables.terms.push_back(axis_term(output, std::move(axis_table)));
   }
 }
@@ -300,18 +333,24 @@ const TableFormat& heidenhain_format() {
       .name = "heidenhain",
       .summary =
           "HEIDENHAIN nonlinear axis error compensation: compensation value tables (.COM) from axis to axis "
-          "and their assignment (.CMA), as rows of the control's table editor",
+          "and their assignment (.CMA), of rotary axes their own positioning, as rows of the control's table "
+          "editor",
       .source =
           "HEIDENHAIN, TNC 407/415/425 Technical Manual, 01.98, pages 4-27, 4-28, 4-31: datum, spacing 2^n x "
           "0.1 um, linear between points, 256 points a dependency, 10 dependencies, 640 points; MANUALplus "
           "620 Technical Manual, 01/2012, pages 713 to 718: AXISPOS, a column per axis, ACTIVE; TNC 306, "
-          "03.97, page 4-21: 1/64 of the spacing; TNC 360, 08.95, page 4-24: zero at the datum",
+          "03.97, page 4-21: 1/64 of the spacing; TNC 360, 08.95, page 4-24: zero at the datum; iTNC 530 "
+          "HSCI, "
+          "page 680: positioning of rotary axes in .COM",
       .verified =
           "read back by volcal; not tried on a controller. The sign of the values is NOT confirmed: it must "
           "be given. The text of .COM and .CMA files is not public: the rows are to be entered in the table "
-          "editor. One value for both directions: what BACKLASH does to columns of other axes is not stated",
+          "editor. One value for both directions: what BACKLASH does to columns of other axes is not stated. "
+          "Of "
+          "rotary axes the unit, deg, and rows from 0 to 360 for a turn are inferred",
       .supported = CompensationType(CompensationPart::Positioning) | CompensationPart::Straightness |
                    CompensationPart::Squareness,
+      .rotary = CompensationPart::RotaryPositioning,
       .refusal =
           "a compensation value table depends on one axis; angular errors take KinematicsComp, whose chain "
           "of transformations is the machine builder's",

@@ -39,22 +39,6 @@ std::string enc_table(AxisName name, const AxisTable& table, double step) {
                     table.beyond == BeyondEnds::Repeat ? 1 : 0);
 }
 
-/// One turn from 0, as a modulo axis counts it; another table as it is.
-AxisTable turn_from_zero(const AxisTable& table) {
-  if (table.beyond != BeyondEnds::Repeat) return table;
-  AxisTable turned = table;
-  const auto count = static_cast<double>(table.position.size() - 1);
-  for (std::size_t i = 0; i < table.position.size(); ++i) {
-    turned.position[i] = static_cast<double>(i) / count * (table.position.back() - table.position.front());
-    AxisPosition at{};
-    at[index_of(table.input)] = turned.position[i];
-    turned.forward[i] = table.value(at, kTowardsPlus);
-  }
-  turned.forward.back() = turned.forward.front();
-  turned.backward = turned.forward;
-  return turned;
-}
-
 std::vector<TableFile> write_enc_comp(const FitResult& result, const TableFormatOptions& options) {
   std::string text = fmt::format("{}\nCHANDATA(1)\n", kEncHeader);
   for (const SampledTable& sampled : sample_axis_tables(sinumerik_format(), result, options))

@@ -89,4 +89,70 @@ nlohmann::ordered_json program_json(const NcRewriteSummary& summary,
   return json;
 }
 
+namespace {
+
+void add_tcp_errors(const std::string& name, const TcpErrors& errors, TextTable& table) {
+  table.add_row({name, fixed_number(errors.rms / kMicro, 2), fixed_number(errors.max / kMicro, 2),
+                 count_number(errors.line_of_max), fixed_number(errors.axis_rms / kMicro, 1),
+                 fixed_number(errors.axis_max / kMicro, 1)});
+}
+
+nlohmann::ordered_json tcp_errors_json(const TcpErrors& errors) {
+  return {{"rms_um", errors.rms / kMicro},
+          {"max_um", errors.max / kMicro},
+          {"line_of_max", errors.line_of_max},
+          {"axis_rms_urad", errors.axis_rms / kMicro},
+          {"axis_max_urad", errors.axis_max / kMicro}};
+}
+
+}  // namespace
+
+std::string tcp_summary_text(const TcpSummary& summary, bool checked) {
+  std::string text = fmt::format(
+      "{} lines in, {} out: {} motions with tool centre point motion; {} lines were split; largest "
+      "correction "
+      "{:.1f} um, of a rotary axis {:.1f} urad\n",
+      count_number(summary.lines_read), count_number(summary.lines_written), count_number(summary.motions),
+      count_number(summary.split_lines), summary.largest_correction / kMicro, summary.largest_turn / kMicro);
+  if (summary.copied_rapids > 0)
+    text += fmt::format("{} rapids outside it are copied as they are\n", count_number(summary.copied_rapids));
+  if (summary.near_poles > 0)
+    text += fmt::format(
+        "! at {} positions, the first in line {}, the tool is so near a pole that more than a tenth of the "
+        "error "
+        "of its direction stays: moves of rotary axes are bounded there\n",
+        count_number(summary.near_poles), count_number(summary.first_near_pole));
+  if (summary.beyond_readings > 0)
+    text += fmt::format(
+        "! {} positions, the first in line {}, lie beyond the measured ones: the last measured error is "
+        "held\n",
+        count_number(summary.beyond_readings), count_number(summary.first_beyond));
+  if (!checked) return text;
+  TextTable table(
+      {{"", Align::Left}, {"RMS [um]"}, {"max [um]"}, {"in line"}, {"axis RMS [urad]"}, {"max [urad]"}},
+      fmt::format("Error of the tool point, and of the tool's axis, along {:.1f} mm of feed motion",
+                  summary.length / kMetrePerMillimetre));
+  add_tcp_errors("as programmed", summary.before, table);
+  add_tcp_errors("rewritten", summary.after, table);
+  return text + table.text();
+}
+
+nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked) {
+  nlohmann::ordered_json json = {{"lines_read", summary.lines_read},
+                                 {"lines_written", summary.lines_written},
+                                 {"motions", summary.motions},
+                                 {"split_lines", summary.split_lines},
+                                 {"copied_rapids", summary.copied_rapids},
+                                 {"largest_correction_um", summary.largest_correction / kMicro},
+                                 {"largest_rotary_correction_urad", summary.largest_turn / kMicro},
+                                 {"positions_near_poles", summary.near_poles},
+                                 {"positions_beyond_readings", summary.beyond_readings}};
+  if (checked) {
+    json["check"] = {{"feed_length_mm", summary.length / kMetrePerMillimetre},
+                     {"before", tcp_errors_json(summary.before)},
+                     {"after", tcp_errors_json(summary.after)}};
+  }
+  return json;
+}
+
 }  // namespace volcal

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/program/tcp_rewriter.h"
 
 namespace volcal {
 
@@ -20,5 +21,9 @@ std::string program_summary_text(const NcRewriteSummary& summary);
 std::string program_check_text(const ProgramCheck& check);
 nlohmann::ordered_json program_json(const NcRewriteSummary& summary,
                                     const std::optional<ProgramCheck>& check);
+
+/// Of programs with tool centre point motion; `checked`: its figures of errors were filled.
+std::string tcp_summary_text(const TcpSummary& summary, bool checked);
+nlohmann::ordered_json tcp_summary_json(const TcpSummary& summary, bool checked);
 
 }  // namespace volcal

@@ -30,8 +30,8 @@ TableFormatOptions rotary_options(const char* type, double step_deg = 10.0) {
   return options;
 }
 
-std::vector<TableFile> rotary_files(const char* format, const FitResult& result,
-                                    const TableFormatOptions& options) {
+std::vector<TableFile> rotary_files(const char* format, const FitResult& result, TableFormatOptions options) {
+  options.settings = testing::example_settings(*find_table_format(format));
   return write_tables(*find_table_format(format), result, options);
 }
 
@@ -98,6 +98,11 @@ INSTANTIATE_TEST_SUITE_P(All, RotaryTables,
                                            RotaryCase{"neutral-csv", "L-VOL+R-VOL", testing::kMixed},
                                            RotaryCase{"neutral-csv", "L-POS+R-POR", testing::kTrunnion},
                                            RotaryCase{"neutral-csv", "R-POS", testing::kMixed},
+                                           RotaryCase{"linuxcnc-grid", "R-VOL", testing::kTrunnion},
+                                           RotaryCase{"linuxcnc-grid", "L-VOL+R-VOL", testing::kHead},
+                                           RotaryCase{"linuxcnc-grid", "R-POS+R-POR", testing::kMixed},
+                                           RotaryCase{"isg-csv", "R-RAX+R-POR+R-ANG", testing::kTrunnion},
+                                           RotaryCase{"isg-csv", "L-VOL+R-POR", testing::kHead},
                                            RotaryCase{"sinumerik", "L-POS+R-POS", testing::kTrunnion},
                                            RotaryCase{"sinumerik", "R-POS", testing::kHead}));
 
@@ -111,7 +116,13 @@ TEST(RotaryTableTypes, AreWhatTheFormatHoldsOfTheMachine) {
     return testing::refusal([&] { rotary_files(format, of, rotary_options(type)); });
   };
   EXPECT_THAT(message("linuxcnc", "R-POS", result), HasSubstr("holds nothing of rotary axes"));
-  EXPECT_THAT(message("isg-csv", "L-VOL+R-POS", result), HasSubstr("holds nothing of rotary axes"));
+  EXPECT_THAT(message("etalon-exchange", "L-POS+R-POS", result), HasSubstr("holds nothing of rotary axes"));
+  for (const char* format : {"klipper", "marlin", "isg-ssfk", "sinumerik-cec"})
+    EXPECT_THAT(message(format, "R-VOL", result), HasSubstr("holds nothing of rotary axes")) << format;
+  for (const char* format : {"heidenhain", "fanuc"})
+    EXPECT_THAT(message(format, "R-POR", result), HasSubstr("of rotary axes it holds R-POS")) << format;
+  for (const char* format : {"isg-csv", "linuxcnc-grid"})
+    EXPECT_THAT(message(format, "R-RAX", result), HasSubstr("R-RAX and R-ANG together")) << format;
   EXPECT_THAT(message("csv", "L-VOL+R-POS", result), HasSubstr("R-VOL as a whole"));
   EXPECT_THAT(message("sinumerik", "R-POR", result), HasSubstr("of rotary axes it holds R-POS"));
   for (const char* type : {"FOR", "L-VOL+", "R-VOL+"})
@@ -280,6 +291,29 @@ INSTANTIATE_TEST_SUITE_P(
                       "the other body"},
         DamagedRotary{"csv", "metadata.csv", "compensation_type,L-VOL+R-VOL", "compensation_type,L-VOL+R-VAL",
                       "compensation_type is"},
+        DamagedRotary{"isg-csv", "volcomp.lis", "chain CAXYZ", "chain CAXYX", "chain is \"CAXYX\""},
+        DamagedRotary{"isg-csv", "volcomp.lis", "chain CAXYZ\n", "", "workpiece_axes is"},
+        DamagedRotary{"isg-csv", "volcomp.lis", "workpiece_axes 2", "workpiece_axes x", "workpiece_axes is"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "// workpiece side", "// side", "does not say whose errors"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "PXA PYA PZA", "PXA PYA PZB", "column PZB is not read"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "C EXC EYC", "C EXC EXC", "column EXC is not read"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "A EXA EYA", "A EXA EYC", "column EYC is not read"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "\n10.000000 ", "\n355.000000 ", "does not lie beyond"},
+        DamagedRotary{"isg-csv", "volcomp.csv", "\n10.000000 ", "\n10.000000 1 ", "the row has 8 numbers"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "volcal-rotary-1 inch", "volcal-rotary-1 m",
+                      "neither mm"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "chain C' A' b X Y Z", "chain X C' A' b Y Z",
+                      "volcal.rotary"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "own A", "own X", "no rotary axis of the chain"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "own C 37 1", "own C 36 1", "do not make a turn"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "twists table", "twists tool",
+                      "turns the other body"},
+        DamagedRotary{"linuxcnc-grid", "volcal.rotary", "A 23 0 C 37 1", "A 23 0 C 38 1", "volcal.rotary"},
+        DamagedRotary{"heidenhain", "C.COM.txt", "AXISPOS C", "AXISPOS X", "a column is named \"X\""},
+        DamagedRotary{"heidenhain", "C.COM.txt", "\n10.0000 ", "\n-10.0000 ", "does not lie beyond"},
+        DamagedRotary{"fanuc", "pitch_error.txt", "3625 C 360", "3625 C 350", "no turn from the reference"},
+        DamagedRotary{"fanuc", "pitch_error.txt", "3625 C 360", "3625 X 360", "is not read here"},
+        DamagedRotary{"fanuc", "pitch_error.txt", "DETECTION_UNIT_DEG 0.001\n", "", "DETECTION_UNIT_DEG"},
         DamagedRotary{"sinumerik", "AX_EEC.INI", "IS_MODULO[0,C1]=1", "IS_MODULO[0,C1]=2",
                       "is not read here"},
         DamagedRotary{"sinumerik", "AX_EEC.INI", "IS_MODULO[0,A1]=0", "IS_MODULO[0,A1]=1",
@@ -290,13 +324,16 @@ INSTANTIATE_TEST_SUITE_P(
 /// Whatever is cut off or overwritten, a reader answers with an error of input or reads.
 TEST(RotaryTableReaders, NothingElseThanAnInputErrorComesOfThem) {
   const FitResult result = rotary_result(testing::kTrunnion);
-  for (const char* name : {"csv", "neutral-csv", "sinumerik"}) {
+  for (const char* name :
+       {"csv", "neutral-csv", "sinumerik", "isg-csv", "linuxcnc-grid", "heidenhain", "fanuc"}) {
     const TableFormat& format = *find_table_format(name);
     const auto whole =
         rotary_files(name, result, rotary_options(default_type(format, result).name().c_str(), 90.0));
     int refused = 0;
     for (std::size_t which = 0; which < whole.size(); ++which) {
-      if (!whole[which].name.starts_with("rotary") && std::string_view(name) != "sinumerik") continue;
+      if (!whole[which].name.starts_with("rotary") && std::string_view(name).ends_with("csv") &&
+          std::string_view(name) != "isg-csv")
+        continue;
       auto files = whole;
       std::string& content = files[which].content;
       const std::string original = content;

@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"heidenhain", "CONFIG.CMA.txt", "\n* ", "\n- ", 2, "no line is active"},
         Malformed{"heidenhain", "CONFIG.CMA.txt", " Z.COM\n", "\n", 2, "another number of cells"},
         Malformed{"heidenhain", "CONFIG.CMA.txt", "Z.COM\n", "Z.COM\n* X.COM Y.COM Z.COM\n", 3, "two lines"},
-        Malformed{"heidenhain", "CONFIG.CMA.txt", "ACTIVE X", "ACTIVE C", 1, "column is named \"C\""},
+        Malformed{"heidenhain", "CONFIG.CMA.txt", "ACTIVE X", "ACTIVE U", 1, "column is named \"U\""},
         Malformed{"heidenhain", "CONFIG.CMA.txt", "ACTIVE", "NR", 1, "not ACTIVE"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -212,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(
         Malformed{"fanuc", "pitch_error.txt", "UNIT_UM 1", "UNIT_UM 0", 7, "missing or out of range"},
         Malformed{"fanuc", "pitch_error.txt", "LARGEST_VALUE 7\n", "", 6, "missing or out of range"},
         Malformed{"fanuc", "pitch_error.txt", "PARAMETER AXIS VALUE\n", "", 7, "PARAMETER AXIS VALUE"},
-        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3621 C 0", 11, "no parameter of an axis"},
+        Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3621 U 0", 11, "no parameter of an axis"},
         Malformed{"fanuc", "pitch_error.txt", "3621 X 0", "3620 X 0", 11, "a second time"},
         Malformed{"fanuc", "pitch_error.txt", "3624 X", "3625 X", 14, "is not read here"},
         Malformed{"fanuc", "pitch_error.txt", "3624 X 500.0000\n", "", 15, "3624 is missing"},

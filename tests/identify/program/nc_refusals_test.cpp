@@ -76,7 +76,9 @@ TEST(NcRefusals, OfCodesThatAreNotTracked) {
       {"G123\n", "1: G123 is unknown (write the codes of RS-274 that the guide lists, or take it out)"},
       {"M98 P1\n", "1: M98 is a subprogram, which is not followed (write the program without subprograms)"},
       {"M77\n", "1: M77 is unknown (take it out if it moves no axis)"},
-      {"G0 A1\n", "1: A moves a rotary axis (only programs of X, Y and Z are compensated)"},
+      {"G0 A1\n",
+       "1: A moves a rotary axis (only programs of X, Y and Z are compensated, and those with tool centre "
+       "point motion (G43.4 H or TRAORI))"},
       {"G0 U1\n", "1: U moves a secondary axis or increments (write X, Y and Z with G90 or G91)"},
       {"G0 G1 X1\n", "1: G0 and G1 exclude each other (write them in two blocks)"},
       {"G10 L20 P1 X1\n",

@@ -35,7 +35,7 @@ sim::MachineState state_of(const AxisPosition& position, int direction) {
 Eigen::Vector3d added_um(const char* format, const std::vector<TableFile>& files, const AxisPosition& at,
                          int direction) {
   const sim::ActiveCompensation active{control_tables(*find_table_format(format), files), 0.0, {}};
-  return sim::command_correction(active)(state_of(at, direction)) / 1e-6;
+  return sim::command_correction(active)(state_of(at, direction)).linear / 1e-6;
 }
 
 constexpr AxisPosition kMiddleOfX = {0.5, 0.0, 0.0};
@@ -147,7 +147,7 @@ TEST(ControlTables, ProductsOfTablesAreTheIdealCompensation) {
         sim::MachineState state;
         state.position = point.position;
         state.direction = point.direction;
-        EXPECT_LT((control(state) - ideal.correction(point.position, point.direction)).norm(), 0.25e-6)
+        EXPECT_LT((control(state).linear - ideal.correction(point.position, point.direction)).norm(), 0.25e-6)
             << truth.machine().structure.code << " " << info.name;
       }
     }
@@ -168,7 +168,8 @@ TEST(ControlTables, AgreeWithTheFormatsOwnReader) {
         sim::MachineState state;
         state.position = point.position;
         state.direction = point.direction;
-        EXPECT_LT((control(state) - own.correction(point.position, point.direction).linear).norm(), 2e-9)
+        EXPECT_LT((control(state).linear - own.correction(point.position, point.direction).linear).norm(),
+                  2e-9)
             << format->name << " " << info.name;
       }
     }
@@ -362,7 +363,7 @@ class MistakenFiles : public ::testing::TestWithParam<const TableFormat*> {
         state.position = point.position;
         state.direction = point.direction;
         points.emplace_back(point.position[0], point.position[1], point.position[2]);
-        differences.emplace_back(wrong(state) - right(state));
+        differences.emplace_back(wrong(state).linear - right(state).linear);
       }
       return sim::rms_after_alignment(points, differences);
     } catch (const InputError&) {

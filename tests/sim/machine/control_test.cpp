@@ -28,7 +28,7 @@ ControlAxisTable table_of_x() {
 }
 
 Eigen::Vector3d added(const ActiveCompensation& compensation, const MachineState& state) {
-  return command_correction(compensation)(state);
+  return command_correction(compensation)(state).linear;
 }
 
 TEST(Control, AxisTablesAreLinearBetweenPositionsAndHeldBeyond) {

@@ -259,8 +259,7 @@ TEST(Fit, SaysThatAGuessIsContradicted) {
     return std::ranges::count_if(result.findings, [&](const Finding& finding) {
       return finding.code == FindingCode::PriorContradicted &&
              finding.text("block") == bar->name + ": centre" && finding.text("parameter") == "x" &&
-             std::abs(finding.number("miss").si - 30e-3) < 0.5e-3 &&
-             finding.number("sigma").unit == "mm" &&
+             std::abs(finding.number("miss").si - 30e-3) < 0.5e-3 && finding.number("sigma").unit == "mm" &&
              std::abs(finding.number("sigma").in_unit() - 0.1) < 1e-9 && finding.flag("default");
     });
   };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/instruments/registry.h"
@@ -55,6 +56,17 @@ MeasurementRecord read_campaign_record(const std::string& path) {
   const TomlDocument document = TomlDocument::read(path);
   document.require_format(kCampaignFormat);
   return read_record(document.root());
+}
+
+std::string record_toml(const MeasurementRecord& record) {
+  std::string text;
+  for (const auto& [key, entry] : record.entries) {
+    if (key != kActiveCompensations) text += key + " = " + toml_text(entry) + "\n";
+  }
+  if (!record.instruments.empty()) text += "[record.instruments]\n";
+  for (const auto& [name, entry] : record.instruments)
+    text += toml_text(name) + " = " + toml_text(entry) + "\n";
+  return text.empty() ? text : "\n[record]\n" + text;
 }
 
 MeasurementRecord parse_record(const std::string& text, const std::string& name) {

@@ -16,5 +16,7 @@ MeasurementRecord read_record(const TomlTable& campaign);
 MeasurementRecord read_campaign_record(const std::string& path);
 /// Of a text that holds the table alone; `name` stands for the file in messages. Throws InputError.
 MeasurementRecord parse_record(const std::string& text, const std::string& name);
+/// The table again, without active_compensations; empty where nothing was recorded.
+std::string record_toml(const MeasurementRecord& record);
 
 }  // namespace volcal

@@ -35,6 +35,10 @@ TEST(RecordOfACampaign, IsItsTexts) {
   EXPECT_EQ(record.instruments.at("laser-tracer"), "No. 12, calibrated 2026-03");
   EXPECT_THAT(record.entry("feed"), IsEmpty());
   EXPECT_TRUE(parse_record("", "record").entries.empty());
+  const MeasurementRecord again = parse_record(record_toml(record), "record");
+  EXPECT_EQ(again.instruments, record.instruments);
+  EXPECT_EQ(again.entry("operator"), record.entry("operator"));
+  EXPECT_EQ(record_toml({}), "");
 }
 
 TEST(RecordOfACampaign, IsRefusedWithItsLine) {

@@ -13,6 +13,7 @@
 #include "volcal/identify/io/exports/covariance_npz.h"
 #include "volcal/identify/io/exports/gtc_archive.h"
 #include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "volcal/identify/io/campaign/campaign_reader.h"
+#include "volcal/identify/io/campaign/record_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/campaign_writer.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -85,6 +86,10 @@ void write_campaign_folder(const Campaign& campaign, const std::filesystem::path
     AtomicFolder folder(path.string(), Replaceable::Unedited);
     folder.write("machine.toml", machine_toml(campaign.machine));
     write_campaign(campaign, folder.path(), "machine.toml");
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(campaign.file, ignored))
+      folder.write("campaign.toml", campaign_toml(campaign, "machine.toml") +
+                                        record_toml(read_campaign_record(campaign.file)));
     folder.commit_to_be_edited();
   });
 }

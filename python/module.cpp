@@ -21,4 +21,8 @@ PYBIND11_MODULE(_volcal, module) {
   define_compensation(module);
   define_plan(module);
   define_session(module);
+  define_alignment(module);
+  define_budget(module);
+  define_comparison(module);
+  define_trial(module);
 }

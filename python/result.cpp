@@ -54,9 +54,7 @@ py::dtype residual_type() {
 }
 
 py::array residuals_of(const py::object& self) {
-  const std::vector<ResidualRecord>& residuals = self.cast<const Result&>().result.residuals;
-  return read_only_view(residual_type(), {static_cast<py::ssize_t>(residuals.size())},
-                        {static_cast<py::ssize_t>(sizeof(ResidualRecord))}, residuals.data(), self);
+  return residual_view(self.cast<const Result&>().result.residuals, self);
 }
 
 template <class Value>
@@ -70,18 +68,31 @@ py::array_t<double> standard_uncertainties(const Result& result) {
   return array_of(Eigen::VectorXd(result.result.covariance.diagonal().cwiseMax(0.0).cwiseSqrt()));
 }
 
+/// Of an aligned result that was read from files nothing is written of readings, which stay in the former
+/// frame.
 const Campaign& campaign_of(const Result& result) {
+  static const Campaign none;
   if (result.campaign != nullptr) return *result.campaign;
+  if (!result.result.alignment.empty()) return none;
   throw InputError({}, "the result was read from files, without its readings", "fit the campaign again");
+}
+
+/// An aligned result is reported with its own machine, and without readings.
+std::string report_of(const Result& of) {
+  const FitResult& result = of.result;
+  const ReportOptions options{.date = today(), .provenance = result.provenance};
+  if (result.alignment.empty()) return report_html(result, campaign_of(of), options);
+  Campaign campaign;
+  campaign.machine = result.machine;
+  campaign.file = campaign_of(of).file;
+  return report_html(result, campaign, options);
 }
 
 void write_result(const Result& result, const std::filesystem::path& path, bool report) {
   const Campaign& campaign = campaign_of(result);
   without_lock([&] {
     std::map<std::string, std::string> more;
-    if (report && report_available())
-      more["report.html"] =
-          report_html(result.result, campaign, {.date = today(), .provenance = result.result.provenance});
+    if (report && report_available()) more["report.html"] = report_of(result);
     write_result_folder(result.result, campaign, path.string(), more);
   });
 }
@@ -335,13 +346,7 @@ void define_outputs(py::class_<Result>& type) {
            "report.html "
            "unless `report` is False. Raises InputError, also for a result read from files.")
       .def(
-          "report_html",
-          [](const Result& result) {
-            return without_lock([&] {
-              return report_html(result.result, campaign_of(result),
-                                 {.date = today(), .provenance = result.result.provenance});
-            });
-          },
+          "report_html", [](const Result& result) { return without_lock([&] { return report_of(result); }); },
           "The whole report as one HTML page. Raises RuntimeError where volcal was built without it.")
       .def("__str__",
            [](const Result& result) {
@@ -360,6 +365,11 @@ void define_outputs(py::class_<Result>& type) {
 }
 
 }  // namespace
+
+py::array residual_view(const std::vector<ResidualRecord>& residuals, const py::handle& owner) {
+  return read_only_view(residual_type(), {static_cast<py::ssize_t>(residuals.size())},
+                        {static_cast<py::ssize_t>(sizeof(ResidualRecord))}, residuals.data(), owner);
+}
 
 Provenance provenance_of(const std::string& python) {
   return {.version = VOLCAL_VERSION, .date = present_time_text(), .command = python};

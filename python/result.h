@@ -3,9 +3,11 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
+#include "volcal/python/shared/arrays.h"
 
 namespace volcal::python {
 
@@ -19,6 +21,9 @@ std::string escaped(const std::string& text);
 
 /// A table of its errors with small plots, self-contained: what a notebook shows.
 std::string result_html(const Result& result);
+
+/// Residuals without a copy: one record per observation, of memory that `owner` keeps alive.
+py::array residual_view(const std::vector<ResidualRecord>& residuals, const py::handle& owner);
 
 /// Version of volcal, the present time, and the Python that does the same.
 Provenance provenance_of(const std::string& python);

@@ -4,13 +4,18 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/io/campaign/record_reader.h"
+#include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/compensation_text.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/python/result.h"
@@ -68,6 +73,35 @@ void write_tables_folder(const MadeTables& made, const std::filesystem::path& pa
   });
 }
 
+/// [record] of a campaign file, of a mapping, or, where nothing is given, of the file that the campaign is
+/// of.
+MeasurementRecord record_given(const py::object& given, const Campaign& campaign) {
+  if (given.is_none()) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(campaign.file, ignored) ? read_campaign_record(campaign.file)
+                                                                    : MeasurementRecord{};
+  }
+  if (!py::isinstance<py::dict>(given))
+    return read_campaign_record(given.cast<std::filesystem::path>().string());
+  return parse_record("[record]\n" + toml_lines(given), "record");
+}
+
+std::string certificate_of(const Result& result, const MadeTables& tables, const py::object& record,
+                           const std::shared_ptr<Campaign>& verified) {
+  if (result.campaign == nullptr)
+    throw InputError({}, "the result was read from files, without its readings",
+                     "fit the campaign again, or use volcal tables --certificate");
+  const Campaign& campaign = *result.campaign;
+  const MeasurementRecord recorded = record_given(record, campaign);
+  return without_lock([&] {
+    require_campaign_of(result.result, campaign);
+    std::optional<MeasuredError> after;
+    if (verified != nullptr) after = measured_error(*verified);
+    return report_html(CertificateView{result.result, tables, recorded, measured_error(campaign), after},
+                       {.date = today(), .provenance = provenance_of("volcal.certificate")});
+  });
+}
+
 py::dict format_summaries() {
   py::dict formats;
   for (const TableFormat* format : table_formats())
@@ -118,6 +152,18 @@ void define_tables(py::module_& module) {
       "conditions: {\"T_air\": 23.3, \"time_s\": 3600}. positions, grid, zero, run (which identification) "
       "and "
       "record: of csv tables. Raises InputError.");
+  module.def(
+      "certificate", &certificate_of, py::arg("result"), py::arg("tables"), py::kw_only(),
+      py::arg("record") = py::none(), py::arg("verified") = py::none(),
+      "The certificate of a compensation as one HTML page: machine, operator, instruments, conditions and "
+      "what else "
+      "ISO/TR 16907:2015, 9.1, asks to be documented, the figures before and after, and fields to sign.\n\n"
+      "record: the table [record] as a mapping, {\"serial_number\": \"4711\", \"instruments\": "
+      "{\"laser-tracer\": "
+      "\"No. 12\"}}, or the campaign.toml that has it; None = the file of the campaign. verified: a Campaign "
+      "that was "
+      "measured with the tables active. Raises InputError, and RuntimeError where volcal was built without "
+      "the report.");
   module.def("table_formats", &format_summaries, "Table formats with a summary each.");
 }
 

@@ -358,6 +358,24 @@ std::string alignment_words(const FitResult& result) {
 
 }  // namespace
 
+Datum wished_datum(const Datum& former, std::optional<AxisName> primary, std::optional<AxisName> secondary,
+                   bool spindle) {
+  Datum datum = former;
+  if (primary) {
+    datum.primary = *primary;
+  } else if (spindle) {
+    datum.primary = AxisName::Z;
+  }
+  if (secondary) {
+    datum.secondary = *secondary;
+  } else if (datum.secondary == datum.primary) {
+    datum.secondary = former.primary == datum.primary ? former.third() : former.primary;
+  } else if (spindle && !primary && former.primary != AxisName::Z) {
+    datum.secondary = former.primary;
+  }
+  return datum;
+}
+
 AlignedResult align_result(const FitResult& result, const Alignment& alignment) {
   if (alignment.datum.primary == alignment.datum.secondary)
     throw InputError({}, "primary and secondary axis are the same", "name two different axes");

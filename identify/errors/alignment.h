@@ -29,6 +29,11 @@ struct Alignment {
   std::optional<Eigen::Vector2d> spindle_tilt;
 };
 
+/// The datum that somebody wants: axes that are not named are those of the former datum, as far as the others
+/// leave them. With the spindle as the reference direction the primary axis is Z unless another one is named.
+Datum wished_datum(const Datum& former, std::optional<AxisName> primary, std::optional<AxisName> secondary,
+                   bool spindle);
+
 struct AlignedResult {
   FitResult result;  ///< without the campaign's nuisance parameters, which belong to the former frame
   Eigen::Vector3d frame_rotation = Eigen::Vector3d::Zero();    ///< phi, rad

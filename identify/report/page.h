@@ -1,7 +1,7 @@
 #pragma once
 /// Sections of the reports, of a result, a diagnosis, a comparison, a validation, a Monte Carlo study and a
-/// plan. A new section is one file in pages/ with a builder, one line in pages.cpp, and a renderer of the
-/// same kind with one line in web/src/pages.js.
+/// plan, and of the certificate. A new section is one file in pages/ with a builder, one line in pages.cpp,
+/// and a renderer of the same kind with one line in web/src/pages.js.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -81,6 +81,21 @@ std::span<const PlanPage> plan_pages();
 Json plan_layout_page(const PlanPageInput& input);
 Json plan_errors_page(const PlanPageInput& input);
 Json plan_detectable_page(const PlanPageInput& input);
+
+/// What a section of a certificate is made from.
+struct CertificateInput {
+  const CertificateView& certificate;
+  const ReportOptions& options;
+};
+
+using CertificatePage = PageOf<CertificateInput>;
+std::span<const CertificatePage> certificate_pages();
+
+Json certified_page(const CertificateInput& input);
+Json certificate_record_page(const CertificateInput& input);
+Json certificate_figures_page(const CertificateInput& input);
+Json certificate_files_page(const CertificateInput& input);
+Json signature_page(const CertificateInput& input);
 
 /// What a section of a comparison's or a validation's report is made from.
 struct ComparisonInput {

@@ -64,6 +64,14 @@ constexpr std::array kPlanPages = {
     PlanPage{"detectable", "Smallest detectable effects", plan_detectable_page},
 };
 
+constexpr std::array kCertificatePages = {
+    CertificatePage{"certified", "What is certified", certified_page},
+    CertificatePage{"certificate_figures", "Before and after", certificate_figures_page},
+    CertificatePage{"certificate_record", "Record, ISO/TR 16907 clause 9.1", certificate_record_page},
+    CertificatePage{"certificate_files", "Files", certificate_files_page},
+    CertificatePage{"signature", "Signature", signature_page},
+};
+
 }  // namespace
 
 std::span<const Page> pages() { return kPages; }
@@ -73,5 +81,6 @@ std::span<const ComparisonPage> comparison_pages() { return kComparisonPages; }
 std::span<const ComparisonPage> validation_pages() { return kValidationPages; }
 std::span<const MonteCarloPage> montecarlo_pages() { return kMonteCarloPages; }
 std::span<const PlanPage> plan_pages() { return kPlanPages; }
+std::span<const CertificatePage> certificate_pages() { return kCertificatePages; }
 
 }  // namespace volcal::report

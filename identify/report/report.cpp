@@ -60,7 +60,7 @@ std::string fill(std::string_view page, std::string_view slot, const std::string
 template <class Input>
 std::string document(const std::string& title, const std::string& subtitle, const ReportOptions& options,
                      std::span<const report::PageOf<Input>> pages, const Input& input,
-                     bool has_readings = true) {
+                     bool has_readings = true, bool upright = false) {
   report::Json document;
   document["format"] = "volcal-report-1";
   document["title"] = title;
@@ -68,6 +68,7 @@ std::string document(const std::string& title, const std::string& subtitle, cons
   document["date"] = options.date;
   document["version"] = options.provenance.version;
   document["command"] = options.provenance.command;
+  if (upright) document["paper"] = "upright";
   document["pages"] = report::Json::array();
   for (const report::PageOf<Input>& page : pages) {
     if (page.of_readings && !has_readings) continue;
@@ -178,6 +179,16 @@ std::string report_json(const CampaignPlan& plan, const ReportOptions& options) 
 
 std::string report_html(const CampaignPlan& plan, const ReportOptions& options) {
   return filled_page(plan.settings.machine.name + " \u2013 volcal plan", report_json(plan, options));
+}
+
+std::string report_json(const CertificateView& certificate, const ReportOptions& options) {
+  return document(certificate.result.machine.name, "Certificate of compensation", options,
+                  report::certificate_pages(), report::CertificateInput{certificate, options}, true, true);
+}
+
+std::string report_html(const CertificateView& certificate, const ReportOptions& options) {
+  return filled_page(certificate.result.machine.name + " \u2013 certificate",
+                     report_json(certificate, options));
 }
 
 }  // namespace volcal

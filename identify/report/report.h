@@ -1,19 +1,24 @@
 #pragma once
 /// The reports of a result, of a diagnosis, of a comparison, of a validation, of a Monte Carlo study and of a
-/// plan: each one self-contained HTML page with interactive plots, readable without a network.
+/// plan, and the certificate of a compensation: each one self-contained HTML page with interactive plots,
+/// readable without a network.
 ///
 /// The page is a template (identify/report/web, bundled from npm packages when the program is built and kept
 /// inside the library) that is filled with one JSON document. A page section is one C++ function that makes
 /// its data and one JavaScript renderer; page.h and web/src/pages.js are the two registration tables.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "volcal/identify/compensation/made_tables.h"
+#include "volcal/identify/compensation/measurement_record.h"
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/montecarlo/montecarlo.h"
 #include "volcal/identify/planning/campaign_plan.h"
 #include "volcal/identify/report/values/compared_model.h"
+#include "volcal/identify/report/values/measured_error.h"
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/result/result.h"
@@ -87,5 +92,19 @@ std::string report_html(const MonteCarloResult& study, const Machine& machine,
 /// The same for a campaign plan.
 std::string report_json(const CampaignPlan& plan, const ReportOptions& options = {});
 std::string report_html(const CampaignPlan& plan, const ReportOptions& options = {});
+
+/// Tables for a controller as somebody signs them.
+struct CertificateView {
+  const FitResult& result;
+  const MadeTables& tables;
+  const MeasurementRecord& record;
+  MeasuredError before;                ///< by the campaign that was identified
+  std::optional<MeasuredError> after;  ///< by one that was measured with the tables active
+};
+/// The certificate: machine, operator, instruments, conditions and what else ISO/TR 16907:2015, 9.1, asks to
+/// be documented, the figures before and after, the files with their POSIX checksums, and fields to sign.
+/// Made for A4 upright.
+std::string report_json(const CertificateView& certificate, const ReportOptions& options = {});
+std::string report_html(const CertificateView& certificate, const ReportOptions& options = {});
 
 }  // namespace volcal

@@ -173,20 +173,6 @@ void report_lack_of_fit(FitResult& result) {
 
 }  // namespace
 
-std::string_view to_string(FitStatus status) {
-  switch (status) {
-    case FitStatus::Ok:
-      return "ok";
-    case FitStatus::LackOfFit:
-      return "lack_of_fit";
-    case FitStatus::RankDeficient:
-      return "rank_deficient";
-    case FitStatus::NotConverged:
-      return "not_converged";
-  }
-  return "";
-}
-
 void judge(const Campaign& campaign, const CampaignBinding& binding, const AdjustmentEnd& end,
            FitResult& result) {
   result.findings.insert(result.findings.end(), campaign.notes.begin(), campaign.notes.end());

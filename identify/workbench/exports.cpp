@@ -12,7 +12,7 @@
 #include "volcal/identify/io/results/diagnosis_folder.h"
 #include "volcal/identify/io/results/result_folder.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/text/text_file.h"
 

@@ -21,5 +21,9 @@ void define_tables(py::module_& module);
 void define_compensation(py::module_& module);
 void define_plan(py::module_& module);
 void define_session(py::module_& module);
+void define_alignment(py::module_& module);
+void define_budget(py::module_& module);
+void define_comparison(py::module_& module);
+void define_trial(py::module_& module);
 
 }  // namespace volcal::python

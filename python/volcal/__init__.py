@@ -31,7 +31,11 @@ class InputError(ValueError):
 
 
 from ._volcal import (  # noqa: E402  (what it raises is defined before)
+    Aligned,
+    Budget,
+    BudgetLine,
     Campaign,
+    Comparison,
     CompensatedProgram,
     Diagnosis,
     EffectFinding,
@@ -47,7 +51,12 @@ from ._volcal import (  # noqa: E402  (what it raises is defined before)
     SessionModel,
     Setup,
     Tables,
+    TriedEffect,
     __version__,
+    align,
+    budget,
+    certificate,
+    compare,
     compensate,
     diagnose,
     effect_kinds,
@@ -60,12 +69,17 @@ from ._volcal import (  # noqa: E402  (what it raises is defined before)
     register_effect,
     table_formats,
     tables,
+    try_effect,
     unregister_effect,
     validate,
 )
 
 __all__ = [
+    "Aligned",
+    "Budget",
+    "BudgetLine",
     "Campaign",
+    "Comparison",
     "CompensatedProgram",
     "Diagnosis",
     "EffectFinding",
@@ -82,7 +96,12 @@ __all__ = [
     "SessionModel",
     "Setup",
     "Tables",
+    "TriedEffect",
     "__version__",
+    "align",
+    "budget",
+    "certificate",
+    "compare",
     "compensate",
     "diagnose",
     "effect_kinds",
@@ -95,6 +114,7 @@ __all__ = [
     "register_effect",
     "table_formats",
     "tables",
+    "try_effect",
     "unregister_effect",
     "validate",
 ]

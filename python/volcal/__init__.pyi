@@ -8,7 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 __all__ = [
+    "Aligned",
+    "Budget",
+    "BudgetLine",
     "Campaign",
+    "Comparison",
     "CompensatedProgram",
     "Diagnosis",
     "EffectFinding",
@@ -25,7 +29,12 @@ __all__ = [
     "SessionModel",
     "Setup",
     "Tables",
+    "TriedEffect",
     "__version__",
+    "align",
+    "budget",
+    "certificate",
+    "compare",
     "compensate",
     "diagnose",
     "effect_kinds",
@@ -38,6 +47,7 @@ __all__ = [
     "register_effect",
     "table_formats",
     "tables",
+    "try_effect",
     "unregister_effect",
     "validate",
 ]
@@ -346,6 +356,83 @@ class Plan:
     def to_dict(self) -> dict[str, Any]: ...
     def write(self, path: _Path, report: bool = True) -> None: ...
 
+class Aligned:
+    @property
+    def result(self) -> Result: ...
+    @property
+    def frame_rotation(self) -> _Floats: ...
+    @property
+    def frame_covariance(self) -> _Floats: ...
+    @property
+    def description(self) -> str: ...
+
+class BudgetLine:
+    @property
+    def name(self) -> str: ...
+    @property
+    def depends_on(self) -> str: ...
+    @property
+    def rms(self) -> float: ...
+    @property
+    def max(self) -> float: ...
+    @property
+    def share(self) -> float: ...
+    @property
+    def u_rms(self) -> float: ...
+    @property
+    def expected_share(self) -> float: ...
+
+class Budget:
+    @property
+    def tool(self) -> str: ...
+    @property
+    def total(self) -> BudgetLine: ...
+    @property
+    def contributions(self) -> list[BudgetLine]: ...
+    @property
+    def causes(self) -> list[BudgetLine]: ...
+    @property
+    def rms_95(self) -> float: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def to_frame(self) -> Any: ...
+    def _repr_html_(self) -> str: ...
+
+class Comparison:
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def where_it_fails(self) -> list[str]: ...
+    @property
+    def rms(self) -> list[float]: ...
+    @property
+    def angle_rms(self) -> list[float]: ...
+    @property
+    def residuals(self) -> list[NDArray[np.void]]: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def write(self, path: _Path, report: bool = True) -> None: ...
+    def _repr_html_(self) -> str: ...
+
+class TriedEffect:
+    @property
+    def effect(self) -> str: ...
+    @property
+    def values(self) -> list[dict[str, Any]]: ...
+    @property
+    def visible(self) -> bool: ...
+    @property
+    def not_visible(self) -> str: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def held_out(self) -> dict[str, dict[str, Any]] | None: ...
+    @property
+    def verdict_of_what_remains(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_dict(self) -> dict[str, Any]: ...
+    def _repr_html_(self) -> str: ...
+
 def read_campaign(path: _Path) -> Campaign: ...
 def read_result(path: _Path) -> Result: ...
 def read_diagnosis(path: _Path) -> Diagnosis: ...
@@ -375,6 +462,43 @@ def diagnose(
     readings: int = 48,
     progress: _Progress = None,
 ) -> Diagnosis: ...
+def compare(
+    campaign: Campaign,
+    models: Sequence[Result | Model | str],
+    *,
+    names: Sequence[str] = ...,
+    held_out: bool = False,
+    worst: int = 10,
+    threads: int = 0,
+    progress: _Progress = None,
+) -> Comparison: ...
+def try_effect(
+    campaign: Campaign,
+    effect: str,
+    model: Model | None = None,
+    *,
+    parameters: Sequence[str] = ...,
+    threads: int = 0,
+    progress: _Progress = None,
+) -> TriedEffect: ...
+def align(
+    result: Result,
+    *,
+    primary: str = "",
+    secondary: str = "",
+    origin: Mapping[str, float] = ...,
+    reference: str = "axis",
+    spindle_tilt_urad: tuple[float, float] | None = None,
+) -> Aligned: ...
+def budget(
+    errors: Result | Model | Machine,
+    *,
+    tolerances: _Path | None = None,
+    tool: str = "",
+    conditions: Mapping[str, float] = ...,
+    grid: int = 7,
+    within_readings: bool = False,
+) -> Budget: ...
 def montecarlo(
     campaign: Campaign,
     result: Result,
@@ -407,6 +531,13 @@ def tables(
     run: str = "",
     record: Mapping[str, str] = ...,
 ) -> Tables: ...
+def certificate(
+    result: Result,
+    tables: Tables,
+    *,
+    record: Mapping[str, object] | _Path | None = None,
+    verified: Campaign | None = None,
+) -> str: ...
 def compensate(
     result: Result,
     program: str,

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "volcal/identify/compensation/csv_tables.h"
+#include "volcal/identify/compensation/measurement_record.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/studies/files/control_words.h"
@@ -444,8 +445,9 @@ TablesFolder read_tables_folder(const std::string& folder) {
   TablesFolder tables;
   std::set<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && entry.path().filename().string().front() != '.')
-      names.insert(entry.path().filename().string());
+    const std::string name = entry.path().filename().string();
+    const bool certificate = name == kCertificatePage || name == kCertificatePdf;
+    if (entry.is_regular_file() && name.front() != '.' && !certificate) names.insert(name);
   }
   for (const ControlFormat& format : control_formats()) {
     if (names.contains(std::string(format.without)) ||

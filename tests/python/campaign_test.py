@@ -44,6 +44,15 @@ class FromFiles(Case):
         again = volcal.read_campaign(self.folder / "again" / "campaign.toml")
         np.testing.assert_allclose(again.setups[3]["length_mm"], campaign.setups[3]["length_mm"], rtol=0, atol=1e-7)
 
+    def test_its_record_is_written_again(self) -> None:
+        for name in ("machine.toml", *(f.name for f in FOLDER.glob("*.csv"))):
+            (self.folder / name).write_text((FOLDER / name).read_text())
+        record = '[record]\noperator = "A. Müller"\n[record.instruments]\n"laser-tracer" = "No. 12"\n'
+        (self.folder / "campaign.toml").write_text((FOLDER / "campaign.toml").read_text() + record)
+        volcal.read_campaign(self.folder / "campaign.toml").write(self.folder / "again")
+        self.assertTrue((self.folder / "again" / "campaign.toml").read_text().endswith("\n" + record))
+        volcal.read_campaign(self.folder / "again" / "campaign.toml")
+
 
 class FromArrays(Case):
     def setUp(self) -> None:

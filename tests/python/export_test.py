@@ -93,10 +93,41 @@ class Export(Case):
         rows = np.flatnonzero((self.arrays["table_names"] == "EXX") & (u > 0))
         self.assertGreater(covariance[rows[-1], rows[-2]] / (u[rows[-1]] * u[rows[-2]]), 0.5)
 
+    def elementary(self) -> dict[str, Any]:
+        return {tag: number for tag, number in self.archive["tagged_real"].items() if number["CLASS"] == "ElementaryReal"}
+
+    def gtc_covariance(self, one: dict[str, Any], other: dict[str, Any]) -> float:
+        """As GTC computes it of what it reads (GTC/lib.py, std_covariance_real)."""
+        leaves = self.archive["leaf_nodes"]
+        alone = dict(zip(other["u_components"]["index"], other["u_components"]["value"]))
+        total = sum(u * alone.get(uid, 0.0) for uid, u in zip(one["u_components"]["index"], one["u_components"]["value"]))
+        for uid, u in zip(one["d_components"]["index"], one["d_components"]["value"]):
+            correlation = leaves[uid]["correlation"]
+            total += sum(u * correlation.get(to, 0.0) * v
+                         for to, v in zip(other["d_components"]["index"], other["d_components"]["value"]))
+        return float(total)
+
+    def test_gtc_has_the_rows_of_the_tables_as_functions(self) -> None:
+        rows = [number for number in self.archive["tagged_real"].values() if number["CLASS"] == "IntermediateReal"]
+        covariance = self.arrays["table_covariance"]
+        self.assertEqual(len(rows), len(covariance))
+        self.assertEqual(len(self.archive["intermediate_uids"]), len(rows))
+        np.testing.assert_array_equal([row["value"] for row in rows], self.arrays["table_values"])
+        u = np.sqrt(np.maximum(0.0, np.diag(covariance)))
+        for row, expected in zip(rows, u, strict=True):
+            label, stated, df = self.archive["intermediate_uids"][row["uid"]]
+            self.assertEqual((label, df), (row["label"], None))
+            self.assertAlmostEqual(stated, expected, places=12)
+        for i in range(0, len(rows), 97):
+            for j in range(0, len(rows), 101):
+                self.assertAlmostEqual(self.gtc_covariance(rows[i], rows[j]), covariance[i, j],
+                                       delta=1e-9 * (u.max() ** 2))
+        self.assertTrue(any(tag.startswith("EXX_at_minus_") for tag in self.archive["tagged_real"]))
+
     def test_gtc_has_every_value_with_its_correlations(self) -> None:
-        leaves, numbers = self.archive["leaf_nodes"], self.archive["tagged_real"]
+        leaves, numbers = self.archive["leaf_nodes"], self.elementary()
         self.assertEqual((self.archive["CLASS"], self.archive["version"]), ("Archive", GTC_VERSION))
-        for key in ("tagged_complex", "untagged_real", "intermediate_uids"):
+        for key in ("tagged_complex", "untagged_real"):
             self.assertEqual(self.archive[key], {})
         self.assertEqual(len(numbers), len(self.arrays["names"]))
         order = {number["uid"]: i for i, number in enumerate(numbers.values())}

@@ -5,6 +5,7 @@ import signal
 import threading
 import time
 import unittest
+from collections.abc import Callable
 
 import volcal
 from support import HIDDEN, Case, coarse
@@ -49,6 +50,36 @@ class LongWork(Case):
         with self.assertRaises(KeyboardInterrupt):
             volcal.fit(self.campaign)
         timer.join()
+
+    def test_ctrl_c_ends_every_long_work(self) -> None:
+        """Each is interrupted when it tells progress for the second time; what raises is KeyboardInterrupt."""
+        model = coarse(self.campaign)
+        result = volcal.fit(self.campaign, model, noise="white", screening=False)
+        session = volcal.Session(self.campaign, model)
+        calls = [0]
+
+        def press(stage: str, done: float) -> None:
+            calls[0] += 1
+            if calls[0] == 2:
+                os.kill(os.getpid(), signal.SIGINT)
+
+        works: dict[str, Callable[[], object]] = {
+            "diagnose": lambda: volcal.diagnose(self.campaign, model, progress=press),
+            "montecarlo": lambda: volcal.montecarlo(self.campaign, result, draws=100000, refits=0, grid=0, path="linear",
+                                                    progress=press),
+            "plan": lambda: volcal.plan(self.campaign.machine, model, readings=64, stations=2, progress=press),
+            "compare": lambda: volcal.compare(self.campaign, [result], held_out=True, progress=press),
+            "try_effect": lambda: volcal.try_effect(self.campaign, "EXX: dir_x / 2", model, progress=press),
+            "Session": lambda: volcal.Session(self.campaign, model, progress=press),
+            "Session.do": lambda: session.do("climb", progress=press),
+        }
+        for name, work in works.items():
+            with self.subTest(name):
+                calls[0] = 0
+                with self.assertRaises(KeyboardInterrupt):
+                    work()
+                self.assertGreaterEqual(calls[0], 2)
+        self.assertEqual(session.current.number, 0)
 
     def test_other_threads_run_meanwhile(self) -> None:
         counted, running = [0], [True]

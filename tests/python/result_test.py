@@ -1,6 +1,7 @@
 """Fits, diagnoses, tables and draws: the numbers of the command line, to the last bit."""
 
 import functools
+import importlib.util
 import json
 import sys
 import types
@@ -235,6 +236,19 @@ class Shown(Fitted):
             del sys.modules["pandas"]
             if before is not None:
                 sys.modules["pandas"] = before
+
+
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "pandas is not installed")
+    def test_frames_of_pandas(self) -> None:
+        frame = self.result.to_frame()
+        self.assertEqual(type(frame).__name__, "DataFrame")
+        self.assertEqual(str(frame.dtypes["value"]), "float64")
+        residuals = self.result.residual_frame()
+        self.assertEqual(residuals.shape, (1536, len(self.result.residuals.dtype.names or ())))
+        np.testing.assert_array_equal(residuals["w"], self.result.residuals["w"])
+        self.assertEqual(len(self.campaign.setups[0].to_frame()), 192)
+        budget = volcal.budget(self.result)
+        self.assertEqual(list(budget.to_frame()["name"]), [line.name for line in budget.contributions])
 
 
 class Models(Fitted):

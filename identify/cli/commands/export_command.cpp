@@ -13,6 +13,7 @@
 #include "volcal/identify/io/exports/covariance_npz.h"
 #include "volcal/identify/io/exports/gtc_archive.h"
 #include "volcal/identify/io/results/result_folder.h"
+#include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"
@@ -52,13 +53,10 @@ int run_export(const ExportArguments& arguments) {
   if (arguments.conditions.no_extrapolation) require_measured_travel(result);
   const JointValues parameters = parameters_with_covariance(result);
   const ErrorTableOptions options = export_table_options(result, arguments);
-  if (!arguments.gtc.empty()) write_text_file(arguments.gtc, gtc_archive(parameters));
-  std::size_t rows = 0;
-  if (!arguments.npz.empty()) {
-    const JointTable table = table_with_covariance(result, options);
-    rows = table.rows.names.size();
-    write_text_file(arguments.npz, covariance_npz(parameters, table));
-  }
+  const JointTable table = table_with_covariance(result, options);
+  const std::size_t rows = table.rows.names.size();
+  if (!arguments.gtc.empty()) write_text_file(arguments.gtc, gtc_archive(parameters, table));
+  if (!arguments.npz.empty()) write_text_file(arguments.npz, covariance_npz(parameters, table));
   if (arguments.json) {
     nlohmann::ordered_json json = {{"parameters", parameters.names.size()}, {"table_rows", rows}};
     if (!arguments.gtc.empty()) json["gtc"] = arguments.gtc;
@@ -67,8 +65,8 @@ int run_export(const ExportArguments& arguments) {
     fmt::print("{}\n", json_text(json, 2));
   } else {
     if (!arguments.gtc.empty())
-      fmt::print("written: {}, {} values with their correlations for GTC\n", arguments.gtc,
-                 parameters.names.size());
+      fmt::print("written: {}, {} values with their correlations and {} rows of tables for GTC\n",
+                 arguments.gtc, parameters.names.size(), rows);
     if (!arguments.npz.empty())
       fmt::print("written: {}, {} parameters and {} rows of tables, each with their covariance\n",
                  arguments.npz, parameters.names.size(), rows);
@@ -82,7 +80,7 @@ std::function<int()> define_export(CLI::App& app) {
   app.add_option("RESULT", arguments->result, "result folder of volcal fit, or its result.json")->required();
   app.add_option("--gtc", arguments->gtc,
                  "archive of the GUM Tree Calculator (JSON 1.5.0): every parameter as an uncertain number, "
-                 "with the correlations");
+                 "with the correlations, and every row of the error tables as a function of them");
   app.add_option("--npz", arguments->npz,
                  "archive of NumPy: names, units, values and covariance of the parameters, the same of the "
                  "error tables");

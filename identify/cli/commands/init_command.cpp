@@ -8,6 +8,7 @@
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/commands/rotary_templates.h"
+#include "volcal/identify/compensation/measurement_record.h"
 #include "volcal/identify/io/campaign/readings_reader.h"
 #include "volcal/identify/text/atomic_folder.h"
 #include "volcal/identify/text/json_text.h"
@@ -99,13 +100,24 @@ std::string commented_setup(const InstrumentSchema& schema, const std::string& p
   return text + " }\n";
 }
 
+/// What no reading says, for the certificate of the tables.
+std::string commented_record() {
+  std::string text =
+      "#[record]  # what no reading says, for volcal tables --certificate; leave out what is not known\n";
+  for (const RecordItem& item : record_items()) {
+    if (item.key != "active_compensations") text += fmt::format("#{} = \"\"  # {}\n", item.key, item.title);
+  }
+  return text;
+}
+
 std::string campaign_toml(const Structure& structure) {
   std::string text =
       "# The campaign: what was measured. Take the comment marks off a setup and name its CSV file.\n"
       "format = \"volcal-campaign-1\"\n"
       "machine = \"machine.toml\"\n"
       "[noise]\n"
-      "repeatability_um = 0.5  # of the machine, k = 1, per component along the reading\n";
+      "repeatability_um = 0.5  # of the machine, k = 1, per component along the reading\n" +
+      commented_record();
   std::vector<std::string> shown;
   if (has_rotary_axes(structure)) {
     text += rotary_setups(structure, position_columns(structure));

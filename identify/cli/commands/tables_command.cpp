@@ -8,8 +8,10 @@
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/alignment_options.h"
 #include "volcal/identify/cli/options/axis_position.h"
+#include "volcal/identify/cli/options/certificate_options.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
@@ -47,6 +49,7 @@ struct TablesArguments {
   std::vector<std::string> records;
   AlignmentArguments alignment;
   ConditionsArguments conditions;
+  CertificateArguments certificate;
   std::string approach;
   std::string superimpose;
   bool dry_run = false;
@@ -134,6 +137,17 @@ CompensationTables tables_in(const std::string& folder) {
   return active.format->read(active.files);
 }
 
+/// Texts of --record, and of the certificate's campaign what --record does not say.
+TableRecord record_of(const TablesArguments& arguments, const std::optional<CertificateSources>& sources) {
+  TableRecord record{arguments.result, named_values("--record", arguments.records)};
+  if (!sources) return record;
+  for (const std::string_view key : recordable_conditions()) {
+    const std::string text = sources->record.entry(key);
+    if (!text.empty()) record.conditions.emplace(key, text);
+  }
+  return record;
+}
+
 TableFormatOptions table_options(const TableFormat& format, const FitResult& result,
                                  const TablesArguments& arguments) {
   TableFormatOptions options;
@@ -148,15 +162,16 @@ TableFormatOptions table_options(const TableFormat& format, const FitResult& res
   if (!arguments.lines.empty()) options.lines = axis_position("--lines", arguments.lines, result.machine);
   options.settings = named_values("--set", arguments.settings);
   options.conditions = conditions_of(result, arguments.conditions);
-  options.record = {arguments.result, named_values("--record", arguments.records)};
   if (!arguments.superimpose.empty()) options.active = tables_in(arguments.superimpose);
   return options;
 }
 
-MadeTables make_tables(const FitResult& result, const TablesArguments& arguments) {
+MadeTables make_tables(const FitResult& result, const TablesArguments& arguments,
+                       const std::optional<CertificateSources>& sources) {
   const TableFormat& format = *find_table_format(arguments.format);
-  return make_tables(format, result, table_options(format, result, arguments),
-                     arguments.tolerance_um * kMetrePerMicrometre);
+  TableFormatOptions options = table_options(format, result, arguments);
+  options.record = record_of(arguments, sources);
+  return make_tables(format, result, options, arguments.tolerance_um * kMetrePerMicrometre);
 }
 
 std::vector<std::string> file_names(const MadeTables& made) {
@@ -165,9 +180,30 @@ std::vector<std::string> file_names(const MadeTables& made) {
   return names;
 }
 
-void write_files(const MadeTables& made, const std::string& target) {
-  AtomicFolder folder(target);
+/// The tables, and the certificate.
+std::vector<std::string> written_names(const MadeTables& made, const TablesArguments& arguments) {
+  std::vector<std::string> names = file_names(made);
+  if (!arguments.certificate.campaign.empty()) names.emplace_back(kCertificatePage);
+  if (arguments.certificate.pdf) names.emplace_back(kCertificatePdf);
+  return names;
+}
+
+/// What --record says beside or instead of the campaign.
+MeasurementRecord stated_record(const CertificateSources& sources, const MadeTables& made) {
+  MeasurementRecord record = sources.record;
+  for (const auto& [key, text] : made.options.record.conditions) record.entries[key] = text;
+  return record;
+}
+
+void write_files(const FitResult& result, const MadeTables& made, const TablesArguments& arguments,
+                 const std::optional<CertificateSources>& sources) {
+  AtomicFolder folder(arguments.output);
   for (const TableFile& file : made.files) folder.write(file);
+  if (sources) {
+    const MeasurementRecord record = stated_record(*sources, made);
+    write_certificate(arguments.certificate, {result, made, record, sources->before, sources->after},
+                      report_options(), folder);
+  }
   folder.commit();
 }
 
@@ -201,7 +237,7 @@ void print_tables(const MadeTables& made, const TablesArguments& arguments, cons
   fmt::print("{}", findings_text(made.effects_left_out));
   fmt::print("{}", findings_text(unmeasured_travel(result)));
   fmt::print("{}: {}\n", arguments.dry_run ? "not written" : arguments.output,
-             fmt::join(file_names(made), ", "));
+             fmt::join(written_names(made, arguments), ", "));
 }
 
 nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments& arguments,
@@ -216,6 +252,7 @@ nlohmann::ordered_json tables_json(const MadeTables& made, const TablesArguments
   if (made.rotary_check) json["rotary_error_left"] = rotary_check_json(*made.rotary_check);
   add_findings("effects_in_no_table", made.effects_left_out, json);
   if (!arguments.dry_run) json["folder"] = arguments.output;
+  if (!arguments.certificate.campaign.empty()) json["certificate"] = kCertificatePage;
   if (!arguments.superimpose.empty()) json["superimposed_on"] = arguments.superimpose;
   if (made.tolerance > 0.0) {
     json["tolerance_um"] = made.tolerance / kMicro;
@@ -236,7 +273,8 @@ int list_formats(bool json) {
 
 FitResult aligned_result(const TablesArguments& arguments) {
   if (!arguments.output.empty() && !arguments.dry_run) {
-    require_output_folder(arguments.output, {arguments.result});
+    require_output_folder(arguments.output,
+                          {arguments.result, arguments.certificate.campaign, arguments.certificate.verified});
   }
   FitResult result = read_known_errors(arguments.result);
   if (!arguments.alignment.any()) return result;
@@ -249,9 +287,11 @@ int run_tables(const TablesArguments& arguments) {
   const FitResult result = aligned_result(arguments);
   if (arguments.conditions.no_extrapolation && makes_tables(arguments)) require_measured_travel(result);
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
+  const bool written = !arguments.output.empty() && !arguments.dry_run;
+  const auto sources = certificate_sources(arguments.certificate, result, written);
   std::optional<MadeTables> made;
-  if (makes_tables(arguments)) made = make_tables(result, arguments);
-  if (made && !arguments.dry_run) write_files(*made, arguments.output);
+  if (makes_tables(arguments)) made = make_tables(result, arguments, sources);
+  if (made && written) write_files(result, *made, arguments, sources);
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
@@ -307,6 +347,7 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
   app.add_option("--record", arguments.records,
                  fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
                              fmt::join(recordable_conditions(), ", ")));
+  add_certificate_options(app, arguments.certificate);
   app.add_flag("--dry-run", arguments.dry_run, "write nothing: say what the tables would leave");
   app.add_flag("--list", arguments.list, "list formats, types and limits");
 }
@@ -351,6 +392,7 @@ const Command& tables_command() {
       "  volcal tables result --format csv --tool side_x --dry-run\n"
       "  volcal tables result --align spindle --origin Z=0 -o tables\n"
       "  volcal tables again --format neutral-csv --superimpose tables -o tables-2\n"
+      "  volcal tables result --format linuxcnc --certificate campaign.toml -o comp\n"
       "  volcal tables result --at X=100,Y=150,Z=-80 --tool short\n",
       define_tables};
   return command;

@@ -32,21 +32,8 @@ Eigen::Vector2d tilt_of(const std::string& text) {
   return tilt;
 }
 
-Datum datum_of(const Datum& former, const AlignmentArguments& arguments, bool spindle) {
-  Datum datum = former;
-  if (!arguments.primary.empty()) {
-    datum.primary = axis_named(arguments.primary);
-  } else if (spindle) {
-    datum.primary = AxisName::Z;
-  }
-  if (!arguments.secondary.empty()) {
-    datum.secondary = axis_named(arguments.secondary);
-  } else if (datum.secondary == datum.primary) {
-    datum.secondary = former.primary == datum.primary ? former.third() : former.primary;
-  } else if (spindle && arguments.primary.empty() && former.primary != AxisName::Z) {
-    datum.secondary = former.primary;
-  }
-  return datum;
+std::optional<AxisName> wished_axis(const std::string& letter) {
+  return letter.empty() ? std::nullopt : std::optional(axis_named(letter));
 }
 
 }  // namespace
@@ -75,7 +62,8 @@ Alignment alignment_of(const FitResult& result, const AlignmentArguments& argume
   const bool spindle = arguments.align == "spindle";
   if (!spindle && !arguments.spindle_tilt.empty())
     throw InputError({}, "--spindle-tilt is given without --align spindle", "add --align spindle");
-  alignment.datum = datum_of(result.machine.datum, arguments, spindle);
+  alignment.datum = wished_datum(result.machine.datum, wished_axis(arguments.primary),
+                                 wished_axis(arguments.secondary), spindle);
   if (!arguments.origin.empty())
     alignment.origin = axis_position("--origin", arguments.origin, result.machine);
   if (spindle)

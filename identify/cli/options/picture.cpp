@@ -100,6 +100,45 @@ bool has_content(const std::string& file) {
   return fs::file_size(file, failed) > 0 && !failed;
 }
 
+/// Has the browser open a page until it has left the file that `wanted` asks for, and returns which browser
+/// it is.
+std::string draw_page(const WorkFolder& folder, const std::string& html, const std::string& drawn,
+                      const std::vector<std::string>& wanted) {
+  const std::string program = browser().value_or(kBrowsers[0]);
+  const std::string page = folder.path("page.html");
+  std::ofstream(page, std::ios::binary) << html;
+  std::vector<std::string> arguments = {program,
+                                        "--headless",
+                                        "--no-sandbox",
+                                        "--disable-gpu",
+                                        "--use-gl=angle",
+                                        "--use-angle=swiftshader",
+                                        "--enable-unsafe-swiftshader",
+                                        "--disable-quic",
+                                        "--no-first-run",
+                                        "--disable-background-networking",
+                                        "--disable-component-update",
+                                        "--disable-sync",
+                                        "--disable-breakpad",
+                                        "--disable-crash-reporter",
+                                        "--user-data-dir=" + folder.path("profile"),
+                                        "--virtual-time-budget=20000"};
+  arguments.insert(arguments.end(), wanted.begin(), wanted.end());
+  arguments.push_back("file://" + page);
+  for (int attempt = 0; attempt < kDrawingAttempts && !has_content(drawn); ++attempt) run_to_end(arguments);
+  return program;
+}
+
+/// Copies to the place wanted, whole or not at all.
+void put_in_place(const std::string& drawn, const std::string& file) {
+  const std::string beside = file + ".part";
+  const TemporaryPath temporary(beside);
+  std::error_code failed;
+  fs::copy_file(drawn, beside, fs::copy_options::overwrite_existing, failed);
+  if (!failed) fs::rename(beside, file, failed);
+  if (failed) throw InputError({file, 0}, "cannot be written: " + failed.message(), "choose another place");
+}
+
 }  // namespace
 
 void require_picture(const std::string& option, const std::string& file) {
@@ -111,48 +150,37 @@ void require_picture(const std::string& option, const std::string& file) {
   if (!report_available())
     throw InputError({file, 0}, option + " draws a page of the report, which this program lacks",
                      std::string(how_to_get_report()));
-  if (!browser())
-    throw InputError({file, 0}, option + " needs Chromium, which is not installed",
-                     "install it (apt-get install chromium), or open the report.html of -o in a browser");
+  require_browser(option, "open the report.html of -o in a browser");
 }
 
 void write_picture(const std::string& option, const ReportPicture& picture, const std::string& file) {
-  const std::string program = browser().value_or(kBrowsers[0]);
   const WorkFolder folder;
-  const std::string page = folder.path("page.html"), drawn = folder.path("page.png");
-  std::ofstream(page, std::ios::binary) << picture.html;
-  const std::vector<std::string> arguments = {
-      program,
-      "--headless",
-      "--no-sandbox",
-      "--disable-gpu",
-      "--use-gl=angle",
-      "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader",
-      "--disable-quic",
-      "--no-first-run",
-      "--disable-background-networking",
-      "--disable-component-update",
-      "--disable-sync",
-      "--disable-breakpad",
-      "--disable-crash-reporter",
-      "--hide-scrollbars",
-      "--force-device-scale-factor=2",
-      "--user-data-dir=" + folder.path("profile"),
-      fmt::format("--window-size={},{}", picture.width, picture.height),
-      "--virtual-time-budget=20000",
-      "--screenshot=" + drawn,
-      "file://" + page};
-  for (int attempt = 0; attempt < kDrawingAttempts && !has_content(drawn); ++attempt) run_to_end(arguments);
+  const std::string drawn = folder.path("page.png");
+  const std::string program =
+      draw_page(folder, picture.html, drawn,
+                {"--hide-scrollbars", "--force-device-scale-factor=2",
+                 fmt::format("--window-size={},{}", picture.width, picture.height), "--screenshot=" + drawn});
   if (!has_content(drawn))
     throw InputError({file, 0}, option + ": " + program + " drew no picture",
                      "see whether it starts (" + program + " --version), or open the report.html of -o");
-  const std::string beside = file + ".part";
-  const TemporaryPath temporary(beside);
-  std::error_code failed;
-  fs::copy_file(drawn, beside, fs::copy_options::overwrite_existing, failed);
-  if (!failed) fs::rename(beside, file, failed);
-  if (failed) throw InputError({file, 0}, "cannot be written: " + failed.message(), "choose another place");
+  put_in_place(drawn, file);
+}
+
+void require_browser(const std::string& option, const std::string& otherwise) {
+  if (!browser())
+    throw InputError({}, option + " needs Chromium, which is not installed",
+                     "install it (apt-get install chromium), or " + otherwise);
+}
+
+void print_page(const std::string& option, const std::string& html, const std::string& file) {
+  const WorkFolder folder;
+  const std::string printed = folder.path("page.pdf");
+  const std::string program =
+      draw_page(folder, html, printed, {"--no-pdf-header-footer", "--print-to-pdf=" + printed});
+  if (!has_content(printed))
+    throw InputError({}, option + ": " + program + " printed nothing",
+                     "see whether it starts (" + program + " --version), or print the page from a browser");
+  put_in_place(printed, file);
 }
 
 }  // namespace volcal::cli

@@ -8,6 +8,7 @@
 #include "volcal/identify/io/campaign/left_out_readings.h"
 #include "volcal/identify/io/campaign/machine_reader.h"
 #include "volcal/identify/io/campaign/readings_reader.h"
+#include "volcal/identify/io/campaign/record_reader.h"
 #include "volcal/identify/text/csv_table.h"
 #include "volcal/identify/text/nearest_name.h"
 #include "volcal/identify/text/text_file.h"
@@ -65,6 +66,7 @@ class CampaignReader {
     root_.know("machine");
     root_.text("name");
     campaign_.active_compensations = root_.text("active_compensations").value_or("");
+    read_record(root_);  // checked here, used by read_campaign_record()
     if (const auto encoding = root_.choice("encoding", encoding_names()))
       encoding_ = *encoding_of_name(*encoding);
     directions_as_recorded_ = as_recorded(root_).value_or(false);

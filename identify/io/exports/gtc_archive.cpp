@@ -1,5 +1,7 @@
 #include "volcal/identify/io/exports/gtc_archive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -29,7 +31,8 @@ class GtcLeaves {
     for (const double value : joint.covariance.reshaped()) hash.add(value);
     context_ = std::to_string(hash.value());
     for (Eigen::Index i = 0; i < u_.size(); ++i) {
-      if (is_correlated(i)) ensemble_ += (ensemble_.empty() ? "\"" : ",\"") + uid(i) + "\"";
+      correlated_.push_back(is_correlated(i));
+      if (correlated_.back()) ensemble_ += (ensemble_.empty() ? "\"" : ",\"") + uid(i) + "\"";
     }
   }
 
@@ -37,16 +40,16 @@ class GtcLeaves {
 
   std::string leaf(Eigen::Index i) const {
     const auto at = static_cast<std::size_t>(i);
-    const bool correlated = is_correlated(i);
+    const bool correlated = correlated_[at];
     const GtcJson head = {
         {"CLASS", "LeafNode"}, {"uid", uid(i)}, {"label", joint_.names[at] + " [" + joint_.units[at] + "]"},
         {"u", u_[i]},          {"df", nullptr}, {"independent", !correlated}};
     std::string text = json_text(head, -1);
     if (!correlated) return text;
-    std::string correlations;
+    std::string correlations = "\"" + uid(i) + "\":1.0";  // GTC takes covariances of functions from it
     for (Eigen::Index j = 0; j < u_.size(); ++j) {
       if (const double r = correlation(i, j); j != i && r != 0.0)
-        correlations += (correlations.empty() ? "\"" : ",\"") + uid(j) + "\":" + GtcJson(r).dump();
+        correlations += ",\"" + uid(j) + "\":" + GtcJson(r).dump();
     }
     text.pop_back();
     return text + ",\"correlation\":{" + correlations + "},\"ensemble\":[" + ensemble_ + "]}";
@@ -56,7 +59,38 @@ class GtcLeaves {
     return {{"CLASS", "ElementaryReal"}, {"x", joint_.values[i]}, {"uid", uid(i)}};
   }
 
+  /// Of the n-th function of the parameters.
+  std::string function_uid(Eigen::Index n) const {
+    return "(" + context_ + ", " + std::to_string(n + 1) + ", 0)";
+  }
+  /// A function of the parameters by its components of uncertainty, derivative times u of each parameter.
+  GtcJson function(Eigen::Index n, double value, double u, const std::string& label,
+                   const Eigen::RowVectorXd& derivatives) const {
+    GtcJson independent = empty_vector(), dependent = empty_vector();
+    for (Eigen::Index i = 0; i < u_.size(); ++i) {
+      const double component = derivatives[i] * u_[i];
+      if (component == 0.0) continue;
+      GtcJson& components = correlated_[static_cast<std::size_t>(i)] ? dependent : independent;
+      components["index"].push_back(uid(i));
+      components["value"].push_back(component);
+    }
+    return {{"CLASS", "IntermediateReal"},
+            {"value", value},
+            {"label", label},
+            {"uid", function_uid(n)},
+            {"u_components", independent},
+            {"d_components", dependent},
+            {"i_components",
+             {{"CLASS", "Vector"},
+              {"index", GtcJson::array({function_uid(n)})},
+              {"value", GtcJson::array({u})}}}};
+  }
+
  private:
+  static GtcJson empty_vector() {
+    return {{"CLASS", "Vector"}, {"index", GtcJson::array()}, {"value", GtcJson::array()}};
+  }
+
   double correlation(Eigen::Index i, Eigen::Index j) const {
     const double scale = u_[i] * u_[j];
     return scale > 0.0 ? std::clamp(joint_.covariance(i, j) / scale, -1.0, 1.0) : 0.0;
@@ -71,6 +105,7 @@ class GtcLeaves {
 
   const JointValues& joint_;
   Eigen::VectorXd u_;
+  std::vector<bool> correlated_;
   std::string context_;
   std::string ensemble_;  ///< identities of its leaves, as a list of JSON
 };
@@ -91,9 +126,29 @@ std::vector<std::string> gtc_tags(const std::vector<std::string>& names) {
   return tags;
 }
 
-std::string gtc_archive(const JointValues& joint) {
+std::vector<std::string> gtc_row_names(const JointTable& table) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < table.rows.names.size(); ++i) {
+    std::string name = table.rows.names[i];
+    const double position = table.positions[static_cast<Eigen::Index>(i)];
+    if (std::isnan(position)) {
+      name += " in tables";
+    } else {
+      name += (position < 0.0 ? " at minus " : " at ") + fmt::format("{:.10g} ", std::abs(position)) +
+              table.position_units[i];
+    }
+    if (table.directions[i] != 0) name += table.directions[i] > 0 ? " towards plus" : " towards minus";
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::string gtc_archive(const JointValues& joint, const JointTable& table) {
   const GtcLeaves leaves(joint);
-  const std::vector<std::string> tags = gtc_tags(joint.names);
+  const std::vector<std::string> rows = gtc_row_names(table);
+  std::vector<std::string> names = joint.names;
+  names.insert(names.end(), rows.begin(), rows.end());
+  const std::vector<std::string> tags = gtc_tags(names);
   std::string text =
       "{\"CLASS\": \"Archive\",\n\"version\": " + GtcJson(kGtcVersion).dump() + ",\n\"leaf_nodes\": {";
   for (Eigen::Index i = 0; i < joint.values.size(); ++i)
@@ -102,7 +157,18 @@ std::string gtc_archive(const JointValues& joint) {
   for (Eigen::Index i = 0; i < joint.values.size(); ++i)
     text += (i ? ",\n" : "\n") + GtcJson(tags[static_cast<std::size_t>(i)]).dump() + ": " +
             json_text(leaves.number(i), -1);
-  return text + "},\n\"tagged_complex\": {},\n\"untagged_real\": {},\n\"intermediate_uids\": {}}\n";
+  std::string intermediate;
+  for (Eigen::Index n = 0; n < table.rows.values.size(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    const double u = std::sqrt(std::max(0.0, table.rows.covariance(n, n)));
+    const std::string label = rows[at] + " [" + table.rows.units[at] + "]";
+    text += ",\n" + GtcJson(tags[joint.names.size() + at]).dump() + ": " +
+            json_text(leaves.function(n, table.rows.values[n], u, label, table.derivatives.row(n)), -1);
+    const GtcJson node = GtcJson::array({label, u, nullptr});
+    intermediate += (n ? ",\n" : "\n") + GtcJson(leaves.function_uid(n)).dump() + ": " + json_text(node, -1);
+  }
+  return text + "},\n\"tagged_complex\": {},\n\"untagged_real\": {},\n\"intermediate_uids\": {" +
+         intermediate + "}}\n";
 }
 
 }  // namespace volcal

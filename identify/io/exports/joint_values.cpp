@@ -13,6 +13,14 @@ Eigen::MatrixXd covariance_in_units(const Eigen::MatrixXd& covariance, const Eig
   return (0.5 * (covariance + covariance.transpose())).cwiseQuotient(si_per_unit * si_per_unit.transpose());
 }
 
+Eigen::VectorXd parameter_units(const FitResult& result) {
+  Eigen::VectorXd si_per_unit(result.parameters.size());
+  Eigen::Index i = 0;
+  for (const NamedParameter& parameter : named_parameters(result.layout))
+    si_per_unit[i++] = parameter.si_per_unit;
+  return si_per_unit;
+}
+
 void require_covariance(const FitResult& result) {
   if (result.covariance.rows() == result.parameters.size() && !result.covariance.isZero(0.0)) return;
   throw InputError({}, "the result states no uncertainty",
@@ -24,12 +32,10 @@ void require_covariance(const FitResult& result) {
 JointValues parameters_with_covariance(const FitResult& result) {
   require_covariance(result);
   JointValues joint;
-  Eigen::VectorXd si_per_unit(result.parameters.size());
-  Eigen::Index i = 0;
+  const Eigen::VectorXd si_per_unit = parameter_units(result);
   for (const NamedParameter& parameter : named_parameters(result.layout)) {
     joint.names.push_back(parameter.name);
     joint.units.push_back(parameter.unit);
-    si_per_unit[i++] = parameter.si_per_unit;
   }
   joint.values = result.parameters.cwiseQuotient(si_per_unit);
   joint.covariance = covariance_in_units(result.covariance, si_per_unit);
@@ -58,6 +64,7 @@ JointTable table_with_covariance(const FitResult& result, const ErrorTableOption
   }
   table.rows.covariance = covariance_in_units(derivatives * result.covariance * derivatives.transpose(),
                                               Eigen::VectorXd::Constant(count, kMicro));
+  table.derivatives = derivatives * parameter_units(result).asDiagonal() / kMicro;
   return table;
 }
 

@@ -29,6 +29,7 @@ struct JointTable {
   std::vector<std::string> position_units;
   std::vector<std::int64_t> directions;  ///< of approach: 0 mean of both, +1, -1
   std::vector<bool> extrapolated;
+  Eigen::MatrixXd derivatives;  ///< of the rows to parameters_with_covariance(), in their units
 };
 JointTable table_with_covariance(const FitResult& result, const ErrorTableOptions& options = {});
 

@@ -9,7 +9,7 @@
 #include "tests/support/hand_made_diagnosis.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 
 namespace volcal {
 namespace {

@@ -20,7 +20,7 @@
 #include "volcal/identify/io/results/diagnosis_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/text/atomic_folder.h"

@@ -19,7 +19,7 @@
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/campaign/toml_writer.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/text/text_file.h"

@@ -40,6 +40,7 @@ function start() {
   const report = JSON.parse(document.getElementById('volcal-data').textContent);
   const nav = document.getElementById('sections');
   const main = document.getElementById('pages');
+  document.documentElement.classList.toggle('upright', report.paper === 'upright');
   nav.append(
     el('div', { class: 'brand' }, [el('strong', {}, 'volcal'), ' report']),
     el('div', { class: 'machine' }, [report.title, report.date ? el('div', { class: 'muted' }, report.date) : null]),

@@ -2,6 +2,7 @@
 import { renderAddedVariable } from './pages/added_variable.js';
 import { renderAutocorrelation } from './pages/autocorrelation.js';
 import { renderBudget } from './pages/budget.js';
+import { renderCertificateFigures, renderCertificateFiles, renderCertificateRecord, renderCertified, renderSignature } from './pages/certificate.js';
 import { renderCircles } from './pages/circles.js';
 import { renderComparison } from './pages/comparison.js';
 import { renderComputation } from './pages/computation.js';
@@ -66,4 +67,9 @@ export const renderers = {
   budget: renderBudget,
   plan_layout: renderPlanLayout,
   plan_errors: renderPlanErrors,
+  certified: renderCertified,
+  certificate_figures: renderCertificateFigures,
+  certificate_record: renderCertificateRecord,
+  certificate_files: renderCertificateFiles,
+  signature: renderSignature,
 };

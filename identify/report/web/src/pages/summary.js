@@ -11,7 +11,7 @@ function invisibleList(errors) {
   ]);
 }
 
-const figure = ({ label, value, unit, note: remark }) =>
+export const figure = ({ label, value, unit, note: remark }) =>
   el('div', { class: 'figure' }, [
     el('div', { class: 'label' }, label),
     el('div', { class: 'value' }, [value, unit ? el('span', { class: 'unit' }, ` ${unit}`) : null]),

@@ -1,4 +1,4 @@
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 
 #include <fmt/format.h>
 

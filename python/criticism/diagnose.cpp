@@ -15,7 +15,7 @@
 #include "volcal/identify/io/results/diagnosis_folder.h"
 #include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/report/report.h"
-#include "volcal/identify/report/text/diagnosis_text.h"
+#include "volcal/identify/report/text/criticism/diagnosis_text.h"
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/text/today.h"
 #include "volcal/model/description/errors.h"

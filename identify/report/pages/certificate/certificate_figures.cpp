@@ -1,0 +1,107 @@
+/// What the tables take away: in the volume by computation, by type of compensation, of rotary axes; what
+/// readings have shown before and, where there are any, with the tables active; and the errors that were
+/// identified.
+
+#include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/page.h"
+#include "volcal/identify/report/values/error_range.h"
+
+namespace volcal::report {
+namespace {
+
+Json left_row(const std::string& name, const ErrorLeft& left) {
+  return {{"name", name}, {"rms", rounded_micrometres(left.rms)}, {"max", rounded_micrometres(left.max)}};
+}
+
+Json volume_left_rows(const MadeTables& tables) {
+  const VolumeCheck& check = tables.check;
+  Json rows = Json::array();
+  rows.push_back(left_row("before", check.before));
+  rows.push_back(left_row("ideal " + tables.options.type.linear().name(), check.ideal));
+  rows.push_back(left_row("tables as the controller reads them", check.exported));
+  if (check.identification_u > 0.0)
+    rows.push_back({{"name", "expected on the machine"},
+                    {"rms", rounded_micrometres(check.expected_rms())},
+                    {"max", nullptr}});
+  if (check.over_conditions)
+    rows.push_back(left_row("tables, ends of the campaign's conditions", *check.over_conditions));
+  return rows;
+}
+
+Json part_left_rows(const VolumeCheck& check) {
+  Json rows = Json::array();
+  for (const PartLeft& part : check.parts) {
+    rows.push_back({{"type", CompensationType(part.part).name()},
+                    {"before", rounded_micrometres(part.before.rms)},
+                    {"after", rounded_micrometres(part.exported.rms)},
+                    {"max_after", rounded_micrometres(part.exported.max)}});
+  }
+  return rows;
+}
+
+Json rotary_left_rows(const MadeTables& tables) {
+  Json rows = Json::array();
+  if (!tables.rotary_check) return rows;
+  const auto add = [&](const char* name, const RotaryLeft& left) {
+    rows.push_back({{"name", name},
+                    {"rms", rounded_micrometres(left.rms)},
+                    {"max", rounded_micrometres(left.max)},
+                    {"axis", rounded(left.axis_rms * kPerMicro, 4)}});
+  };
+  add("before", tables.rotary_check->before);
+  add("ideal", tables.rotary_check->ideal);
+  add("tables as the controller reads them", tables.rotary_check->exported);
+  return rows;
+}
+
+Json measured_row(const char* when, const MeasuredError& measured) {
+  const auto size = [](const ResidualSize& each) -> Json {
+    if (each.count == 0) return nullptr;
+    return {{"count", each.count},
+            {"rms", rounded(each.rms * kPerMicro, 4)},
+            {"max", rounded(each.max * kPerMicro, 4)}};
+  };
+  return {{"when", when},
+          {"campaign", measured.campaign},
+          {"active", measured.active_compensations},
+          {"setups", measured.setups},
+          {"lengths", size(measured.lengths)},
+          {"angles", size(measured.angles)}};
+}
+
+Json identified_rows(const FitResult& result) {
+  const auto table = error_table(result);
+  Json rows = Json::array();
+  for (const Observability& error : result.rank.errors) {
+    if (is_amplitude(result, error)) continue;
+    const auto symbol = ErrorSymbol::parse(error.symbol);
+    const auto location = LocationSymbol::parse(error.symbol);
+    if (!symbol && !location) continue;
+    const ErrorRange range = error_range(result, table, error);
+    const bool rotation = symbol ? is_rotation(symbol->component) : is_rotation(location->component);
+    rows.push_back({{"symbol", error.symbol},
+                    {"unit", rotation ? "µrad" : "µm"},
+                    {"visible", error.visible},
+                    {"low", rounded(range.low * kPerMicro, 5)},
+                    {"high", rounded(range.high * kPerMicro, 5)},
+                    {"U95", rounded(range.expanded * kPerMicro, 4)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json certificate_figures_page(const CertificateInput& input) {
+  const CertificateView& certificate = input.certificate;
+  Json measured = Json::array();
+  measured.push_back(measured_row("before", certificate.before));
+  if (certificate.after) measured.push_back(measured_row("with the tables", *certificate.after));
+  return {{"volume", volume_left_rows(certificate.tables)},
+          {"parts", part_left_rows(certificate.tables.check)},
+          {"rotary", rotary_left_rows(certificate.tables)},
+          {"measured", std::move(measured)},
+          {"errors", identified_rows(certificate.result)}};
+}
+
+}  // namespace volcal::report

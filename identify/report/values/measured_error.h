@@ -1,0 +1,28 @@
+#pragma once
+/// What the readings of a campaign show of a machine without any model of its errors: their deviations from
+/// the machine without errors, of which only stations, dead paths, alignments and the like are estimated.
+/// Measured before tables are loaded and again with them active, it says what they have changed.
+
+#include <string>
+
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/standards/comparison.h"
+#include "volcal/model/description/campaign.h"
+
+namespace volcal {
+
+struct MeasuredError {
+  std::string campaign;              ///< file
+  std::string active_compensations;  ///< while it was measured, in words; empty = not stated
+  std::size_t setups = 0;
+  ResidualSize lengths;  ///< readings minus those of the machine without errors, m
+  ResidualSize angles;   ///< rad
+};
+
+/// Throws InputError where the campaign cannot be evaluated.
+MeasuredError measured_error(const Campaign& campaign, int threads = 0);
+
+/// Throws InputError where the result was not identified from readings of the campaign.
+void require_campaign_of(const FitResult& result, const Campaign& campaign);
+
+}  // namespace volcal

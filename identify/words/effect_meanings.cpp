@@ -35,6 +35,11 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
     {"encoder-subdivision", "The position repeats its error within every signal period of the scale.",
      "a dirty scale; a reading head at a wrong distance or angle; signals whose offset, gain or phase was "
      "not adjusted; wrong interpolation in the control"},
+    {"worm-error", "The angle of a rotary axis repeats its error with every turn of its worm or pinion.",
+     "a worm or pinion that is not centred in its bearings; a worn or badly meshed pair; a motor's encoder "
+     "that sits off centre"},
+    {"ring-eccentricity", "The angle of a rotary axis is wrong by one wave a turn.",
+     "an encoder ring or wheel that is not centred on the axis; one reading head where two would cancel it"},
     {"screw-heating", "An axis becomes longer the longer it has been moving: its ball screw warms up.",
      "fast traverses on an axis that is measured by its motor's encoder; too much preload of nut or "
      "bearings; too little grease; a screw cooler that is off"},
@@ -141,6 +146,9 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
     {"run-offset", "One run differs from all others by a constant.",
      "a zero that was set anew or lost; a reflector or probe that was touched between runs; a warm-up "
      "between runs; a run read with another offset in the control"},
+    {"probe-lobing", "The touch probe triggers sooner in some directions of contact than in others.",
+     "a probe that rests on three supports; a long or heavy stylus; a trigger force that is set too high; a "
+     "stylus ball that is out of round or off centre"},
     {"custom", "What was written in the model file explains the readings.",
      "those that its author had in mind"},
     {"empirical",

@@ -16,6 +16,8 @@ namespace volcal {
   EFFECT(lead_error_effect)           \
   EFFECT(growing_lead_error_effect)   \
   EFFECT(encoder_subdivision_effect)  \
+  EFFECT(worm_error_effect)           \
+  EFFECT(ring_eccentricity_effect)    \
   EFFECT(screw_heating_effect)        \
   EFFECT(scale_expansion_effect)      \
   EFFECT(thermal_drift_effect)        \
@@ -45,6 +47,7 @@ namespace volcal {
   EFFECT(beam_misalignment_effect)    \
   EFFECT(encoder_eccentricity_effect) \
   EFFECT(run_offset_effect)           \
+  EFFECT(probe_lobing_effect)         \
   EFFECT(custom_effect)               \
   EFFECT(empirical_effect)
 

@@ -48,4 +48,14 @@ std::vector<ReadingFrame> reading_frames(const SetupContext& context) {
   return frames;
 }
 
+std::vector<Eigen::Matrix3d> rotations_to_tool(const SetupContext& context) {
+  const KinematicChain chain(context.machine);
+  std::vector<Eigen::Matrix3d> rotations;
+  for (const ReadingFrame& frame : reading_frames(context)) {
+    const AxisPosition position = position_of_row(context.setup, rotations.size());
+    rotations.emplace_back((frame.rotation * chain.nominal_rotation_wt(position)).transpose());
+  }
+  return rotations;
+}
+
 }  // namespace volcal

@@ -20,6 +20,8 @@ struct ReadingFrame {
 
 /// One frame per reading: of the workpiece (the default), of the machine's bed, or of the tool.
 std::vector<ReadingFrame> reading_frames(const SetupContext& context);
+/// Per reading: turns a vector in the axes of the readings into those of the tool.
+std::vector<Eigen::Matrix3d> rotations_to_tool(const SetupContext& context);
 /// Whether the setup's readings refer to the workpiece.
 bool reads_in_workpiece(const Setup& setup);
 

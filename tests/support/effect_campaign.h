@@ -76,7 +76,25 @@ inline Campaign effect_campaign(const std::string& structure = "w X' b Y Z t") {
   return campaign;
 }
 
-/// The same on a table that turns on a cradle.
-inline Campaign five_axis_effect_campaign() { return effect_campaign("w C' A' X' b Y Z t"); }
+/// Single contacts with a sphere, normals in all directions.
+inline Setup contacts_setup(const std::string& name, double start_s) {
+  Setup setup = effect_setup(name, "probed-sphere", 1, start_s);
+  setup.readings.column_set = 1;
+  setup.readings.given.assign(6, std::vector<double>(kEffectRows, 0.1));
+  for (std::size_t row = 0; row < kEffectRows; ++row) {
+    const auto t = static_cast<double>(row);
+    const Eigen::Vector3d normal =
+        Eigen::Vector3d(std::cos(1.1 * t), std::sin(1.3 * t), std::sin(0.7 * t)).normalized();
+    for (std::size_t k = 0; k < 3; ++k) setup.readings.given[3 + k][row] = normal[static_cast<int>(k)];
+  }
+  return setup;
+}
+
+/// The same on a table that turns on a cradle, and a sphere that is probed.
+inline Campaign five_axis_effect_campaign() {
+  Campaign campaign = effect_campaign("w C' A' X' b Y Z t");
+  campaign.setups.push_back(contacts_setup("T1", 6000.0));
+  return campaign;
+}
 
 }  // namespace volcal::testing_support

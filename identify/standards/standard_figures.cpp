@@ -9,6 +9,9 @@
 #include <set>
 
 #include "volcal/identify/standards/approach.h"
+#include "volcal/identify/standards/drift_tests.h"
+#include "volcal/identify/standards/rotary_tests.h"
+#include "volcal/identify/standards/setup_values.h"
 #include "volcal/identify/standards/target_positions.h"
 #include "volcal/identify/standards/test_paths.h"
 #include "volcal/model/description/finding_codes.h"
@@ -23,41 +26,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBeamAlignment = 0.01;  // rad between beam and motion
-
-/// Readings and predictions of one setup, [channel][row]; not a number where there is no record.
-struct SetupValues {
-  std::vector<std::vector<double>> reading;
-  std::vector<std::vector<double>> predicted;
-  int removed = 0;
-
-  bool has(std::size_t row) const {
-    return std::all_of(reading.begin(), reading.end(),
-                       [&](const std::vector<double>& channel) { return !std::isnan(channel[row]); });
-  }
-};
-
-std::vector<SetupValues> values_by_setup(const Campaign& campaign, std::span<const ResidualRecord> records) {
-  std::vector<SetupValues> values;
-  for (const Setup& setup : campaign.setups) {
-    const std::vector<double> empty(setup.readings.size(), std::nan(""));
-    values.push_back(
-        {std::vector(setup.readings.channels(), empty), std::vector(setup.readings.channels(), empty), 0});
-  }
-  for (const ResidualRecord& record : records) {
-    if (record.left_out) continue;
-    SetupValues& setup = values[record.setup];
-    const auto channel = static_cast<std::size_t>(record.channel);
-    setup.reading[channel][record.row] = record.reading;
-    setup.predicted[channel][record.row] = record.predicted;
-    setup.removed += record.removed ? 1 : 0;
-  }
-  return values;
-}
-
-std::vector<Finding> common_notes(const SetupValues& values) {
-  if (values.removed == 0) return {};
-  return {{FindingCode::StandardsRemovedReadingsUsed, {{"readings", std::int64_t{values.removed}}}}};
-}
 
 std::string place_of(const Campaign& campaign, const Setup& setup, const StraightPath& path) {
   std::string place;
@@ -158,7 +126,7 @@ class LineEvaluation {
 
 std::vector<Finding> line_notes(const LineEvaluation& evaluation, const PositioningFigures& figures,
                                 const SetupValues& values) {
-  std::vector<Finding> notes = common_notes(values);
+  std::vector<Finding> notes = notes_on_removed(values);
   if (evaluation.every_line_has_its_own_zero()) {
     const bool shared = figures.positive.systematic || figures.negative.systematic;
     notes.push_back({FindingCode::StandardsLinesOwnZero, {{"targets_of_own", !shared}}});
@@ -270,8 +238,9 @@ class CircleEvaluation {
 
 CircleTest circle_test(const CirclePath& path, const Setup& setup, std::size_t setup_index,
                        const SetupValues& values) {
-  CircleTest test{setup.name,    path.first, path.second,          path.radius,
-                  path.centre_w, {},         common_notes(values), setup_index};
+  CircleTest test{
+      setup.name, path.first, path.second, path.radius, path.centre_w, {}, notes_on_removed(values),
+      setup_index};
   const CircleEvaluation evaluation(path, setup.options.vector("centre").value_or(path.centre_w));
   const std::vector<std::size_t> places = evaluation.places(values);
   for (const std::size_t place : places) test.rows.push_back(path.rows[place]);
@@ -320,7 +289,7 @@ void evaluate_points(const Campaign& campaign, const Setup& setup, const SetupVa
   std::vector<Vector3d> difference;
   difference.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) difference.emplace_back(readings[i] - model[i]);
-  PointsTest test{setup.name, {}, volumetric_figures(difference), common_notes(values)};
+  PointsTest test{setup.name, {}, volumetric_figures(difference), notes_on_removed(values)};
   if (setup.options.text("alignment").value_or("rigid") == "rigid") {
     readings = without_rigid_motion(points, readings);
     model = without_rigid_motion(points, model);
@@ -343,6 +312,9 @@ StandardFigures standard_figures(const Campaign& campaign, std::span<const Resid
     if (traits.has_bar) evaluate_ball_bar(campaign, i, values[i], result);
     if (traits.reads_error_vectors) evaluate_points(campaign, setup, values[i], result);
   }
+  result.rotary_lines = rotary_positioning_tests(campaign, values);
+  result.error_motions = error_motion_tests(campaign, values);
+  result.drifts = drift_tests(campaign, values);
   summarise_diagonals(result);
   return result;
 }

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "volcal/identify/report/text/comparison_report.h"
+#include "volcal/identify/standards/rotary_test_names.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
@@ -89,6 +90,76 @@ Json summary_json(const DiagonalSummary& summary) {
           {"B_d_um", micro(summary.reversal)}};
 }
 
+Json unidirectional_angle_json(const UnidirectionalFigures& figures) {
+  return {{"A_urad", micro(figures.accuracy)},
+          {"E_urad", micro(figures.systematic)},
+          {"R_urad", micro(figures.repeatability)}};
+}
+
+Json angular_json(const PositioningFigures& figures) {
+  return {{"targets", figures.targets.size()},
+          {"A_urad", micro(figures.accuracy)},
+          {"E_urad", micro(figures.systematic)},
+          {"M_urad", micro(figures.mean_bidirectional)},
+          {"R_urad", micro(figures.repeatability)},
+          {"B_urad", micro(figures.reversal)},
+          {"mean_B_urad", micro(figures.mean_reversal)},
+          {"positive", unidirectional_angle_json(figures.positive)},
+          {"negative", unidirectional_angle_json(figures.negative)}};
+}
+
+Json error_motion_json(const ErrorMotionFigures& figures, const std::string& unit) {
+  return {{"angles", figures.angles},
+          {"total_" + unit, micro(figures.total)},
+          {"synchronous_" + unit, micro(figures.synchronous)},
+          {"asynchronous_" + unit, micro(figures.asynchronous)},
+          {"fundamental_" + unit, micro(figures.fundamental)}};
+}
+
+Json drift_json(const DriftFigures& figures, const std::string& unit) {
+  return {{"duration_s", figures.duration},
+          {"range_" + unit, micro(figures.range)},
+          {"first_hour_" + unit, micro(figures.first_hour)},
+          {"any_hour_" + unit, micro(figures.fastest_in_an_hour)},
+          {"change_" + unit, micro(figures.change)}};
+}
+
+Json temperatures_json(const DriftTest& test) {
+  Json ranges = Json::object();
+  for (const TemperatureRange& range : test.temperatures) ranges[range.channel] = {range.low, range.high};
+  return ranges;
+}
+
+/// Direct tests of rotary axes and drift at rest, where there are any.
+void add_rotary_figures(const StandardFigures& figures, Json& json) {
+  for (const RotaryPositioningTest& test : figures.rotary_lines) {
+    json["iso230_2_rotary"].push_back({{"setup", test.setup},
+                                       {"axis", std::string{letter_of(test.axis)}},
+                                       {"place", test.place},
+                                       {"readings", angular_json(test.figures.readings)},
+                                       {"model", angular_json(test.figures.model)}});
+    add_findings("notes", test.notes, json["iso230_2_rotary"].back());
+  }
+  for (const ErrorMotionTest& test : figures.error_motions) {
+    const std::string unit = test.is_angle() ? "urad" : "um";
+    json["iso230_7"].push_back({{"setup", test.setup},
+                                {"axis", std::string{letter_of(test.axis)}},
+                                {"motion", motion_name(test)},
+                                {"readings", error_motion_json(test.figures.readings, unit)},
+                                {"model", error_motion_json(test.figures.model, unit)}});
+    add_findings("notes", test.notes, json["iso230_7"].back());
+  }
+  for (const DriftTest& test : figures.drifts) {
+    const std::string unit = test.angle ? "urad" : "um";
+    json["iso230_3"].push_back({{"setup", test.setup},
+                                {"drift", drift_name(test)},
+                                {"readings", drift_json(test.figures.readings, unit)},
+                                {"model", drift_json(test.figures.model, unit)},
+                                {"temperatures_degC", temperatures_json(test)}});
+    add_findings("notes", test.notes, json["iso230_3"].back());
+  }
+}
+
 Json figures_json(const StandardFigures& figures) {
   Json json = {{"iso230_2", Json::array()},
                {"iso230_6", Json::array()},
@@ -130,6 +201,7 @@ Json figures_json(const StandardFigures& figures) {
                                   {"difference", volumetric_json(test.difference)}});
     add_findings("notes", test.notes, json["volumetric"].back());
   }
+  add_rotary_figures(figures, json);
   add_findings("not_recognised", figures.not_recognised, json);
   return json;
 }

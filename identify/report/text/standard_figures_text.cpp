@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/report/text/text_tables.h"
+#include "volcal/identify/standards/rotary_test_names.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
 
@@ -83,6 +84,73 @@ std::string lines_text(std::span<const NamedFigures> models) {
     }
   }
   return table.text();
+}
+
+std::string rotary_lines_text(std::span<const NamedFigures> models) {
+  TextTable table(columns({"setup", "axis", "at", "source"},
+                          {"A", "A+", "A-", "E", "E+", "E-", "M", "R", "R+", "R-", "B", "mean B"}),
+                  "Angular positioning of rotary axes, ISO 230-2:2014 [urad]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->rotary_lines;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup, {letter_of(tests[i].axis)}, tests[i].place};
+    rows.add(heading, "readings", positioning_cells(tests[i].figures.readings));
+    for (const NamedFigures& model : models)
+      rows.add(heading, model.name, positioning_cells(model.figures->rotary_lines[i].figures.model));
+  }
+  return table.text();
+}
+
+Cells motion_cells(const ErrorMotionFigures& figures) {
+  return {std::to_string(figures.angles), micrometres_or_dash(figures.total),
+          micrometres_or_dash(figures.synchronous), micrometres_or_dash(figures.asynchronous),
+          micrometres_or_dash(figures.fundamental)};
+}
+
+std::string error_motions_text(std::span<const NamedFigures> models) {
+  TextTable table(columns({"setup", "axis", "error motion", "source"},
+                          {"angles", "total", "synchronous", "asynchronous", "fundamental"}),
+                  "Axes of rotation, ISO 230-7:2006 [um, tilt urad]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->error_motions;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup, {letter_of(tests[i].axis)}, motion_name(tests[i])};
+    rows.add(heading, "readings", motion_cells(tests[i].figures.readings));
+    for (const NamedFigures& model : models)
+      rows.add(heading, model.name, motion_cells(model.figures->error_motions[i].figures.model));
+  }
+  const std::string text = table.text();
+  return text.empty() ? text
+                      : text +
+                            "  radial and tilt about the least-squares centre, axial with its one wave a "
+                            "turn; values need "
+                            "a full turn, asynchronous ones an angle that was met twice\n";
+}
+
+Cells drift_cells(const DriftFigures& figures) {
+  constexpr double kSecondsPerHour = 3600.0;
+  return {fixed_number(figures.duration / kSecondsPerHour, 1), micrometres_or_dash(figures.range),
+          micrometres_or_dash(figures.first_hour), micrometres_or_dash(figures.fastest_in_an_hour),
+          micrometres_or_dash(figures.change)};
+}
+
+std::string drifts_text(std::span<const NamedFigures> models) {
+  TextTable table(
+      columns({"setup", "drift", "source"}, {"hours", "range", "first hour", "any hour", "change"}),
+      "Drift at rest, ISO 230-3:2007 [um, tilt urad]");
+  SourceRows rows(table);
+  const auto& tests = models.front().figures->drifts;
+  std::string temperatures;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const Cells heading = {tests[i].setup, drift_name(tests[i])};
+    rows.add(heading, "readings", drift_cells(tests[i].figures.readings));
+    for (const NamedFigures& model : models)
+      rows.add(heading, model.name, drift_cells(model.figures->drifts[i].figures.model));
+    const std::string beside = temperatures_text(tests[i]);
+    const std::string line = beside.empty() ? beside : fmt::format("  {}: {}\n", tests[i].setup, beside);
+    if (temperatures.find(line) == std::string::npos) temperatures += line;
+  }
+  return table.text() + temperatures;
 }
 
 std::string diagonals_text(std::span<const NamedFigures> models) {
@@ -215,6 +283,9 @@ std::string standard_figures_text(std::span<const NamedFigures> models) {
   std::string text;
   for (const std::string& part :
        {lines_text(models) + notes_text(first.lines),
+        rotary_lines_text(models) + notes_text(first.rotary_lines),
+        error_motions_text(models) + notes_text(first.error_motions),
+        drifts_text(models) + notes_text(first.drifts),
         diagonals_text(models) + diagonal_groups_text(models) + notes_text(first.diagonals),
         circles + circle_key + notes_text(first.circles), points_text(models) + notes_text(first.points)}) {
     if (!part.empty()) text += (text.empty() ? "" : "\n") + part;

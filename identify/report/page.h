@@ -43,6 +43,7 @@ std::span<const Page> pages();
 Json summary_page(const PageInput& input);
 Json functions_page(const PageInput& input);
 Json locations_page(const PageInput& input);
+Json rotary_axes_page(const PageInput& input);
 Json volume_page(const PageInput& input);
 Json residuals_page(const PageInput& input);
 Json outliers_page(const PageInput& input);
@@ -115,6 +116,8 @@ Json circles_page(const ComparisonInput& input);
 Json positioning_page(const ComparisonInput& input);
 Json diagonals_page(const ComparisonInput& input);
 Json setup_residuals_page(const ComparisonInput& input);
+Json direct_tests_page(const ComparisonInput& input);
+Json compared_rotary_axes_page(const ComparisonInput& input);
 
 using DiagnosisPage = PageOf<DiagnosisInput>;
 std::span<const DiagnosisPage> diagnosis_pages();

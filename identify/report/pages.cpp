@@ -11,6 +11,7 @@ constexpr std::array kPages = {
     Page{"summary", "Summary", summary_page, kOfReadings},
     Page{"functions", "Error functions", functions_page},
     Page{"locations", "Squareness and location", locations_page},
+    Page{"rotary_axes", "Rotary axes", rotary_axes_page},
     Page{"volume", "Work volume", volume_page},
     Page{"residuals", "Residuals", residuals_page, kOfReadings},
     Page{"outliers", "Suspect readings", outliers_page, kOfReadings},
@@ -41,16 +42,22 @@ constexpr ComparisonPage kCircles{"circles", "Circles of the ball-bar, ISO 230-4
 constexpr ComparisonPage kPositioning{"positioning", "Positioning of the axes, ISO 230-2", positioning_page};
 constexpr ComparisonPage kDiagonals{"diagonals", "Diagonals, ISO 230-6", diagonals_page};
 constexpr ComparisonPage kSetupResiduals{"setup_residuals", "Residuals by setup", setup_residuals_page};
+constexpr ComparisonPage kDirectTests{"direct_tests", "Axes of rotation, ISO 230-7; drift, ISO 230-3",
+                                      direct_tests_page};
+constexpr ComparisonPage kRotaryAxes{"rotary_axes", "Rotary axes", compared_rotary_axes_page};
 constexpr ComparisonPage kComparison{"comparison", "Where it fails", comparison_page};
 
-constexpr std::array kComparisonPages = {kComparison, kCircles, kPositioning, kDiagonals, kSetupResiduals};
+constexpr std::array kComparisonPages = {kComparison,  kCircles,        kPositioning, kDiagonals,
+                                         kDirectTests, kSetupResiduals, kRotaryAxes};
 constexpr std::array kValidationPages = {
     ComparisonPage{"validation", "Before and after", validation_page},
     kComparison,
     kCircles,
     kPositioning,
     kDiagonals,
+    kDirectTests,
     kSetupResiduals,
+    kRotaryAxes,
 };
 
 constexpr std::array kMonteCarloPages = {

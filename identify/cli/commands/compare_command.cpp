@@ -164,10 +164,11 @@ int run_compare(const CompareArguments& arguments) {
     if (model.result) screening = screen(readings, as_fitted(evaluation, *model.result), arguments.threads);
     models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
     models.back().screening = screening;
-    if (!arguments.output.empty() && report_available())
-      models.back().circle_causes =
-          circle_causes(readings, model.spec, evaluation.parameters, model.result ? &*model.result : nullptr,
-                        models.back().figures.circles);
+    if (arguments.output.empty() || !report_available()) continue;
+    models.back().circle_causes =
+        circle_causes(readings, model.spec, evaluation.parameters, model.result ? &*model.result : nullptr,
+                      models.back().figures.circles);
+    if (model.result) models.back().rotary = rotary_pictures(*model.result, readings);
   }
   note_missing_rotary_errors(named, campaign);
   std::vector<HeldOutModel> heldout;

@@ -46,6 +46,7 @@ std::vector<ComparedModel> compared(const Campaign& campaign, const FitResult& r
   models.back().circle_causes =
       circle_causes(campaign, result.identified, validation.after.parameters,
                     result.covariance.isZero(0.0) ? nullptr : &result, models.back().figures.circles);
+  models.back().rotary = rotary_pictures(result, campaign);
   return models;
 }
 

@@ -8,6 +8,7 @@
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
 #include "volcal/identify/report/values/circle_causes.h"
+#include "volcal/identify/report/values/rotary_pictures.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/standards/comparison.h"
 #include "volcal/identify/standards/standard_figures.h"
@@ -23,6 +24,7 @@ struct ComparedModel {
   StandardFigures figures;
   std::optional<Screening> screening;  ///< of an identified model: scans of its residuals
   std::vector<std::vector<CircleCause>> circle_causes = {};  ///< per circle of `figures`; or none at all
+  std::optional<RotaryPictures> rotary = {};                 ///< of an identified model, for its pages
 };
 
 /// Breaks the residuals down and evaluates the standards' figures.

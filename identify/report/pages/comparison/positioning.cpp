@@ -62,20 +62,25 @@ struct Source {
   const PositioningFigures* figures;
 };
 
-Json card_json(const std::string& title, const std::string& setup, const std::string& abscissa,
-               const std::vector<Source>& sources, const std::vector<Finding>& notes) {
+/// What a card is about; positions are multiplied by `factor`.
+struct CardWords {
+  std::string title;
+  std::string setup;
+  std::string abscissa;
+  double factor = kPerMilli;
+  std::string unit = "µm";
+};
+
+Json card_json(const CardWords& words, const std::vector<Source>& sources,
+               const std::vector<Finding>& notes) {
   const std::vector<PositioningTarget>& targets = sources.front().figures->targets;
   const std::vector<std::size_t> drawn = even_sample(targets.size(), kTargetsDrawn);
   Json position = Json::array(), list = Json::array();
-  for (const std::size_t i : drawn) position.push_back(rounded(targets[i].position * kPerMilli, 6));
+  for (const std::size_t i : drawn) position.push_back(rounded(targets[i].position * words.factor, 6));
   for (const Source& source : sources) list.push_back(source_json(source.name, *source.figures, drawn));
-  return {{"title", title},
-          {"setup", setup},
-          {"abscissa", abscissa},
-          {"targets", targets.size()},
-          {"position_mm", std::move(position)},
-          {"sources", std::move(list)},
-          {"notes", sentences(notes)}};
+  return {{"title", words.title},       {"setup", words.setup},      {"abscissa", words.abscissa},
+          {"unit", words.unit},         {"targets", targets.size()}, {"position", std::move(position)},
+          {"sources", std::move(list)}, {"notes", sentences(notes)}};
 }
 
 /// Readings first, then the models. `figures_of(model)`: the test's figures of that model.
@@ -108,12 +113,37 @@ Json groups_json(std::span<const ComparedModel> models) {
   return groups;
 }
 
+std::string titled(const std::string& axis, const std::string& place) {
+  return axis + (place.empty() ? "" : " at " + place);
+}
+
+Json rotary_cards(const ComparisonInput& input) {
+  Json cards = Json::array();
+  const auto& tests = input.models.front().figures.rotary_lines;
+  for (std::size_t i = 0; i < std::min(kCardsShown, tests.size()); ++i) {
+    const auto sources =
+        sources_of(input.models, [&](const ComparedModel& model) -> const SideBySide<PositioningFigures>& {
+          return model.figures.rotary_lines[i].figures;
+        });
+    const std::string axis = axis_letter(tests[i].axis);
+    cards.push_back(card_json({.title = titled(axis, tests[i].place),
+                               .setup = tests[i].setup,
+                               .abscissa = axis + " [°]",
+                               .factor = position_factor(tests[i].axis),
+                               .unit = "µrad"},
+                              sources, tests[i].notes));
+    cards.back()["axis"] = axis;
+  }
+  return cards;
+}
+
 }  // namespace
 
 Json positioning_page(const ComparisonInput& input) {
   const auto& tests = input.models.front().figures.lines;
-  if (tests.empty()) return nullptr;
-  Json cards = Json::array();
+  const auto& rotary = input.models.front().figures.rotary_lines;
+  if (tests.empty() && rotary.empty()) return nullptr;
+  Json cards = rotary_cards(input);
   for (std::size_t i = 0; i < std::min(kCardsShown, tests.size()); ++i) {
     const AxisLineTest& test = tests[i];
     const auto sources =
@@ -121,11 +151,12 @@ Json positioning_page(const ComparisonInput& input) {
           return model.figures.lines[i].figures;
         });
     const std::string axis(1, letter_of(test.axis));
-    cards.push_back(card_json(axis + (test.place.empty() ? "" : " at " + test.place), test.setup,
-                              axis + " [mm]", sources, test.notes));
+    cards.push_back(
+        card_json({.title = titled(axis, test.place), .setup = test.setup, .abscissa = axis + " [mm]"},
+                  sources, test.notes));
     cards.back()["axis"] = axis;
   }
-  return {{"total", tests.size()}, {"cards", std::move(cards)}};
+  return {{"total", tests.size() + rotary.size()}, {"cards", std::move(cards)}};
 }
 
 Json diagonals_page(const ComparisonInput& input) {
@@ -136,8 +167,10 @@ Json diagonals_page(const ComparisonInput& input) {
     std::vector<Source> sources = {{"measured", diagonal_pair(tests[i]).readings}};
     for (const ComparedModel& model : input.models)
       sources.push_back({model.name, diagonal_pair(model.figures.diagonals[i]).model});
-    cards.push_back(card_json("Diagonal " + tests[i].figures.readings.name, tests[i].setup,
-                              "along " + tests[i].figures.readings.name + " [mm]", sources, tests[i].notes));
+    const std::string& name = tests[i].figures.readings.name;
+    cards.push_back(card_json(
+        {.title = "Diagonal " + name, .setup = tests[i].setup, .abscissa = "along " + name + " [mm]"},
+        sources, tests[i].notes));
   }
   return {{"total", tests.size()}, {"groups", groups_json(input.models)}, {"cards", std::move(cards)}};
 }

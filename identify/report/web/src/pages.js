@@ -7,6 +7,7 @@ import { renderCircles } from './pages/circles.js';
 import { renderComparison } from './pages/comparison.js';
 import { renderComputation } from './pages/computation.js';
 import { renderConfounding } from './pages/confounding.js';
+import { renderDirectTests } from './pages/direct_tests.js';
 import { renderDetectable } from './pages/detectable.js';
 import { renderEvidence } from './pages/evidence.js';
 import { renderFunctions } from './pages/functions.js';
@@ -24,6 +25,7 @@ import { renderResidualVariables } from './pages/residual_variables.js';
 import { renderResidualVectors } from './pages/residual_vectors.js';
 import { renderResiduals } from './pages/residuals.js';
 import { renderResolution } from './pages/resolution.js';
+import { renderRotaryAxes } from './pages/rotary_axes.js';
 import { renderSetupResiduals } from './pages/setup_residuals.js';
 import { renderSetups } from './pages/setups.js';
 import { renderStory } from './pages/story.js';
@@ -37,6 +39,7 @@ export const renderers = {
   summary: renderSummary,
   functions: renderFunctions,
   locations: renderLocations,
+  rotary_axes: renderRotaryAxes,
   volume: renderVolume,
   residuals: renderResiduals,
   outliers: renderOutliers,
@@ -62,6 +65,7 @@ export const renderers = {
   circles: renderCircles,
   positioning: renderPositioning,
   diagonals: renderDiagonals,
+  direct_tests: renderDirectTests,
   setup_residuals: renderSetupResiduals,
   uncertainties: renderUncertainties,
   budget: renderBudget,

@@ -39,6 +39,16 @@ export function addPlot(node, make, onDrawn) {
   return () => update(plot);
 }
 
+/** Forgets the plots of a part of the page that is shown no more. */
+export function dropPlots(part) {
+  const nodes = new Set(part.querySelectorAll('.plot'));
+  for (const plot of plots.filter(({ node }) => nodes.has(node))) {
+    near.unobserve(plot.node);
+    if (plot.drawn) Plotly.purge(plot.node);
+    plots.splice(plots.indexOf(plot), 1);
+  }
+}
+
 function update(plot) {
   if (!plot.drawn) return;
   const { data, layout } = figureOf(plot);

@@ -101,6 +101,9 @@ class Element {
 
   descendants() { return this.children.filter((child) => child instanceof Element).flatMap((child) => [child, ...child.descendants()]); }
   querySelectorAll(selector) { return this.descendants().filter((node) => matches(node, selector)); }
+  /** A canvas of which nothing is seen. */
+  getContext() { return { createImageData: (w, h) => ({ data: new Uint8ClampedArray(4 * w * h) }), putImageData: () => {} }; }
+  toDataURL() { return 'data:,'; }
   closest(selector) { return matches(this, selector) ? this : this.parent?.closest(selector) ?? null; }
   getBoundingClientRect() { return { top: 0 }; }
 }
@@ -130,6 +133,7 @@ export function openPage(json) {
       newPlot: async (node, plotData, layout) => { plots.push(node); draw(node, plotData, layout); },
       react: draw,
       relayout: () => {},
+      purge: () => {},
       Plots: { resize: () => {} },
     },
   });

@@ -1,5 +1,6 @@
 // A circle of the ball-bar: radial deviations over the angle, both ways round, about a base circle.
 // data: { first, second, angle: degrees, sense: ±1, traces: [{ name, values: µm, dash, width, opacity, shade }] }.
+// What is common to all polar plots is exported: rings, spokes and where a deviation lies.
 import { addPlot, layout2d, plain } from '../plot.js';
 import { el, significant } from '../dom.js';
 import { color, series } from '../theme.js';
@@ -9,7 +10,7 @@ const kReach = 0.62; // of the largest deviation
 const kMostRings = 3; // each way
 const kEdge = 1.12; // of the reach: where the axes end
 const kGapDegrees = 25; // wider: nothing was read in between
-const kLimit = 1.13 * (kBase + kEdge * kReach); // of the axes of the plot
+export const kLimit = 1.13 * (kBase + kEdge * kReach); // of the axes of the plot
 
 const kSenses = [[1, 'counter-clockwise', () => series(0), 'series-0'], [-1, 'clockwise', () => color('warning'), 'warning']];
 
@@ -21,9 +22,10 @@ function niceStep(value) {
 
 export const largestDeviation = (traces) => Math.max(...traces.flatMap((trace) => trace.values.filter((v) => v !== null).map(Math.abs)), 1e-3);
 
-/** Distance of the rings, and how many there are either way. */
-function ringsOf(traces) {
-  const largest = largestDeviation(traces);
+const ringsOf = (traces) => ringsFor(largestDeviation(traces));
+
+/** Distance of the rings for deviations up to `largest`, and how many there are either way. */
+export function ringsFor(largest) {
   const step = niceStep(largest / kMostRings);
   return { step, count: Math.max(1, Math.ceil(largest / step - 1e-9)) };
 }
@@ -51,7 +53,8 @@ function path(data, values, wanted, scale) {
   return trace;
 }
 
-function rings(scale, step, count) {
+/** Rings about the circle of zero; `sparse`: only the outermost and zero have their numbers. */
+export function rings(scale, step, count, sparse = false) {
   const shapes = [];
   const annotations = [];
   for (let k = -count; k <= count; k += 1) {
@@ -60,38 +63,47 @@ function rings(scale, step, count) {
       type: 'circle', xref: 'x', yref: 'y', x0: -radius, x1: radius, y0: -radius, y1: radius, layer: 'below',
       line: { color: color(k === 0 ? 'zero' : 'grid'), width: k === 0 ? 1.4 : 1 },
     });
+    if (sparse && k !== 0 && k !== count) continue;
     const at = radians(67.5);
     annotations.push({ x: radius * Math.cos(at), y: radius * Math.sin(at), text: k === 0 ? '0' : `${k > 0 ? '+' : '−'}${significant(Math.abs(k) * step, 2)}`, showarrow: false, font: { size: 10, color: color('muted') }, bgcolor: color('page'), borderpad: 1 });
   }
   return { shapes, annotations };
 }
 
-function axes(data) {
+const axes = (data) => spokes([[0, `+${data.first}`], [90, `+${data.second}`], [180, `−${data.first}`], [270, `−${data.second}`]].map(([angle, text]) => [angle, text, color(`axis-${text.at(-1)}`)]));
+
+/** Lines outwards with a text at their ends: [[angle, text, colour], ...]. */
+export function spokes(ends) {
   const edge = kBase + kEdge * kReach;
   const inner = kBase - kReach;
-  const ends = [[0, `+${data.first}`], [90, `+${data.second}`], [180, `−${data.first}`], [270, `−${data.second}`]];
   return {
     shapes: ends.map(([angle]) => ({
       type: 'line', x0: inner * Math.cos(radians(angle)), y0: inner * Math.sin(radians(angle)), x1: edge * Math.cos(radians(angle)), y1: edge * Math.sin(radians(angle)), line: { color: color('grid'), width: 1 }, layer: 'below',
     })),
-    annotations: ends.map(([angle, text]) => ({
-      x: 1.08 * edge * Math.cos(radians(angle)), y: 1.06 * edge * Math.sin(radians(angle)), text, showarrow: false, font: { size: 12, color: color(`axis-${text.at(-1)}`) },
+    annotations: ends.map(([angle, text, shade]) => ({
+      x: 1.08 * edge * Math.cos(radians(angle)), y: 1.06 * edge * Math.sin(radians(angle)), text, showarrow: false, font: { size: 12, color: shade },
     })),
   };
 }
 
-/** Where a deviation lies in the plot: { limit: half its width, place(angle, value): [x, y] }. */
+/** Where a deviation lies in the plot. */
+export const placeOf = (scale) => (angle, value) => {
+  const radius = kBase + kReach * (value / scale);
+  return [radius * Math.cos(radians(angle)), radius * Math.sin(radians(angle))];
+};
+
+/** { limit: half the width of the plot, place(angle, value): [x, y] }. */
 export function polarGeometry(traces) {
   const { step, count } = ringsOf(traces);
-  const scale = count * step;
-  return {
-    limit: kLimit,
-    place: (angle, value) => {
-      const radius = kBase + kReach * (value / scale);
-      return [radius * Math.cos(radians(angle)), radius * Math.sin(radians(angle))];
-    },
-  };
+  return { limit: kLimit, place: placeOf(count * step) };
 }
+
+/** Layout of a polar plot; `limit`: half its width. */
+export const polarLayout = (height, parts, limit = kLimit) => layout2d({
+  height, margin: { l: 4, r: 4, t: 4, b: 4 }, hovermode: 'closest',
+  x: { title: '', visible: false, range: [-limit, limit], fixedrange: true }, y: { title: '', visible: false, range: [-limit, limit], scaleanchor: 'x', fixedrange: true },
+  shapes: parts.flatMap((part) => part.shapes), annotations: parts.flatMap((part) => part.annotations),
+});
 
 export function polarFigure(data, height) {
   const { step, count } = ringsOf(data.traces);
@@ -105,16 +117,15 @@ export function polarFigure(data, height) {
       line: { color: trace.shade ? color(trace.shade) : shade(), width: trace.width ?? 1.5, dash: trace.dash ?? 'solid' }, opacity: trace.opacity ?? 1,
       hovertemplate: `${plain(trace.name)}, ${words}<br>%{customdata[0]:.1f}°: %{customdata[1]:.2f} µm<extra></extra>`,
     }))),
-    layout: layout2d({
-      height, margin: { l: 4, r: 4, t: 4, b: 4 }, hovermode: 'closest',
-      x: { title: '', visible: false, range: [-kLimit, kLimit], fixedrange: true }, y: { title: '', visible: false, range: [-kLimit, kLimit], scaleanchor: 'x', fixedrange: true },
-      shapes: [...axis.shapes, ...ring.shapes], annotations: [...ring.annotations, ...axis.annotations],
-    }),
+    layout: polarLayout(height, [axis, ring]),
   };
 }
 
+/** Height of a polar plot as wide as its place. */
+export const polarHeight = (node, most = 430) => Math.round(Math.min(most, Math.max(280, node.clientWidth)));
+
 /** Draws `make()` into `node`; the ring distance follows from the largest deviation. Returns a function that draws it again. */
-export const addPolar = (node, make) => addPlot(node, () => polarFigure(make(), Math.round(Math.min(430, Math.max(280, node.clientWidth)))));
+export const addPolar = (node, make) => addPlot(node, () => polarFigure(make(), polarHeight(node)));
 
 /** What a ring stands for, for the caption. */
 export const ringStep = (traces) => ringsOf(traces).step;

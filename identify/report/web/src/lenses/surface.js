@@ -18,8 +18,9 @@ function shade(share, rgb) {
 const channels = (hex) => [1, 3, 5].map((at) => Number.parseInt(hex.slice(at, at + 2), 16));
 const palette = () => ({ below: channels(color('series-0')), above: channels(color('bad')), page: channels(color('page')) });
 
-/** Filled contours of values on a grid, as a picture. */
+/** Filled contours of values on a grid, as a picture; sizes, which are never negative, have twice the bands. */
 function picture(data, limit) {
+  const bands = data.isSize ? kBands : kBands / 2;
   const [x, y] = data.axes.map((axis) => axis.places.length);
   const canvas = document.createElement('canvas');
   canvas.width = (x - 1) * kPixels;
@@ -36,7 +37,7 @@ function picture(data, limit) {
       const i = Math.min(x - 2, Math.floor(u));
       const [a, b] = [u - i, v - j];
       const here = (1 - a) * ((1 - b) * value(i, j) + b * value(i, j + 1)) + a * ((1 - b) * value(i + 1, j) + b * value(i + 1, j + 1));
-      const band = Math.round((here / limit) * (kBands / 2)) / (kBands / 2);
+      const band = Math.round((here / limit) * bands) / bands;
       image.data.set([...shade(Math.max(-1, Math.min(1, band)), rgb), 255], 4 * (row * canvas.width + column));
     }
   }
@@ -44,12 +45,13 @@ function picture(data, limit) {
   return canvas.toDataURL();
 }
 
-function scale() {
+function scale(isSize) {
   const rgb = palette();
-  return [0, 0.25, 0.5, 0.75, 1].map((at) => [at, `rgb(${shade(2 * at - 1, rgb).join(',')})`]);
+  return [0, 0.25, 0.5, 0.75, 1].map((at) => [at, `rgb(${shade(isSize ? at : 2 * at - 1, rgb).join(',')})`]);
 }
 
-function heatMap(data) {
+/** Values on a grid of two variables, with the places of the readings. */
+export function heatMap(data, height = 560) {
   const [x, y] = data.axes;
   const limit = largest(data.value);
   const hover = x.places.flatMap((u) => y.places.map((v) => [u, v]));
@@ -58,7 +60,7 @@ function heatMap(data) {
     data: [
       {
         x: hover.map(([u]) => u), y: hover.map(([, v]) => v), type: 'scatter', mode: 'markers', showlegend: false,
-        marker: { size: 9, opacity: 0, color: data.value, colorscale: scale(), cmin: -limit, cmax: limit, showscale: true, colorbar: colorBar(plain(data.unit), 1.01) },
+        marker: { size: 9, opacity: 0, color: data.value, colorscale: scale(data.isSize), cmin: data.isSize ? 0 : -limit, cmax: limit, showscale: true, colorbar: colorBar(plain(data.unit), 1.01) },
         text: data.value.map((value, k) => `${significant(value, 3)} ± ${significant(data.U95[k], 2)} ${plain(data.unit)}`),
         hovertemplate: `${plain(x.name)} %{x:.4g}, ${plain(y.name)} %{y:.4g}: %{text}<extra></extra>`,
       },
@@ -68,7 +70,7 @@ function heatMap(data) {
       },
     ],
     layout: layout2d({
-      height: 560, margin: { r: 70, t: 24 }, hovermode: 'closest',
+      height, margin: { r: 70, t: 24 }, hovermode: 'closest',
       annotations: [{
         x: data.at[0], y: data.at[1], ax: 0, ay: -26, arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
         text: `${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${plain(data.unit)}`,
@@ -109,7 +111,8 @@ function cuts(data, along) {
   };
 }
 
-function curve(data) {
+/** Values along one variable with their band. */
+export function curve(data) {
   const [axis] = data.axes;
   return {
     data: [

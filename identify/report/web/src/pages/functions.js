@@ -87,6 +87,16 @@ function panel(f, axis, view, functions, redraws) {
   return node;
 }
 
+/** Linear axes in one row, rotary axes in another, three at most. */
+function rowsOf(all) {
+  const rows = [];
+  for (const [kind, letters] of [['linear', 'XYZ'], ['rotary', 'ABC']]) {
+    const axes = all.filter(({ name }) => letters.includes(name));
+    for (let first = 0; first < axes.length; first += 3) rows.push([kind, axes.slice(first, first + 3)]);
+  }
+  return rows;
+}
+
 export function renderFunctions(body, data) {
   const view = { scale: 'own' };
   const redraws = [];
@@ -95,9 +105,8 @@ export function renderFunctions(body, data) {
     redraws.forEach((redraw) => redraw());
   }));
   body.append(note(`Value and ${fixed(data.coverage, 2)} u band (95 %) along each axis. Dashed on grey ground: extrapolated beyond the measured positions. Ticks on the position axis: ends of the pieces of the function.`), controls);
-  for (let first = 0; first < data.axes.length; first += 3) {
-    const axes = data.axes.slice(first, first + 3);
-    const grid = el('div', { class: 'functions', style: `--columns:${axes.length}` });
+  for (const [kind, axes] of rowsOf(data.axes)) {
+    const grid = el('div', { class: `functions ${kind}`, style: `--columns:${axes.length}` });
     for (const axis of axes) grid.append(el('h3', { class: `axis-${axis.name}` }, `${axis.name} axis`));
     for (let component = 0; component < 6; ++component) {
       for (const axis of axes) {
@@ -106,5 +115,6 @@ export function renderFunctions(body, data) {
       }
     }
     body.append(grid);
+    if (kind === 'rotary') body.append(el('p', { class: 'note paper-only' }, `Error functions of ${axes.map(({ name }) => name).join(', ')}: under “Rotary axes”, where they were identified.`));
   }
 }

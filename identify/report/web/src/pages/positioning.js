@@ -9,7 +9,7 @@ function cards(body, data, chosen, redraws) {
       el('figcaption', {}, [el('strong', { class: card.axis ? `axis-${card.axis}` : null }, card.title), ` (${card.setup})`]),
     ]);
     redraws.push(addIsoCard(node, card, () => chosen.index));
-    if (card.position_mm.length < card.targets) node.append(note(`${count(card.position_mm.length)} of ${count(card.targets)} targets are drawn, an even choice.`));
+    if (card.position.length < card.targets) node.append(note(`${count(card.position.length)} of ${count(card.targets)} targets are drawn, an even choice.`));
     node.append(...card.notes.map((text) => note(text)));
     grid.append(node);
   }

@@ -10,6 +10,7 @@
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/report/rotary_json.h"
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/session/session_command.h"
 #include "volcal/identify/standards/standard_figures.h"
@@ -387,6 +388,12 @@ Json polar_json(const Session& session) {
   for (std::size_t i = 0; i < now.circles.size(); ++i)
     circles.push_back(circle_json(now.circles[i], before.circles[std::min(i, before.circles.size() - 1)]));
   return {{"model", session.current().number}, {"circles", std::move(circles)}};
+}
+
+Json rotary_axes_json(const Session& session) {
+  const auto pictures = rotary_pictures(session.fitted_result(), session.campaign());
+  return {{"model", session.current().number},
+          {"rotary", pictures ? report::rotary_json(*pictures) : Json()}};
 }
 
 Json meaning_json(Session& session) {

@@ -27,6 +27,8 @@ std::string map_frame(const Session& session, const std::string& x, const std::s
 Json periodogram_json(const Session& session, const std::string& variable);
 /// Circles of the ball-bar: measured, and predicted by the current and by the first model.
 Json polar_json(const Session& session);
+/// Pictures of the rotary axes by the last full fit; "rotary" is null where none was identified.
+Json rotary_axes_json(const Session& session);
 /// What the current model means in the volume.
 Json meaning_json(Session& session);
 

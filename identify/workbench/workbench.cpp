@@ -217,6 +217,7 @@ Json Workbench::look(const std::string& request, const Json& body) {
   if (request == "complete") return completion_json(session(), text_of(body, "text"), number_of(body, "at"));
   if (request == "periodogram") return periodogram_json(session(), text_of(body, "variable"));
   if (request == "polar") return polar_json(session());
+  if (request == "rotary") return rotary_axes_json(session());
   if (request == "meaning") return meaning_json(session());
   throw Refusal(404, "\"" + request + "\" is no request of the workbench", "load the page again");
 }

@@ -150,6 +150,7 @@ TEST_F(WorkbenchOnACampaign, DrawsMapsWavesAndMeaning) {
   const Json waves = page().told("periodogram", {{"variable", "x"}});
   EXPECT_EQ(waves["period"].size(), waves["power"].size());
   EXPECT_TRUE(page().told("polar")["circles"].empty()) << "no bar was in use";
+  EXPECT_TRUE(page().told("rotary")["rotary"].is_null()) << "the machine has no rotary axis";
   const Json meaning = page().told("meaning");
   double percent = 0.0;
   for (const Json& cause : meaning["share"]) percent += cause["percent"].get<double>();

@@ -109,7 +109,7 @@ export class Session {
 
   answer(name, body, tab) {
     if (this.writer === null) this.writer = tab;
-    const looks = { state: () => this.state(tab), columns: () => this.sendColumns(body), rank: () => this.rank(), unknown: () => this.unknown(), preview: () => this.preview(this.effect(body.effect)), formula: () => this.formula(body), complete: () => complete(body.text, body.at, kVariables.map((v) => v.name)), periodogram: () => this.periodogram(body), polar: () => this.polar(), meaning: () => this.meaning(), cancel: () => this.cancel(), take: () => { this.writer = tab; this.changed(); return this.state(tab); } };
+    const looks = { state: () => this.state(tab), columns: () => this.sendColumns(body), rank: () => this.rank(), unknown: () => this.unknown(), preview: () => this.preview(this.effect(body.effect)), formula: () => this.formula(body), complete: () => complete(body.text, body.at, kVariables.map((v) => v.name)), periodogram: () => this.periodogram(body), polar: () => this.polar(), rotary: () => ({ rotary: null }), meaning: () => this.meaning(), cancel: () => this.cancel(), take: () => { this.writer = tab; this.changed(); return this.state(tab); } };
     if (looks[name]) return looks[name]();
     if (tab !== this.writer) throw fault(409, 'another tab writes', 'Choose “Write here”.');
     if (this.busy) throw fault(409, 'the program is busy');

@@ -10,6 +10,7 @@ import { begin } from '../draw/timing.js';
 import { Picture } from './picture.js';
 import { circlesOf } from './polar.js';
 import { lenses } from './registry.js';
+import { hasRotaryAxes, layerOptions, lineOptions, motionOptions, toolOptions } from './rotary.js';
 import { kOf } from './values.js';
 
 /** A map is timed apart from the other pictures. */
@@ -31,6 +32,12 @@ function Menu({ label, name, value, options, onChoose }) {
 const positions = () => variables.value.filter(({ kind, name }) => kind === 'position' || kind === 'point' || ['x', 'y', 'z'].includes(name));
 const variableOptions = (list) => list.map(({ name, label }) => [name, label]);
 
+/** A menu of what the program's answer offers; nothing to choose of one. */
+function Chosen({ name, at, of, config, set }) {
+  const options = of(config);
+  return options.length > 1 && <Menu label="" name={name} value={config[at] ?? options[0][0]} options={options} onChoose={(value) => set({ [at]: value })} />;
+}
+
 const controls = {
   x: ({ config, set, lens }) => <Menu name="Variable" label="" value={config.x} options={variableOptions(lens.positionsOnly ? positions() : variables.value)} onChoose={(x) => set({ x, period: 0 })} />,
   y: ({ config, set }) => <Menu label="and" value={config.y} options={variableOptions(variables.value)} onChoose={(y) => set({ y })} />,
@@ -45,6 +52,10 @@ const controls = {
   period: ({ config, set }) => (
     <label class="menu"><span>period</span><input type="number" min="0" step="any" value={config.period || (config.spectrum?.peak ?? '')} onChange={(event) => set({ period: Number(event.currentTarget.value) })} /></label>
   ),
+  motion: ({ config, set }) => <Chosen name="Error motion" at="motion" of={motionOptions} config={config} set={set} />,
+  line: ({ config, set }) => <Chosen name="Axis" at="line" of={lineOptions} config={config} set={set} />,
+  layer: ({ config, set }) => <Chosen name="Error" at="layer" of={layerOptions} config={config} set={set} />,
+  tool: ({ config, set }) => <Chosen name="Tool" at="tool" of={toolOptions} config={config} set={set} />,
   turn: ({ config, set }) => (
     <span class="turns" role="group" aria-label="Turn the picture">
       {[['⟲', 'left', -0.2, 0], ['⟳', 'right', 0.2, 0], ['▴', 'up', 0, -0.15], ['▾', 'down', 0, 0.15]].map(([sign, words, turn, tilt]) => (
@@ -57,6 +68,7 @@ const controls = {
 /** What a lens asks the program for, besides columns. */
 const answers = {
   periodogram: async ({ x }) => ({ spectrum: await call('periodogram', { variable: x }).catch((error) => ({ period: [], power: [], problem: error.message })) }),
+  rotary: async () => ({ rotary: (await call('rotary', {})).rotary }),
   polar: async () => ({ circles: (await call('polar', {})).circles }),
 };
 
@@ -114,7 +126,8 @@ export function Card({ config }) {
   const [shownConfig, setShown] = useState(whole);
   useEffect(() => { setShown(whole); }, [signature, got]);
   useEffect(() => { ensure(lens.needs(adjusted, variables.value)).catch((error) => report('columns', error)); }, [signature, campaign.value]);
-  const kinds = Object.values(lenses).filter(({ kind }) => kind !== 'polar' || circlesOf(campaign.value.setups).length > 0).map(({ kind, title }) => [kind, title]);
+  const offered = (each) => (each.kind !== 'polar' || circlesOf(campaign.value.setups).length > 0) && (!each.ofRotaryAxes || hasRotaryAxes(variables.value));
+  const kinds = Object.values(lenses).filter(offered).map(({ kind, title }) => [kind, title]);
   return (
     <article class={`lens lens-${config.kind}`} aria-label={`Lens: ${lens.title}`}>
       <div class="lens-menus">

@@ -2,6 +2,7 @@ import { choice, decimalsFor, el, fixed, note, significant, symbolMark, table } 
 import { alongFigure, linesFigure, startFactors } from '../lenses/axis_lines.js';
 import { addMotion, motionCaption, peakOf } from '../lenses/motion.js';
 import { layerData, rotaryMapFigure } from '../lenses/rotary_map.js';
+import { nameParts } from '../names.js';
 import { addPlot, dropPlots, plain } from '../plot.js';
 import { modelChoice } from './model_choice.js';
 
@@ -128,7 +129,10 @@ function show(body, model) {
 
 export function renderRotaryAxes(body, data) {
   const part = el('div', {});
-  const chosen = modelChoice(data.models.map(({ name }) => name), () => show(part, data.models[chosen.index]));
+  const chosen = modelChoice(data.models.map(({ name }) => name), () => {
+    show(part, data.models[chosen.index]);
+    nameParts(part, 'Rotary axes');
+  });
   if (chosen.node) body.append(el('div', { class: 'controls' }, chosen.node));
   body.append(part);
   show(part, data.models[chosen.index]);

@@ -12,4 +12,5 @@ int main() {
   const double x = 1.0;
   if (ddot_(&one, &x, &one, &x, &one) != 1.0) return 1;  // so that the library is linked
   std::fputs(volcal::better_blas_core().value_or("").c_str(), stdout);
+  return 0;
 }

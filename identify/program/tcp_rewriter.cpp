@@ -343,8 +343,8 @@ void TcpRewriter::note_node(const Node& node) {
 
 /// Three Gauss points a segment, as the written numbers have it.
 void TcpRewriter::note_errors(const std::vector<Node>& nodes) {
-  constexpr std::array<double, 3> kPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
-  constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  constexpr std::array<double, 3> kGaussPlaces = {0.1127016653792583, 0.5, 0.8872983346207417};
+  constexpr std::array<double, 3> kGaussWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   const double length = (to_.point_w - from_.point_w).norm();
   summary_.length += length;
   TcpPose begin = sent_;
@@ -352,13 +352,14 @@ void TcpRewriter::note_errors(const std::vector<Node>& nodes) {
   for (const Node& node : nodes) {
     const TcpPose end = rounded(node.sent);
     const double part = node.t - t_begin;
-    for (std::size_t i = 0; i < kPlaces.size() && part > 0.0; ++i) {
-      const double t = t_begin + kPlaces[i] * part;
+    for (std::size_t i = 0; i < kGaussPlaces.size() && part > 0.0; ++i) {
+      const double t = t_begin + kGaussPlaces[i] * part;
       const TcpPose meant = TcpPose::between(from_, to_, t);
       const ApproachDirection directions = directions_at(t);
       const TcpMachine::Left before = tcp_->left(meant, meant, directions);
-      const TcpMachine::Left after = tcp_->left(TcpPose::between(begin, end, kPlaces[i]), meant, directions);
-      const double weight = kWeights[i] * part * length;
+      const TcpMachine::Left after =
+          tcp_->left(TcpPose::between(begin, end, kGaussPlaces[i]), meant, directions);
+      const double weight = kGaussWeights[i] * part * length;
       square_before_ += weight * before.point * before.point;
       square_after_ += weight * after.point * after.point;
       axis_before_ += weight * before.axis * before.axis;

@@ -275,6 +275,7 @@ Json effect_part(const EvaluationArguments& arguments) {
   Json json = rounds.json(arguments.repeats);
   json["nodes"] = kCovarianceNodes * kCovarianceNodes * kCovarianceNodes;
   json["file_points"] = kSmallFileNodes * kSmallFileNodes * kSmallFileNodes;
+  json["file_bytes"] = bytes;
   json["points"] = kPoints;
   return json;
 }

@@ -1,11 +1,14 @@
 #pragma once
 /// Results without a fit: errors given by hand, or those of a simulated machine.
 
+#include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include "volcal/identify/errors/error_field.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/sim/machine/truth_machine.h"
@@ -78,6 +81,29 @@ inline FitResult result_of(const sim::TruthMachine& truth, int intervals = 50) {
   for (const LocationSymbol symbol : truth.machine().datum.squareness())
     given.locations[symbol.name()] = truth.location(symbol);
   return result_with(truth.machine(), given, intervals);
+}
+
+/// A simulated machine that has the identified errors exactly; an axis that travels a turn counts modulo it.
+inline sim::TruthMachine true_machine(const FitResult& result) {
+  constexpr double kTurn = 2.0 * std::numbers::pi, kClosed = 1e-6;  // rad
+  sim::TruthMachine truth(result.machine);
+  const ErrorField field(result, result.machine.tools.front(), default_conditions(result));
+  for (const Axis& axis : result.machine.axes) {
+    for (const Component component : kAllComponents) {
+      const std::size_t a = index_of(axis.name), k = index_of(component);
+      truth.set_error({component, axis.name}, [=](double q) {
+        AxisPosition position{};
+        position[a] = q;
+        if (is_rotary(axis.name) && axis.travel() > kTurn - kClosed &&
+            (q < axis.travel_min || q > axis.travel_max))
+          position[a] = q - kTurn * std::floor((q - axis.travel_min) / kTurn);
+        return field.joint_errors(position, {}).motion[a][k];
+      });
+      const double location = field.joint_errors({}, {}).location[a][k];
+      if (is_rotary(axis.name) && location != 0.0) truth.set_location({component, axis.name}, location);
+    }
+  }
+  return truth;
 }
 
 }  // namespace volcal::testing

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/identified_machines.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
 #include "tests/support/table_samples.h"
@@ -22,25 +23,7 @@ namespace volcal {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// The machine that has the identified errors exactly.
-sim::TruthMachine true_machine(const FitResult& result) {
-  sim::TruthMachine truth(result.machine);
-  const ErrorField field(result, result.machine.tools.front(), default_conditions(result));
-  for (const Axis& axis : result.machine.axes) {
-    for (const Component component : kAllComponents) {
-      const std::size_t a = index_of(axis.name), k = index_of(component);
-      truth.set_error({component, axis.name}, [=, name = axis.name](double q) {
-        AxisPosition position{};
-        position[index_of(name)] = q;
-        return field.joint_errors(position, {}).motion[a][k];
-      });
-      const double location = field.joint_errors({}, {}).location[a][k];
-      if (is_rotary(axis.name) && location != 0.0) truth.set_location({component, axis.name}, location);
-    }
-  }
-  return truth;
-}
+using testing::true_machine;
 
 /// RMS over the poses that the program judges at: functional point, m, and direction of the tool's axis, rad.
 RotaryLeft left_on(const sim::TruthMachine& truth, const Eigen::Vector3d& tool) {

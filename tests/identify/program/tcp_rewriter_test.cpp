@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/identified_machines.h"
 #include "tests/support/nc_programs.h"
 #include "tests/support/refusal.h"
 #include "tests/support/rotary_machines.h"
@@ -46,25 +47,6 @@ FitResult five_axis_result(const std::string& structure) {
     }
   }
   return testing::result_with(machine, given, 72);
-}
-
-sim::TruthMachine machine_of_result(const FitResult& result) {
-  sim::TruthMachine truth(result.machine);
-  const ErrorField field(result, result.machine.tools.front(), default_conditions(result));
-  for (const Axis& axis : result.machine.axes) {
-    for (const Component component : kAllComponents) {
-      const std::size_t a = index_of(axis.name), k = index_of(component);
-      truth.set_error({component, axis.name}, [=, name = axis.name](double q) {
-        AxisPosition position{};
-        const bool turns = name == AxisName::C;
-        position[index_of(name)] = turns ? std::remainder(q, 2.0 * std::numbers::pi) : q;
-        return field.joint_errors(position, {}).motion[a][k];
-      });
-      const double location = field.joint_errors({}, {}).location[a][k];
-      if (is_rotary(axis.name) && location != 0.0) truth.set_location({component, axis.name}, location);
-    }
-  }
-  return truth;
 }
 
 /// What a block of the text says: words that hold until they change; millimetres and degrees.
@@ -213,7 +195,7 @@ class TcpPrograms : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(TcpPrograms, PutTheToolWhereTheProgramMeansIt) {
-  const sim::TruthMachine machine = machine_of_result(result_);
+  const sim::TruthMachine machine = testing::true_machine(result_);
   TcpRewriteOptions options;
   options.check = true;
   options.decimals_mm = 5;
@@ -233,7 +215,7 @@ TEST_P(TcpPrograms, PutTheToolWhereTheProgramMeansIt) {
 }
 
 TEST_P(TcpPrograms, TurnTheToolsAxisBackWithOrientation) {
-  const sim::TruthMachine machine = machine_of_result(result_);
+  const sim::TruthMachine machine = testing::true_machine(result_);
   TcpRewriteOptions options;
   options.orientation = true;
   options.check = true;

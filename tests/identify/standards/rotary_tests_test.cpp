@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "tests/support/machines.h"
+#include "tests/support/residual_records.h"
 
 namespace volcal {
 namespace {
@@ -45,23 +46,7 @@ void read(Setup& setup, const AxisPosition& position, const std::vector<double>&
 
 /// Predictions are half the readings.
 StandardFigures figures_of(const Campaign& campaign) {
-  std::vector<ResidualRecord> records;
-  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-    const Readings& readings = campaign.setups[s].readings;
-    for (std::size_t row = 0; row < readings.size(); ++row) {
-      for (std::size_t channel = 0; channel < readings.channels(); ++channel) {
-        ResidualRecord record;
-        record.setup = s;
-        record.row = row;
-        record.channel = static_cast<int>(channel);
-        record.reading = readings.value[channel][row];
-        record.predicted = 0.5 * record.reading;
-        record.sigma = 1e-6;
-        records.push_back(record);
-      }
-    }
-  }
-  return standard_figures(campaign, records);
+  return standard_figures(campaign, testing::records_times(campaign, 0.5));
 }
 
 double micro(const std::optional<double>& value) { return value.value_or(NAN) * 1e6; }

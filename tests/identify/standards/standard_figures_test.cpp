@@ -6,11 +6,14 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/support/residual_records.h"
 #include "volcal/identify/standards/test_paths.h"
 #include "volcal/identify/words/sentences.h"
 
 namespace volcal {
 namespace {
+
+using testing::records_of;
 
 using Eigen::Vector3d;
 using ::testing::ElementsAre;
@@ -54,29 +57,6 @@ Setup& add_setup(Campaign& campaign, const std::string& name, const std::string&
   }
   campaign.setups.push_back(std::move(setup));
   return campaign.setups.back();
-}
-
-/// Predictions by setup, row, channel from the reading.
-std::vector<ResidualRecord> records_of(
-    const Campaign& campaign, const std::function<double(std::size_t, std::size_t, double)>& predict) {
-  std::vector<ResidualRecord> records;
-  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-    const Readings& readings = campaign.setups[s].readings;
-    for (std::size_t row = 0; row < readings.size(); ++row) {
-      for (std::size_t channel = 0; channel < readings.channels(); ++channel) {
-        ResidualRecord record;
-        record.setup = s;
-        record.row = row;
-        record.channel = static_cast<int>(channel);
-        record.reading = readings.value[channel][row];
-        record.predicted = predict(s, row, record.reading);
-        record.sigma = 1e-6;
-        record.redundancy = 1.0;
-        records.push_back(record);
-      }
-    }
-  }
-  return records;
 }
 
 /// Displacement along X from 0.1 to 0.3 and back, twice; deviations in um by hand:

@@ -8,10 +8,13 @@
 
 #include "tests/io/report/drawing.h"
 #include "tests/support/machines.h"
+#include "tests/support/residual_records.h"
 #include "volcal/identify/report/report.h"
 
 namespace volcal {
 namespace {
+
+using testing::records_times;
 
 using Json = nlohmann::json;
 
@@ -57,27 +60,6 @@ Campaign direct_campaign() {
   angle.readings.value.resize(1);
   campaign.setups = {sphere, rest, angle};
   return campaign;
-}
-
-/// Predictions are the readings times `share`.
-std::vector<ResidualRecord> records_times(const Campaign& campaign, double share) {
-  std::vector<ResidualRecord> records;
-  for (std::size_t s = 0; s < campaign.setups.size(); ++s) {
-    const Readings& readings = campaign.setups[s].readings;
-    for (std::size_t row = 0; row < readings.size(); ++row) {
-      for (std::size_t channel = 0; channel < readings.channels(); ++channel) {
-        ResidualRecord record;
-        record.setup = s;
-        record.row = row;
-        record.channel = static_cast<int>(channel);
-        record.reading = readings.value[channel][row];
-        record.predicted = share * record.reading;
-        record.sigma = 1e-6;
-        records.push_back(record);
-      }
-    }
-  }
-  return records;
 }
 
 class DirectTestsPage : public ::testing::Test {

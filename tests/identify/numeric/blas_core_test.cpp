@@ -12,7 +12,7 @@ namespace {
 /// Kernels of the program at its last start. OpenBLAS says which it takes when it is loaded: "Core:
 /// SkylakeX".
 std::string core_of_program(const std::string& environment) {
-  const auto run = testing::run_with("env OPENBLAS_VERBOSE=2 " + environment, "--version");
+  const auto run = testing::run_with("env " + environment + " OPENBLAS_VERBOSE=2", "--version");
   const std::string mark = "Core: ";
   const auto last = run.errors.rfind(mark);
   EXPECT_NE(last, std::string::npos) << run.errors;

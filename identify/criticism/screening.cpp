@@ -9,7 +9,6 @@
 #include <iterator>
 
 #include "volcal/identify/criticism/catalogue/families.h"
-#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/model/description/units.h"
@@ -36,10 +35,17 @@ class Leading {
 };
 
 /// A few wild readings would speak for many tests.
-std::vector<bool> flagged(const FitResult& result) {
+std::vector<bool> flagged(const FitResult& result, const std::vector<std::size_t>& chosen) {
   std::vector<bool> flagged;
-  for (const ResidualRecord& record : result.residuals) flagged.push_back(record.flagged);
+  for (const std::size_t i : chosen) flagged.push_back(result.residuals[i].flagged);
   return flagged;
+}
+
+std::vector<ObservationPlace> places(const FitResult& result) {
+  std::vector<ObservationPlace> places;
+  for (const ResidualRecord& record : result.residuals)
+    places.push_back({record.setup, record.row, record.channel});
+  return places;
 }
 
 double root_mean_square(const Eigen::VectorXd& moved) {
@@ -79,12 +85,14 @@ void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
 
 }  // namespace
 
-Screening screen(const Campaign& campaign, const FitResult& result, int threads) {
+Screening screen(const Campaign& campaign, const FitResult& result, int threads,
+                 std::size_t most_observations) {
   if (result.dof < kThresholds.screening_spare_observations) return {};
   threads = thread_count(threads);
-  const LinearModel model(campaign, result);
+  const std::vector<std::size_t> chosen = evenly_chosen(places(result), most_observations);
+  const LinearModel model(campaign, result, chosen);
   const std::vector<NoiseParameters> noise = fitted_noise(result, model.noise_groups());
-  const NoiseData data = without(model.problem().data, flagged(result));
+  const NoiseData data = without(model.problem().data, flagged(result, chosen));
   const Projector projector(model.problem(), data, noise, threads, model.parts());
   const std::vector<Family> families = volcal::families(model);
   Leading leading;
@@ -92,9 +100,12 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads)
   std::vector<GenericTest> scans = generic_scan(model, scan_variables(model), projector, threads);
   std::ranges::move(wave_tests(model, projector, threads), std::back_inserter(scans));
   consider_scans(scans, leading);
-  return leading.take(families.size() + scans.size(), result.noise.more_than_white
+  Screening screening = leading.take(families.size() + scans.size(), result.noise.more_than_white
                                                           ? kThresholds.screening_log10_risk_of_drift
                                                           : kThresholds.screening_log10_risk);
+  screening.observations = model.size();
+  screening.of_a_sample = model.size() < result.residuals.size();
+  return screening;
 }
 
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result) {

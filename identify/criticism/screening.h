@@ -3,7 +3,10 @@
 /// and the scans without a catalogue of a diagnosis, once, at the noise and smoothing of the fit. It costs a
 /// fifth of the fit or less, names nothing, and says whether a diagnosis pays.
 
+#include <cstddef>
+
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/campaign.h"
@@ -12,8 +15,11 @@ namespace volcal {
 
 /// Nothing is tested without readings to spare. `result` must come from fit() of this campaign. Noise that is
 /// more than white is not exactly known: a test then counts from a much smaller probability on. Readings that
-/// the outlier test flags are left out. The same for any number of threads.
-Screening screen(const Campaign& campaign, const FitResult& result, int threads);
+/// the outlier test flags are left out. Campaigns of more readings than the tests need
+/// are tested on an even choice of them. The same for any number of
+/// threads.
+Screening screen(const Campaign& campaign, const FitResult& result, int threads,
+                 std::size_t most_observations = kThresholds.screening_most_observations);
 
 /// screen() and judge() with the time that they took. Nothing where there are no residuals to test: a robust
 /// loss has no likelihood, an adjustment that did not converge none to trust.

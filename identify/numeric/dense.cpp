@@ -13,7 +13,10 @@
 // NOLINTBEGIN(readability-identifier-naming): the names are LAPACK's
 extern "C" {
 void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
-void dpotri_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrtri_(const char* uplo, const char* diag, const int* n, double* a, const int* lda, int* info);
+void dlauum_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+void dtrmm_(const char* side, const char* uplo, const char* transa, const char* diag, const int* m,
+            const int* n, const double* alpha, const double* a, const int* lda, double* b, const int* ldb);
 void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const int* lda, double* w,
              double* work, const int* lwork, int* iwork, const int* liwork, int* info);
 void dgelsy_(const int* m, const int* n, const int* nrhs, double* a, const int* lda, double* b,
@@ -69,6 +72,25 @@ void fetch_buffer() {
   double number = 1.0;
   int info = 0;
   dpotrf_("U", &one, &number, &one, &info);
+}
+
+/// The lower triangle at `a`, inverted in place. Halves, since OpenBLAS inverts blocks by products of vectors.
+void invert_triangle(double* a, int n, int stride) {
+  constexpr int kSmall = 32;
+  if (n <= kSmall) {
+    int info = 0;
+    dtrtri_("L", "N", &n, a, &stride, &info);
+    if (info != 0) throw std::runtime_error("inverse_from_cholesky: singular factor");
+    return;
+  }
+  const int half = n / 2, rest = n - half;
+  const double one = 1.0, minus = -1.0;
+  double* below = a + half;
+  double* last = below + static_cast<std::ptrdiff_t>(half) * stride;
+  invert_triangle(a, half, stride);
+  invert_triangle(last, rest, stride);
+  dtrmm_("L", "L", "N", "N", &rest, &half, &minus, last, &stride, below, &stride);
+  dtrmm_("R", "L", "N", "N", &rest, &half, &one, a, &stride, below, &stride);
 }
 
 constexpr double kDependent = 1e-13;  // eigenvalue of R^T R, of the largest: (3e-7)^2
@@ -134,9 +156,9 @@ Eigen::MatrixXd inverse_from_cholesky(const Eigen::MatrixXd& lower) {
   int info = 0;
   {
     const BlasCall call;
-    dpotri_("L", &n, inverse.data(), &n, &info);
+    invert_triangle(inverse.data(), n, n);
+    dlauum_("L", &n, inverse.data(), &n, &info);
   }
-  if (info != 0) throw std::runtime_error("inverse_from_cholesky: singular factor");
   inverse.triangularView<Eigen::StrictlyUpper>() = inverse.transpose();
   return inverse;
 }

@@ -102,6 +102,46 @@ CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
   return sample;
 }
 
+std::vector<std::size_t> evenly_chosen(const std::vector<ObservationPlace>& places, std::size_t limit) {
+  std::vector<std::size_t> first;  // observation of every reading
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0 || places[i].setup != places[i - 1].setup || places[i].row != places[i - 1].row)
+      first.push_back(i);
+  }
+  const std::size_t readings = first.size();
+  first.push_back(places.size());
+  const std::size_t most = places.size() <= limit ? readings : limit * readings / places.size();
+  std::vector<std::size_t> chosen;
+  for (const std::size_t reading : even_sample(readings, most)) {
+    for (std::size_t i = first[reading]; i < first[reading + 1]; ++i) chosen.push_back(i);
+  }
+  return chosen;
+}
+
+CampaignNoise restricted(const CampaignNoise& all, const std::vector<std::size_t>& chosen) {
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  CampaignNoise part{{}, {}, all.groups};
+  std::vector<std::size_t> number(all.places.size(), kNone);
+  for (const std::size_t i : chosen) {
+    number[i] = part.places.size();
+    part.places.push_back(all.places[i]);
+    part.data.sigma.push_back(all.data.sigma[i]);
+    part.data.length.push_back(all.data.length[i]);
+  }
+  for (const NoiseSequence& sequence : all.data.sequences) {
+    NoiseSequence kept;
+    kept.group = sequence.group;
+    for (std::size_t k = 0; k < sequence.observation.size(); ++k) {
+      if (number[sequence.observation[k]] == kNone) continue;
+      kept.observation.push_back(number[sequence.observation[k]]);
+      if (!sequence.time.empty()) kept.time.push_back(sequence.time[k]);
+      if (!sequence.line.empty()) kept.line.push_back(sequence.line[k]);
+    }
+    if (!kept.observation.empty()) part.data.sequences.push_back(std::move(kept));
+  }
+  return part;
+}
+
 namespace {
 
 /// Calls `visit(i, row)` with the derivatives of the reading of every place i.

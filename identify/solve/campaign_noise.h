@@ -38,6 +38,13 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
 /// no more.
 CampaignNoise sampled(const CampaignNoise& all, std::size_t limit);
 
+/// Whole readings, evenly chosen over the campaign, of `limit` observations together: ascending numbers among
+/// `places`; all when there are no more. What a reading depends on that another one came before it, as a
+/// reversal, is not disturbed: choose from the observations, not from the campaign.
+std::vector<std::size_t> evenly_chosen(const std::vector<ObservationPlace>& places, std::size_t limit);
+/// Those observations alone, in the same sequences.
+CampaignNoise restricted(const CampaignNoise& all, const std::vector<std::size_t>& chosen);
+
 /// The noise that the weights of a fit stand for, per group of `groups`; as stated where it knows none of it.
 std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::vector<std::string>& groups);
 

@@ -72,11 +72,14 @@ std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposa
 
 std::optional<Finding> finding_of(const Screening& screening) {
   if (!screening.contradicts) return std::nullopt;
-  return Finding{FindingCode::ModelContradicted,
-                 {{"leading", screening.leading},
-                  {"rms", FindingNumber{screening.rms, "um", kMicro}},
-                  {"log10_p", FindingNumber{screening.log10_p}},
-                  {"tests", static_cast<std::int64_t>(screening.tests)}}};
+  Finding finding{FindingCode::ModelContradicted,
+                  {{"leading", screening.leading},
+                   {"rms", FindingNumber{screening.rms, "um", kMicro}},
+                   {"log10_p", FindingNumber{screening.log10_p}},
+                   {"tests", static_cast<std::int64_t>(screening.tests)}}};
+  if (screening.of_a_sample)
+    finding.data.emplace("sampled", static_cast<std::int64_t>(screening.observations));
+  return finding;
 }
 
 }  // namespace volcal

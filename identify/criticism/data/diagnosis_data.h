@@ -240,6 +240,8 @@ std::vector<Finding> findings_of(const std::vector<MeasurementProposal>& proposa
 /// Whether a diagnosis pays (screening.h).
 struct Screening {
   std::size_t tests = 0;
+  std::size_t observations = 0;  ///< that the tests saw
+  bool of_a_sample = false;      ///< which are not all of the fit's
   bool contradicts = false;  ///< a test is above the noise
   std::string leading;       ///< the most improbable: "EAX by z^2", "something that depends on z along Z"
   double log10_p = 0.0;      ///< its, family-wise

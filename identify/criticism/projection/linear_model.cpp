@@ -19,15 +19,37 @@ LinearModel::Fixed::Fixed(const Campaign& of, const FitResult& result)
   views = setup_views(campaign, model.binding(), model.chain());
 }
 
+namespace {
+
+std::vector<bool> removed_by(const FitResult& result) {
+  std::vector<bool> removed;
+  for (const ResidualRecord& record : result.residuals) removed.push_back(record.removed);
+  return removed;
+}
+
+}  // namespace
+
 LinearModel::LinearModel(const Campaign& campaign, const FitResult& result)
+    : LinearModel(campaign, result, nullptr) {}
+
+LinearModel::LinearModel(const Campaign& campaign, const FitResult& result,
+                         const std::vector<std::size_t>& chosen)
+    : LinearModel(campaign, result, &chosen) {}
+
+LinearModel::LinearModel(const Campaign& campaign, const FitResult& result,
+                         const std::vector<std::size_t>* chosen)
     : base_prior_(result.adjustment->prior), reduced_(result.adjustment->reduced) {
   const auto fixed = std::make_shared<Fixed>(campaign, result);
-  std::vector<bool> removed;
-  for (const ResidualRecord& record : result.residuals) {
-    if (record.removed && !record.left_out) removed_.push_back(removed.size());
-    removed.push_back(record.removed);
+  CampaignNoise noise = campaign_noise(fixed->model, fixed->stated_sigma, removed_by(result));
+  if (chosen) {
+    noise = restricted(noise, *chosen);
+    fixed->stated_sigma.clear();
+    for (const std::size_t i : *chosen) fixed->stated_sigma.push_back(result.adjustment->stated_sigma[i]);
   }
-  CampaignNoise noise = campaign_noise(fixed->model, fixed->stated_sigma, removed);
+  for (std::size_t i = 0; i < noise.places.size(); ++i) {
+    const ResidualRecord& record = result.residuals[chosen ? (*chosen)[i] : i];
+    if (record.removed && !record.left_out) removed_.push_back(i);
+  }
   fixed->observations = std::move(noise.places);
   fixed->noise_groups = std::move(noise.groups);
   const auto problem = std::make_shared<NoiseProblem>();

@@ -22,6 +22,8 @@ class LinearModel {
  public:
   /// `result` must come from fit() of this campaign; the campaign must outlive the object.
   LinearModel(const Campaign& campaign, const FitResult& result);
+  /// Of some observations alone: `chosen`, ascending, are their numbers in result.residuals.
+  LinearModel(const Campaign& campaign, const FitResult& result, const std::vector<std::size_t>& chosen);
 
   using Observation = ObservationPlace;
 
@@ -56,7 +58,7 @@ class LinearModel {
   /// What the rest of the model, and effects that were added to it, can imitate of surfaces is theirs. `gram`
   /// as for smoothed().
   LinearModel with_imitated_left_to_the_rest(const Eigen::MatrixXd& gram) const;
-  /// Of all observations, those that are left out as well.
+  /// Of observations(), those that are left out as well.
   const std::vector<double>& stated_sigma() const { return fixed_->stated_sigma; }
   /// Of the fit's outlier test.
   double outlier_critical_value() const { return fixed_->outlier_critical_value; }
@@ -91,6 +93,8 @@ class LinearModel {
     std::vector<double> stated_sigma;
     double outlier_critical_value;
   };
+
+  LinearModel(const Campaign& campaign, const FitResult& result, const std::vector<std::size_t>* chosen);
 
   /// `problem` becomes that of this model.
   void set_smoothing(std::vector<SmoothingTerm> smoothing, const std::shared_ptr<NoiseProblem>& problem);

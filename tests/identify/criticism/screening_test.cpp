@@ -60,6 +60,18 @@ TEST(Screening, ContradictsAFitThatLacksAnEffect) {
   expect_contradiction(screen(tilted.simulated.campaign, tilted.result, 1), tilted.result);
 }
 
+TEST(Screening, SeesASampleOfManyReadings) {
+  const FittedStudy& study = study_with_backlash();
+  const std::size_t all = study.result.residuals.size();
+  const Screening sampled = screen(study.simulated.campaign, study.result, 1, all / 3);
+  EXPECT_EQ(sampled.observations, all / 3);
+  EXPECT_TRUE(sampled.of_a_sample);
+  expect_contradiction(sampled, study.result);
+  EXPECT_EQ(finding_of(sampled)->count("sampled"), static_cast<std::int64_t>(all / 3));
+  EXPECT_FALSE(screening_of_backlash().of_a_sample);
+  EXPECT_FALSE(finding_of(screening_of_backlash())->has("sampled"));
+}
+
 TEST(Screening, DoesNotDependOnThreads) {
   const Screening& one = screening_of_backlash();
   const Screening three = screen(study_with_backlash().simulated.campaign, study_with_backlash().result, 3);

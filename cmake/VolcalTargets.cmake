@@ -29,8 +29,8 @@ function(volcal_compile_options target)
   endif()
 endfunction()
 
-# With VOLCAL_UNITY_BUILD neighbouring files of a target are compiled together, as many as `most` and all groups of
-# one size, so that the headers they share are read once and a template is instantiated once. Names in unnamed
+# With VOLCAL_UNITY_BUILD neighbouring files of a target are compiled together, as many as VOLCAL_UNITY_SIZE and all groups
+# of one size, so that the headers they share are read once and a template is instantiated once. Names in unnamed
 # namespaces are therefore unique within a target. A file that renames what it includes (VOLCAL_VECTOR_LOOPS), or is
 # for one instruction set, is compiled alone, and so is one that lists what is registered: another list can then take
 # its place when a program is linked.
@@ -38,7 +38,6 @@ function(volcal_unity_build target)
   if(NOT VOLCAL_UNITY_BUILD)
     return()
   endif()
-  set(most 16)
   get_target_property(sources ${target} SOURCES)
   set(together)
   foreach(source IN LISTS sources)
@@ -55,7 +54,7 @@ function(volcal_unity_build target)
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   list(LENGTH together count)
-  math(EXPR groups "(${count} + ${most} - 1) / ${most}")
+  math(EXPR groups "(${count} + ${VOLCAL_UNITY_SIZE} - 1) / ${VOLCAL_UNITY_SIZE}")
   set(number 0)
   foreach(source IN LISTS together)
     math(EXPR group "${number} * ${groups} / ${count}")

@@ -100,9 +100,9 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads,
   std::vector<GenericTest> scans = generic_scan(model, scan_variables(model), projector, threads);
   std::ranges::move(wave_tests(model, projector, threads), std::back_inserter(scans));
   consider_scans(scans, leading);
-  Screening screening = leading.take(families.size() + scans.size(), result.noise.more_than_white
-                                                          ? kThresholds.screening_log10_risk_of_drift
-                                                          : kThresholds.screening_log10_risk);
+  Screening screening = leading.take(families.size() + scans.size(),
+                                     result.noise.more_than_white ? kThresholds.screening_log10_risk_of_drift
+                                                                  : kThresholds.screening_log10_risk);
   screening.observations = model.size();
   screening.of_a_sample = model.size() < result.residuals.size();
   return screening;

@@ -74,7 +74,8 @@ void fetch_buffer() {
   dpotrf_("U", &one, &number, &one, &info);
 }
 
-/// The lower triangle at `a`, inverted in place. Halves, since OpenBLAS inverts blocks by products of vectors.
+/// The lower triangle at `a`, inverted in place. Halves, since OpenBLAS inverts blocks by products of
+/// vectors.
 void invert_triangle(double* a, int n, int stride) {
   constexpr int kSmall = 32;
   if (n <= kSmall) {

@@ -242,10 +242,10 @@ struct Screening {
   std::size_t tests = 0;
   std::size_t observations = 0;  ///< that the tests saw
   bool of_a_sample = false;      ///< which are not all of the fit's
-  bool contradicts = false;  ///< a test is above the noise
-  std::string leading;       ///< the most improbable: "EAX by z^2", "something that depends on z along Z"
-  double log10_p = 0.0;      ///< its, family-wise
-  double rms = 0.0;          ///< SI: root mean square over the readings of what it would explain
+  bool contradicts = false;      ///< a test is above the noise
+  std::string leading;           ///< the most improbable: "EAX by z^2", "something that depends on z along Z"
+  double log10_p = 0.0;          ///< its, family-wise
+  double rms = 0.0;              ///< SI: root mean square over the readings of what it would explain
 };
 
 /// "model.contradicted"; nothing where nothing contradicts.

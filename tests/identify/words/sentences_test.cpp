@@ -257,7 +257,8 @@ const std::vector<WordedFinding>& examples() {
          {"tests", std::int64_t{812}},
          {"sampled", std::int64_t{50000}}}},
        "the residuals are no noise: EAX by z^2 would explain 1.2 um RMS of the readings (log10 p -12.3, all "
-       "812 tests counted, 50000 readings evenly chosen); `volcal diagnose` tells which effect the model lacks"},
+       "812 tests counted, 50000 readings evenly chosen); `volcal diagnose` tells which effect the model "
+       "lacks"},
       {{FindingCode::DiagnosisNamed,
         {{"effect", "EYY reversal"},
          {"kind", "reversal"},

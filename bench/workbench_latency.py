@@ -17,7 +17,7 @@ import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # Of some 6,000 and of some 100,000 readings, ms.
-WANTED = {"preview": (30, 80), "add": (50, 150), "rank": (200, 1000), "formula": (60, 200), "map": (100, 300),
+WANTED = {"preview": (30, 80), "add": (50, 150), "rank": (200, 1000), "formula": (60, 200),
           "columns": (16, 50), "confirm": (500, 3000)}
 
 
@@ -82,7 +82,6 @@ def measure(program, campaign, repeats):
                 first = [each["name"] for each in json.loads(bench.ask("rank"))["effects"] if each["can_be_added"]]
             times["preview"].append(bench.timed("preview", effect=first[k % len(first)]))
             times["formula"].append(bench.timed("formula", text=f"EXX += dir_x * (x - {k})"))
-            times["map"].append(bench.timed("map", x="x", y="z", bins=40))
             times["columns"].append(bench.timed("columns", names=["residual@0"]))
             times["add"].append(bench.timed("add", effect=first[k % min(3, len(first))]))
             times["rank"].append(bench.timed("rank"))

@@ -105,8 +105,7 @@ EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
   out.visible_fraction = test.score.visible_fraction;
   out.resolution = family.resolution.has_value();
   if (!family.effect) return out;
-  const double found_from = std::sqrt(
-      detectable_noncentrality(setting.log10_level(), std::max(1, test.score.dof), kThresholds.power));
+  const double found_from = std::sqrt(setting.detectable_noncentrality(test.score.dof));
   for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
     const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
     const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));

@@ -9,36 +9,27 @@
 #include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/criticism/search/ladder.h"
+#include "volcal/identify/criticism/search/model_tests.h"
 #include "volcal/identify/criticism/search/search.h"
 #include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/criticism/surface_findings.h"
 #include "volcal/identify/numeric/threads.h"
-#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/session/proposed_measurements.h"
+#include "volcal/identify/session/session_tree.h"
 #include "volcal/identify/statistics/normal.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kContradiction = 0.25;  // of U95: a preview that is off by more was wrong
-constexpr double kShareOfFit = 0.6;      // of the time of a full step
-constexpr double kShareOfNoise = 0.9;    // with that of the noise
-constexpr double kShareOfSearch = 0.8;   // of the time of a climb
+constexpr double kContradiction = 0.25;       // of U95: a preview that is off by more was wrong
+constexpr double kShareOfSearch = 0.8;        // of the time of a climb
+constexpr std::size_t kPreviewedAtOnce = 12;  // of the ranking
+constexpr std::size_t kKeptModels = 8;        // linear models in memory; those of previews share a full fit's
 
 void report(const SessionProgress& progress, const std::string& stage, double done) {
   if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
-}
-
-FitOptions fit_options(int threads, const SessionProgress& progress) {
-  FitOptions options;
-  options.threads = threads;
-  options.outliers = OutlierPolicy::Remove;
-  options.noise = NoisePolicy::White;  // found with the tests, as in a diagnosis
-  options.progress = [progress](const std::string& stage, double done) {
-    report(progress, stage, kShareOfFit * done);
-  };
-  return options;
 }
 
 std::vector<EffectFinding> with(std::vector<EffectFinding> effects, EffectFinding more) {
@@ -49,28 +40,6 @@ std::vector<EffectFinding> with(std::vector<EffectFinding> effects, EffectFindin
 std::vector<EffectFinding> without(std::vector<EffectFinding> effects, std::size_t place) {
   effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(place));
   return effects;
-}
-
-/// As a full fit found it.
-EffectFinding fitted_finding(const EffectFinding& added, const FitResult& result) {
-  EffectFinding out;
-  out.name = added.name;
-  out.label = added.label;
-  out.spec = added.spec;
-  for (const EffectSpec& spec : result.identified.effects) {
-    const auto effect = find_effect(spec.kind)->make(spec, {});
-    if (effect->name() != added.name) continue;
-    out.spec = spec;
-    for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-      const ParameterBlock* block = result.layout.find_block(amplitude.label);
-      if (block == nullptr) continue;  // one of the coefficients of a surface
-      const double u = std::sqrt(std::max(0.0, result.covariance(block->offset, block->offset)));
-      out.amplitudes.push_back({amplitude.label, result.parameters[block->offset], u,
-                                std::numeric_limits<double>::quiet_NaN(), amplitude.unit(),
-                                amplitude.si_per_unit()});
-    }
-  }
-  return out;
 }
 
 /// By a full fit, which a linear preview should have foreseen; the amplitude that is off by most of its U.
@@ -106,16 +75,6 @@ double rms_of_heldout(const ModelState& state, const Eigen::VectorXd& residual) 
   return std::sqrt(squares / count);
 }
 
-double mean_noise_variance(const ModelState& state) {
-  double sum = 0.0, count = 0.0;
-  for (const double variance : noise_variance(state.model().problem().data, state.noise())) {
-    if (!std::isfinite(variance)) continue;
-    sum += variance;
-    count += 1.0;
-  }
-  return count > 0.0 ? sum / count : 0.0;
-}
-
 /// Marks observations as left out. The number of those that were not yet.
 std::size_t leave_out(const LinearModel& model, const std::vector<bool>& selected, const std::string& reason,
                       Campaign& campaign) {
@@ -137,92 +96,59 @@ std::size_t leave_out(const LinearModel& model, const std::vector<bool>& selecte
 
 }  // namespace
 
-/// A model by a full fit, and what tests stand on.
-struct Session::Fitted {
-  std::shared_ptr<const Campaign> campaign;
-  FitResult result;
-  ModelState state;
-  double noise_variance;  ///< mean over the readings in use
-  std::vector<LadderStep>
-      figures;  ///< of the models before, against this noise, where it is the least so far
-};
-
-/// What stands behind a model of the tree.
-struct Session::Node {
-  std::shared_ptr<const Fitted> base;
-  ModelState state;                              ///< with what was added since
-  std::vector<EffectFinding> effects;            ///< added to the given model
-  std::optional<std::vector<FamilyTest>> tests;  ///< of the state, once asked for
-  std::optional<std::vector<EffectFinding>> ranking;
-  std::optional<ModelState> scanned;    ///< the state with all tests, once asked for
-  std::vector<UnknownFinding> unknown;  ///< of that
-  std::vector<SurfaceFinding> drawn;    ///< for some of these
-  std::optional<Eigen::VectorXd> residual;
-
-  Node(std::shared_ptr<const Fitted> fitted, std::vector<EffectFinding> added)
-      : base(std::move(fitted)), state(base->state), effects(std::move(added)) {}
-  /// With another state.
-  void becomes(ModelState next) {
-    state = std::move(next);
-    tests.reset();
-    ranking.reset();
-    scanned.reset();
-    unknown.clear();
-    drawn.clear();
-    residual.reset();
-  }
-  std::size_t in_base() const { return effects.size() - state.added().size(); }
-};
-
-/// What full fits need, apart from the session.
-struct Session::Fitting {
-  SessionOptions options;
-  std::vector<EffectSpec> own;
-  std::vector<ModelState> before;  ///< models of the tree
-  double least_variance;           ///< of these
-
-  std::shared_ptr<const Fitted> operator()(const std::shared_ptr<const Campaign>& campaign,
-                                           const ModelSpec& model, const SessionProgress& progress) const {
-    FitResult result = fit(*campaign, model, fit_options(options.threads, progress));
-    report(progress, "noise", kShareOfFit);
-    const LinearModel linear(*campaign, result);
-    auto setting = std::make_shared<const SearchSetting>(linear, heldout_lines(linear, options.heldout_share),
-                                                         std::vector<std::string>{}, options.threads, own);
-    ModelState state(linear, std::move(setting));
-    report(progress, "models against this noise", kShareOfNoise);
-    const double variance = mean_noise_variance(state);
-    std::vector<LadderStep> figures;
-    for (std::size_t i = 0; i < before.size() && variance < least_variance; ++i)
-      figures.push_back(last_step_at(before[i], state.noise()));
-    report(progress, "done", 1.0);
-    return std::make_shared<const Fitted>(
-        Fitted{campaign, std::move(result), std::move(state), variance, std::move(figures)});
-  }
-};
-
 Session::Session(Campaign campaign, ModelSpec model, SessionOptions options)
     : options_(std::move(options)), given_(std::move(model)) {
   options_.threads = thread_count(options_.threads);
   const auto shared = std::make_shared<const Campaign>(std::move(campaign));
-  appending(0, Node(fitting()(shared, given_, options_.progress), {}), "")(*this);
+  appending(0, fitting()(shared, given_, options_.progress), {}, "")(*this);
 }
 
 Session::~Session() = default;
 
 Session::Fitting Session::fitting() const {
-  std::vector<ModelState> before;
-  for (const auto& node : nodes_) before.push_back(node->state);
+  std::vector<Recipe> before;
+  for (const auto& node : nodes_) before.push_back(node->recipe);
   return {options_, own_, std::move(before),
-          least_ ? least_->noise_variance : std::numeric_limits<double>::max()};
+          least_ ? least_->noise_variance() : std::numeric_limits<double>::max()};
 }
 
 /// Noise that was estimated without an effect holds part of it and hides its fall, so that all models are
 /// told against the least noise that a full fit has found.
-void Session::put_in_place(const std::shared_ptr<const Fitted>& fitted) {
-  if (least_ && fitted->noise_variance >= least_->noise_variance) return;
-  least_ = fitted;
-  for (std::size_t i = 0; i < std::min(fitted->figures.size(), models_.size()); ++i)
-    set_figures(fitted->figures[i], models_[i]);
+void Session::put_in_place(const FittedModel& found) {
+  if (least_ && found.fitted->noise_variance() >= least_->noise_variance()) return;
+  least_ = found.fitted;
+  for (std::size_t i = 0; i < std::min(found.figures.size(), models_.size()); ++i)
+    set_figures(found.figures[i], models_[i]);
+}
+
+/// Another model is the current one. Of those that were looked at longest ago nothing stays that can be made
+/// again.
+void Session::go(std::size_t number) {
+  current_ = number;
+  std::erase(recent_, number);
+  recent_.insert(recent_.begin(), number);
+  std::vector<const Fitted*> kept;
+  std::size_t models = 0;
+  for (const std::size_t each : recent_) {
+    Node& of = *nodes_[each];
+    const Fitted* base = of.recipe.base.get();
+    const bool known = std::ranges::find(kept, base) != kept.end();
+    if (++models <= kKeptModels && (known || kept.size() < kKeptFits)) {
+      if (!known) kept.push_back(base);
+      continue;
+    }
+    of.let_go();
+    if (!known) base->let_go();
+  }
+}
+
+std::size_t Session::kept_fits() const {
+  std::vector<const Fitted*> kept;
+  for (const auto& node : nodes_) {
+    const Fitted* base = node->recipe.base.get();
+    if (base->is_kept() && std::ranges::find(kept, base) == kept.end()) kept.push_back(base);
+  }
+  return kept.size();
 }
 
 void Session::set_figures(LadderStep figures, SessionModel& shown) {
@@ -230,116 +156,126 @@ void Session::set_figures(LadderStep figures, SessionModel& shown) {
   shown.figures.model = std::to_string(shown.number);
   shown.figures.added = shown.change;
 }
-const Campaign& Session::campaign() const { return *node().base->campaign; }
+
+const Campaign& Session::campaign() const { return *node().recipe.base->campaign(); }
 const std::vector<SessionModel>& Session::models() const { return models_; }
 const SessionModel& Session::current() const { return models_[current_]; }
-const LinearModel& Session::linear() const { return node().state.model(); }
-const std::vector<bool>& Session::heldout() const { return node().state.setting().heldout; }
-const FitResult& Session::fitted_result() const { return node().base->result; }
+const LinearModel& Session::linear() const { return node().state().model(); }
+const std::vector<bool>& Session::heldout() const { return node().recipe.setting->heldout; }
+const FitResult& Session::fitted_result() const { return node().recipe.base->result(); }
 
 const Eigen::VectorXd& Session::residual(std::size_t model) const {
   Node& of = *nodes_.at(model);
-  if (!of.residual) of.residual = of.state.residual();
+  if (!of.residual) of.residual = of.state().residual();
   return *of.residual;
 }
 
 Eigen::VectorXd Session::sigma(std::size_t model) const {
-  const ModelState& state = nodes_.at(model)->state;
-  const std::vector<double> variance = noise_variance(state.model().problem().data, state.noise());
+  const std::vector<double>& variance = nodes_.at(model)->recipe.base->variance();
   return Eigen::Map<const Eigen::VectorXd>(variance.data(), static_cast<Eigen::Index>(variance.size()))
       .cwiseSqrt();
 }
 
-const SessionModel& Session::append(std::size_t parent, Node made, std::string change,
+const SessionModel& Session::append(std::size_t parent, std::unique_ptr<Node> made, std::string change,
                                     ModelStanding standing) {
   SessionModel shown;
   shown.number = models_.size();
   if (!models_.empty()) shown.parent = parent;
   shown.change = std::move(change);
   shown.standing = standing;
-  describe(made, shown);
-  nodes_.push_back(std::make_unique<Node>(std::move(made)));
+  describe(*made, shown);
+  nodes_.push_back(std::move(made));
   models_.push_back(std::move(shown));
-  current_ = models_.size() - 1;
   undone_.clear();
+  go(models_.size() - 1);
   return models_.back();
 }
 
-SessionChange Session::appending(std::size_t parent, Node made, std::string change) {
-  return [parent, made = std::move(made), change = std::move(change)](Session& session) {
-    session.put_in_place(made.base);
-    session.append(parent, made, change, ModelStanding::Fitted);
+SessionChange Session::appending(std::size_t parent, FittedModel found, std::vector<EffectFinding> effects,
+                                 std::string change) {
+  return [parent, found = std::move(found), effects = std::move(effects),
+          change = std::move(change)](Session& session) {
+    session.put_in_place(found);
+    session.append(parent, std::make_unique<Node>(found.fitted, effects), change, ModelStanding::Fitted);
   };
 }
 
-void Session::describe(const Node& made, SessionModel& shown) const {
-  const bool at_least = made.base == least_;
-  set_figures(at_least ? last_step_of(made.state) : last_step_at(made.state, least_->state.noise()), shown);
+void Session::describe(Node& made, SessionModel& shown) const {
+  if (made.recipe.base == least_) {
+    set_figures(last_step_of(made.state()), shown);
+  } else {
+    if (made.least != least_) {
+      made.at_least = made.state().projector_at(least_->noise());
+      made.least = least_;
+    }
+    set_figures(last_step_at(made.state(), least_->noise(), *made.at_least), shown);
+  }
   shown.effects.clear();
   for (std::size_t i = 0; i < made.in_base(); ++i)
-    shown.effects.push_back(fitted_finding(made.effects[i], made.base->result));
-  if (made.state.added().empty()) return;
-  for (EffectFinding& added : added_findings(made.state, made.state.projector()))
+    shown.effects.push_back(made.recipe.base->fitted(made.effects[i]));
+  if (made.recipe.added.empty()) return;
+  for (EffectFinding& added : added_findings(made.state(), *made.of_all_readings()))
     shown.effects.push_back(std::move(added));
 }
 
 /// With the effects that the user thought of meanwhile.
 void Session::renew_setting() {
   Node& here = node();
-  const SearchSetting& known = here.state.setting();
+  const SearchSetting& known = *here.recipe.setting;
   if (known.own == own_.size()) return;
   const std::vector<EffectSpec> more(own_.begin() + static_cast<std::ptrdiff_t>(known.own), own_.end());
-  here.state = here.state.with_setting(std::make_shared<const SearchSetting>(
-      here.state.model(), known.heldout, std::vector<std::string>{}, options_.threads, own_));
-  if (here.tests)
-    here.tests = with_tests_of_own(*std::move(here.tests), more, here.state.setting(), here.state.model(),
-                                   here.state.projector());
-  here.ranking.reset();
+  here.with_setting(std::make_shared<const SearchSetting>(known.with_more(here.state().model(), more)));
 }
 
 /// Tests of all effects at the current model.
 const std::vector<FamilyTest>& Session::tests() {
   renew_setting();
-  Node& here = node();
-  if (!here.tests)
-    here.tests = refined_tests(here.state.setting(), here.state.model(), here.state.projector());
-  return *here.tests;
+  return node().tests->get().families;
 }
 
 SessionWork Session::scan() {
   renew_setting();
-  return [state = node().state, known = node().tests,
+  return [recipe = node().recipe, state = node().state(), tests = node().tests,
           number = current_](const SessionProgress& progress) -> SessionChange {
     report(progress, "tests of the catalogue", 0.1);
-    std::vector<FamilyTest> families =
-        known ? *known : refined_tests(state.setting(), state.model(), state.projector());
+    const std::vector<FamilyTest>& families = tests->get().families;
     report(progress, "scans without a catalogue", 0.3);
-    const ModelState scanned = state.with_tests(tests_of(state, std::move(families)));
+    const ModelState scanned = state.with_tests(tests_of(state, families));
     std::vector<UnknownFinding> unknown = unknown_findings(scanned, {});
     report_what_is_certain(unknown);
+    const std::vector<std::size_t>& exceeding = scanned.tests().exceeding;
+    const bool leads =
+        !unknown.empty() &&
+        (exceeding.empty() || any_scan_does_better(scanned, scanned.tests().families[exceeding.front()]));
+    report(progress, "what to measure next", 0.9);
+    std::vector<MeasurementProposal> proposals = proposed_measurements(scanned, recipe.base->result());
     report(progress, "done", 1.0);
-    return [scanned, unknown = std::move(unknown), number](Session& session) {
+    return [scanned, unknown = std::move(unknown), leads, proposals = std::move(proposals),
+            base = recipe.base, number](Session& session) {
       Node& of = *session.nodes_[number];
+      if (of.recipe.base != base) return;  // confirmed meanwhile
       of.scanned = scanned;
       of.unknown = unknown;
+      of.unknown_leads = leads;
+      of.proposals = proposals;
     };
   };
 }
 
-bool Session::is_scanned() const { return node().scanned.has_value(); }
+bool Session::is_scanned() const { return node().unknown.has_value(); }
 
 /// With the scans.
 const ModelState& Session::scanned() {
   renew_setting();
-  if (!is_scanned()) scan()({})(*this);
+  if (!node().scanned) scan()({})(*this);
   return *node().scanned;
 }
 
 const FamilyTest& Session::test_of(const EffectName& effect) {
   const std::vector<FamilyTest>& all = tests();
   for (const FamilyTest& test : all) {
-    const Family& family = node().state.setting().families[test.family];
-    if (family.effect && family.name() == effect && !node().state.has(test.family)) return test;
+    const Family& family = node().state().setting().families[test.family];
+    if (family.effect && family.name() == effect && !node().state().has(test.family)) return test;
   }
   throw std::invalid_argument(full_name(effect) + " is no effect that can be added to this model");
 }
@@ -348,7 +284,7 @@ const FamilyTest& Session::test_of(const EffectName& effect) {
 std::vector<const FamilyTest*> Session::ranked() {
   std::vector<const FamilyTest*> order;
   for (const FamilyTest& test : tests()) {
-    if (test.score.dof > 0 && !node().state.has(test.family)) order.push_back(&test);
+    if (test.score.dof > 0 && !node().state().has(test.family)) order.push_back(&test);
   }
   sort_by_gain(order);
   return order;
@@ -359,7 +295,7 @@ const std::vector<EffectFinding>& Session::rank() {
   Node& here = node();
   if (!here.ranking) {
     here.ranking.emplace();
-    for (const FamilyTest* test : order) here.ranking->push_back(finding(here.state.setting(), *test));
+    for (const FamilyTest* test : order) here.ranking->push_back(finding(here.state().setting(), *test));
   }
   return *here.ranking;
 }
@@ -367,7 +303,7 @@ const std::vector<EffectFinding>& Session::rank() {
 std::vector<EffectFinding> Session::not_visible() {
   std::vector<EffectFinding> hidden;
   for (const FamilyTest& test : tests()) {
-    if (test.score.dof == 0) hidden.push_back(finding(node().state.setting(), test));
+    if (test.score.dof == 0) hidden.push_back(finding(node().state().setting(), test));
   }
   return hidden;
 }
@@ -375,10 +311,10 @@ std::vector<EffectFinding> Session::not_visible() {
 Rivalry Session::rivals(std::size_t most) {
   std::vector<const FamilyTest*> leading = ranked();
   std::erase_if(leading, [&](const FamilyTest* test) {
-    return node().state.setting().families[test->family].effect == nullptr;
+    return node().state().setting().families[test->family].effect == nullptr;
   });
   leading.resize(std::min(leading.size(), most));
-  const ModelState& state = node().state;
+  const ModelState& state = node().state();
   const auto count = static_cast<Eigen::Index>(leading.size());
   Rivalry rivalry{{}, Eigen::MatrixXd::Identity(count, count)};
   if (leading.empty()) return rivalry;
@@ -402,37 +338,78 @@ Rivalry Session::rivals(std::size_t most) {
 }
 
 const std::vector<UnknownFinding>& Session::unknown() {
-  scanned();
-  return node().unknown;
+  if (!is_scanned()) scanned();
+  return *node().unknown;
 }
 
 bool Session::unknown_leads() {
-  const ModelState& state = scanned();
-  if (node().unknown.empty()) return false;
-  const std::vector<std::size_t>& exceeding = state.tests().exceeding;
-  return exceeding.empty() || any_scan_does_better(state, state.tests().families[exceeding.front()]);
+  if (!is_scanned()) scanned();
+  return node().unknown_leads;
+}
+
+const std::vector<MeasurementProposal>& Session::next_measurements() {
+  if (!is_scanned()) scanned();
+  return node().proposals;
+}
+
+namespace {
+
+/// Residuals if each of the families were added, its amplitudes as tested and the rest of the model adjusted;
+/// a column each.
+Eigen::MatrixXd residuals_with(const ModelState& state, const Eigen::VectorXd& before,
+                               const std::vector<const FamilyTest*>& tests) {
+  const LinearModel& model = state.model();
+  Eigen::MatrixXd moved(static_cast<Eigen::Index>(model.size()), static_cast<Eigen::Index>(tests.size()));
+  for (std::size_t k = 0; k < tests.size(); ++k)
+    moved.col(static_cast<Eigen::Index>(k)) =
+        displacement(model, state.setting().families[tests[k]->family], *tests[k]);
+  const Eigen::MatrixXd imitated = state.projector().imitation(moved);
+  Eigen::Index at = model.problem().jacobian.cols();
+  Eigen::MatrixXd change = moved;
+  Eigen::MatrixXd by_model = Eigen::MatrixXd::Zero(moved.rows(), moved.cols());
+  by_model.noalias() += model.problem().jacobian * imitated.topRows(at);
+  change -= by_model;
+  for (const AddedEffect& added : state.added()) {
+    change -= added.columns * imitated.middleRows(at, added.columns.cols());
+    at += added.columns.cols();
+  }
+  return (-change).colwise() + before;
+}
+
+}  // namespace
+
+/// Of the leading effects of the catalogue, made together: one pass over the model's columns.
+void Session::preview_leading() {
+  std::vector<const FamilyTest*> leading = ranked();
+  const std::vector<Family>& families = node().recipe.setting->families;
+  const std::size_t listed = families.size() - node().recipe.setting->own;
+  std::erase_if(leading, [&](const FamilyTest* test) {
+    return families[test->family].effect == nullptr || test->family >= listed;
+  });
+  leading.resize(std::min(leading.size(), kPreviewedAtOnce));
+  if (leading.empty() || node().previewed.contains(families[leading.front()->family].name())) return;
+  const Eigen::MatrixXd residuals = residuals_with(node().state(), residual(), leading);
+  for (std::size_t k = 0; k < leading.size(); ++k)
+    node().previewed[families[leading[k]->family].name()] = residuals.col(static_cast<Eigen::Index>(k));
+}
+
+Eigen::VectorXd Session::previewed_residual(const FamilyTest& test) {
+  preview_leading();
+  const EffectName name = node().recipe.setting->families[test.family].name();
+  if (const auto known = node().previewed.find(name); known != node().previewed.end()) return known->second;
+  return residuals_with(node().state(), residual(), {&test}).col(0);
 }
 
 EffectPreview Session::preview(const EffectName& effect) {
   const FamilyTest& test = test_of(effect);
-  const ModelState& state = node().state;
-  const Eigen::MatrixXd columns =
-      family_columns(state.model(), state.setting().families[test.family], test.shape);
-  const Eigen::VectorXd imitated = state.projector().imitation(columns) * test.score.amplitude;
-  Eigen::Index at = state.model().problem().jacobian.cols();
-  Eigen::VectorXd residual = this->residual() - columns * test.score.amplitude +
-                             state.model().problem().jacobian * imitated.head(at);
-  for (const AddedEffect& added : state.added()) {
-    residual += added.columns * imitated.segment(at, added.columns.cols());
-    at += added.columns.cols();
-  }
-  const double rms = rms_of_heldout(state, residual);
-  return {finding(state.setting(), test), std::move(residual), rms};
+  Eigen::VectorXd residual = previewed_residual(test);
+  const double rms = rms_of_heldout(node().state(), residual);
+  return {finding(*node().recipe.setting, test), std::move(residual), rms};
 }
 
 Eigen::VectorXd Session::driver(const EffectName& effect) {
   const FamilyTest& test = test_of(effect);
-  const ModelState& state = node().state;
+  const ModelState& state = node().state();
   return family_columns(state.model(), state.setting().families[test.family], test.shape).rowwise().sum();
 }
 
@@ -452,8 +429,7 @@ EffectPreview Session::formula(const EffectSpec& custom) {
 
 SelectionSummary Session::summary(const std::vector<bool>& selected) const {
   const Eigen::VectorXd& left = residual();
-  const std::vector<double> variance =
-      noise_variance(node().state.model().problem().data, node().state.noise());
+  const std::vector<double>& variance = node().recipe.base->variance();
   SelectionSummary out;
   double sum = 0.0, variances = 0.0, positive = 0.0;
   for (std::size_t i = 0; i < std::min(selected.size(), variance.size()); ++i) {
@@ -473,12 +449,12 @@ SelectionSummary Session::summary(const std::vector<bool>& selected) const {
 }
 
 const SessionModel& Session::add(const EffectName& effect) {
-  const FamilyTest test = test_of(effect);
-  Node next = node();
-  const std::string label = next.state.setting().families[test.family].label();
-  next.effects.push_back(finding(next.state.setting(), test));
-  next.becomes(next.state.with_at_this_noise(test));
-  return append(current_, std::move(next), "+ " + label, ModelStanding::Preview);
+  const FamilyTest& test = test_of(effect);
+  const Node& here = node();
+  const SearchSetting& setting = *here.recipe.setting;
+  auto next = std::make_unique<Node>(here.with(test, finding(setting, test)));
+  return append(current_, std::move(next), "+ " + setting.families[test.family].label(),
+                ModelStanding::Preview);
 }
 
 /// Throws std::invalid_argument.
@@ -495,14 +471,11 @@ const SessionModel& Session::remove_preview(const EffectName& effect) {
   const std::size_t place = place_of(effect);
   const Node& here = node();
   if (place < here.in_base()) throw std::invalid_argument(full_name(effect) + " is part of a full fit");
-  Node next = here;
-  next.effects = without(here.effects, place);
-  ModelState state = here.base->state.with_setting(here.state.shared_setting());
-  for (std::size_t i = 0; i < here.state.added().size(); ++i) {
-    if (i != place - here.in_base()) state = state.with_at_this_noise(here.state.added()[i].test);
-  }
-  next.becomes(std::move(state));
-  const auto standing = next.state.added().empty() ? ModelStanding::Fitted : ModelStanding::Preview;
+  auto next = std::make_unique<Node>(here.recipe.base, without(here.effects, place));
+  Recipe recipe = here.recipe;
+  recipe.added.erase(recipe.added.begin() + static_cast<std::ptrdiff_t>(place - here.in_base()));
+  next->becomes(std::move(recipe));
+  const auto standing = next->recipe.added.empty() ? ModelStanding::Fitted : ModelStanding::Preview;
   return append(current_, std::move(next), "- " + here.effects[place].label, standing);
 }
 
@@ -511,41 +484,55 @@ SessionWork Session::fit_of(const std::shared_ptr<const Campaign>& campaign,
                             const std::vector<EffectFinding>& effects, const std::string& change) const {
   const ModelSpec model = extended_model(given_, *campaign, effects);
   return [=, fit_it = fitting(), parent = current_](const SessionProgress& progress) {
-    return appending(parent, Node(fit_it(campaign, model, progress), effects), change);
+    return appending(parent, fit_it(campaign, model, progress), effects, change);
   };
 }
 
 SessionWork Session::removal(const EffectName& effect) const {
   const std::size_t place = place_of(effect);
-  return fit_of(node().base->campaign, without(node().effects, place), "- " + node().effects[place].label);
+  return fit_of(node().recipe.base->campaign(), without(node().effects, place),
+                "- " + node().effects[place].label);
 }
 
 SessionWork Session::confirmation(std::size_t number) const {
-  const auto campaign = nodes_.at(number)->base->campaign;
+  const auto campaign = nodes_.at(number)->recipe.base->campaign();
   return [fit_it = fitting(), campaign, model = extended_model(given_, *campaign, models_[number].effects),
           number](const SessionProgress& progress) -> SessionChange {
-    const std::shared_ptr<const Fitted> base = fit_it(campaign, model, progress);
-    return [base, number](Session& session) {
+    const FittedModel found = fit_it(campaign, model, progress);
+    return [found, number](Session& session) {
       SessionModel& shown = session.models_[number];
       Node& here = *session.nodes_[number];
       if (shown.standing != ModelStanding::Preview) return;
       for (std::size_t i = here.in_base(); i < here.effects.size() && !shown.contradiction; ++i)
-        shown.contradiction =
-            contradiction_of(shown.effects[i], fitted_finding(here.effects[i], base->result));
-      session.put_in_place(base);
-      here.base = base;
-      here.becomes(base->state);
+        shown.contradiction = contradiction_of(shown.effects[i], found.fitted->fitted(here.effects[i]));
+      session.put_in_place(found);
+      here.becomes({found.fitted, found.fitted->setting(), {}});
       shown.standing = shown.contradiction ? ModelStanding::Contradicted : ModelStanding::Fitted;
       session.describe(here, shown);
+      session.go(session.current_);
     };
   };
 }
+
+namespace {
+
+/// What a scan sees best as a rotation may be a displacement along its direction: both are drawn, and the
+/// readings decide.
+std::vector<UnknownFinding> along_and_as(const UnknownFinding& finding) {
+  std::vector<UnknownFinding> both{finding};
+  if (finding.rotation.empty()) return both;
+  both.push_back(finding);
+  both.back().rotation.clear();
+  return both;
+}
+
+}  // namespace
 
 SessionWork Session::drawing(std::size_t which) {
   const UnknownFinding wanted = unknown().at(which);
   return [wanted, state = scanned(), number = current_](const SessionProgress& progress) -> SessionChange {
     report(progress, "a surface for what has no name", 0.1);
-    const std::optional<SurfaceTest> test = best_surface(state, {wanted});
+    const std::optional<SurfaceTest> test = best_surface(state, along_and_as(wanted));
     if (!test) throw std::invalid_argument("no surface explains what depends on " + wanted.dependence());
     report(progress, "noise with the surface", 0.4);
     const ModelState with = state.with_surface(*test, state.added()).tested();
@@ -569,7 +556,8 @@ SessionWork Session::surface(const EffectName& name) const {
   added.name = found->name;
   added.label = found->label;
   added.spec = found->spec;
-  return fit_of(node().base->campaign, with(current().effects, std::move(added)), "+ " + found->label);
+  return fit_of(node().recipe.base->campaign(), with(current().effects, std::move(added)),
+                "+ " + found->label);
 }
 
 SessionWork Session::leaving_out(const std::vector<bool>& selected, const std::string& reason) const {
@@ -581,7 +569,7 @@ SessionWork Session::leaving_out(const std::vector<bool>& selected, const std::s
 }
 
 SessionWork Session::climb() const {
-  return [fit_it = fitting(), campaign = node().base->campaign, given = given_, model = model(),
+  return [fit_it = fitting(), campaign = node().recipe.base->campaign(), given = given_, model = model(),
           effects = current().effects, parent = current_](const SessionProgress& progress) -> SessionChange {
     DiagnoseOptions options;
     options.threads = fit_it.options.threads;
@@ -604,12 +592,12 @@ SessionWork Session::climb() const {
         return !progress || progress(found[i].label + ": " + stage, from);
       };
       all.push_back(found[i]);
-      const auto base = fit_next(campaign, extended_model(given, *campaign, all), part);
-      fit_next.before.push_back(base->state);
-      fit_next.least_variance = std::min(fit_next.least_variance, base->noise_variance);
+      const FittedModel made = fit_next(campaign, extended_model(given, *campaign, all), part);
+      fit_next.before.push_back({made.fitted, made.fitted->setting(), {}});
+      fit_next.least_variance = std::min(fit_next.least_variance, made.fitted->noise_variance());
       changes.push_back(
-          [made = Node(base, all), change = "+ " + found[i].label, parent, first = i == 0](Session& session) {
-            appending(first ? parent : session.current_, made, change)(session);
+          [made, all, change = "+ " + found[i].label, parent, first = i == 0](Session& session) {
+            appending(first ? parent : session.current_, made, all, change)(session);
           });
     }
     return [changes = std::move(changes)](Session& session) {
@@ -626,20 +614,20 @@ const SessionModel& Session::take(const SessionWork& work, const SessionProgress
 bool Session::undo() {
   if (!current().parent) return false;
   undone_.push_back(current_);
-  current_ = *current().parent;
+  go(*current().parent);
   return true;
 }
 
 bool Session::redo() {
   if (undone_.empty()) return false;
-  current_ = undone_.back();
+  go(undone_.back());
   undone_.pop_back();
   return true;
 }
 
 const SessionModel& Session::go_to(std::size_t number) {
   const SessionModel& wanted = models_.at(number);
-  current_ = number;
+  go(number);
   undone_.clear();
   return wanted;
 }

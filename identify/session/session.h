@@ -15,8 +15,11 @@
 ///   session.take(session.confirmation());
 ///   session.model();                                  // for a model file
 ///
-/// Numbers are those of diagnose() to the bit: both stand on identify/criticism. SI. Not for several threads
-/// at once, but for SessionWork; results do not depend on the number of threads that work inside.
+/// Numbers of models by a full fit are those of diagnose() to the bit: both stand on identify/criticism.
+/// Those of a preview follow from the products of the model before (catalogue/family_products.h). Amplitudes
+/// are from all readings, at the noise that the model leaves; tests and the ladder from those that are not
+/// held out. SI. Not for several threads at once, but for SessionWork; results do not depend on the number of
+/// threads that work inside.
 
 #include <cstddef>
 #include <functional>
@@ -132,6 +135,10 @@ class Session {
   Eigen::VectorXd sigma(std::size_t model) const;
   /// The full fit that the current model stands on.
   const FitResult& fitted_result() const;
+  /// Full fits of which the linear model is in memory: those of the last models that were looked at, at most
+  /// kKeptFits. Others are made again, to the bit, when they are looked at.
+  std::size_t kept_fits() const;
+  static constexpr std::size_t kKeptFits = 3;
 
   /// Effects that are not in the current model, best first; with more of an error function, which cannot be
   /// added here.
@@ -140,13 +147,16 @@ class Session {
   std::vector<EffectFinding> not_visible();
   /// Of the first of the ranking, at most `most`.
   Rivalry rivals(std::size_t most);
-  /// The scans of the current model without a catalogue, which unknown() makes where they are not there.
+  /// The scans of the current model without a catalogue and what to measure next, which unknown() and
+  /// next_measurements() make where they are not there.
   SessionWork scan();
   bool is_scanned() const;
   /// What moves the residuals of the current model without a name, leading first.
   const std::vector<UnknownFinding>& unknown();
   /// Something without a name explains the residuals better than the leading effect.
   bool unknown_leads();
+  /// What to measure next, by the current model (proposed_measurements.h).
+  const std::vector<MeasurementProposal>& next_measurements();
   EffectPreview preview(const EffectName& effect);
   /// What an effect would move the readings by per unit of its amplitude, added up over its amplitudes.
   Eigen::VectorXd driver(const EffectName& effect);
@@ -196,24 +206,32 @@ class Session {
   ModelSpec model() const;
 
  private:
-  struct Fitted;
+  class Fitted;
+  class SharedTests;
+  struct Recipe;
   struct Node;
   struct Fitting;
+  struct FittedModel;
 
   Fitting fitting() const;
-  void put_in_place(const std::shared_ptr<const Fitted>& fitted);
+  void put_in_place(const FittedModel& fitted);
   static void set_figures(LadderStep figures, SessionModel& shown);
   Node& node() const { return *nodes_[current_]; }
+  void go(std::size_t number);
   void renew_setting();
   const std::vector<FamilyTest>& tests();
   const ModelState& scanned();
+  Eigen::VectorXd previewed_residual(const FamilyTest& test);
+  void preview_leading();
   std::vector<const FamilyTest*> ranked();
   const FamilyTest& test_of(const EffectName& effect);
-  const SessionModel& append(std::size_t parent, Node made, std::string change, ModelStanding standing);
+  const SessionModel& append(std::size_t parent, std::unique_ptr<Node> made, std::string change,
+                             ModelStanding standing);
   SessionWork fit_of(const std::shared_ptr<const Campaign>& campaign,
                      const std::vector<EffectFinding>& effects, const std::string& change) const;
-  static SessionChange appending(std::size_t parent, Node made, std::string change);
-  void describe(const Node& made, SessionModel& shown) const;
+  static SessionChange appending(std::size_t parent, FittedModel fitted, std::vector<EffectFinding> effects,
+                                 std::string change);
+  void describe(Node& made, SessionModel& shown) const;
   std::size_t place_of(const EffectName& effect) const;
 
   SessionOptions options_;
@@ -224,6 +242,7 @@ class Session {
   std::shared_ptr<const Fitted> least_;  ///< of the least noise
   std::size_t current_ = 0;
   std::vector<std::size_t> undone_;
+  std::vector<std::size_t> recent_;  ///< models, the last one first
 };
 
 }  // namespace volcal

@@ -12,8 +12,10 @@
 #include "volcal/identify/errors/error_budget.h"
 #include "volcal/identify/report/rotary_json.h"
 #include "volcal/identify/report/values/volume_causes.h"
+#include "volcal/identify/session/proposed_measurements.h"
 #include "volcal/identify/session/session_command.h"
 #include "volcal/identify/standards/standard_figures.h"
+#include "volcal/identify/words/sentences.h"
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/identify/workbench/session_json.h"
 #include "volcal/model/description/units.h"
@@ -26,7 +28,6 @@ namespace {
 constexpr std::size_t kCompared = 12;  // suspects whose fall and rivals are told
 constexpr std::size_t kListed = 80;    // suspects
 constexpr std::size_t kHidden = 60;    // effects of which nothing shows
-constexpr double kRival = 0.7;         // cosine
 constexpr std::size_t kFrequencies = 1200;
 constexpr double kWavesPerRange = 300.0;  // finest of the periodogram
 constexpr double kPeriodogramRisk = 0.01;
@@ -44,7 +45,7 @@ Json rivals_json(const Rivalry& rivalry, const std::map<EffectName, std::string>
   const auto row = own - rivalry.names.begin();
   for (std::size_t k = 0; k < rivalry.names.size(); ++k) {
     const double cosine = rivalry.cosine(row, static_cast<Eigen::Index>(k));
-    if (static_cast<std::ptrdiff_t>(k) == row || cosine < kRival) continue;
+    if (static_cast<std::ptrdiff_t>(k) == row || cosine < kRivalCosine) continue;
     rivals.push_back({{"name", full_name(rivalry.names[k])},
                       {"label", labels.at(rivalry.names[k])},
                       {"cosine", number(cosine)}});
@@ -102,31 +103,16 @@ Json preview_json(const Session& session, const EffectPreview& preview) {
   return {{"model", session.current().number}, {"effect", std::move(suspect)}};
 }
 
-struct Bins {
-  double from = 0.0;
-  double width = 1.0;
-  std::size_t count = 1;
-
-  Bins(const Eigen::VectorXd& values, std::size_t number_of_bins) : count(number_of_bins) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const double value : values) {
-      if (!std::isfinite(value)) continue;
-      low = std::min(low, value);
-      high = std::max(high, value);
-    }
-    if (low > high) low = high = 0.0;
-    from = low;
-    width = high > low ? (high - low) / static_cast<double>(count) : 1.0;
+/// Least and largest of the values that were recorded.
+std::pair<double, double> range_of(const Eigen::VectorXd& values) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
   }
-  std::size_t of(double value) const {
-    return std::min(count - 1, static_cast<std::size_t>(std::max(0.0, (value - from) / width)));
-  }
-  Json edges() const {
-    Json json = Json::array();
-    for (std::size_t i = 0; i <= count; ++i) json.push_back(from + width * static_cast<double>(i));
-    return json;
-  }
-};
+  return low > high ? std::pair{0.0, 0.0} : std::pair{low, high};
+}
 
 /// Letters, digits and underscores that end at a place.
 std::size_t word_begin(const std::string& text, std::size_t at) {
@@ -295,7 +281,8 @@ Json unknown_json(Session& session) {
           {"ready", ready},
           {"unknown_leads", ready && session.unknown_leads()},
           {"unknown", std::move(unknown)},
-          {"drawn", std::move(drawn)}};
+          {"drawn", std::move(drawn)},
+          {"next", ready ? Json(sentences(findings_of(session.next_measurements()))) : Json()}};
 }
 
 std::string preview_frame(Session& session, const std::string& effect) {
@@ -330,37 +317,18 @@ Json completion_json(const Session& session, const std::string& text, std::size_
   return {{"from", from}, {"words", std::move(words)}};
 }
 
-std::string map_frame(const Session& session, const std::string& x, const std::string& y, std::size_t bins) {
-  const Eigen::VectorXd across = column(session, x), up = column(session, y);
-  const Eigen::VectorXd residual = session.residual() * kPerMicro;
-  const Eigen::VectorXd sigma = session.sigma(session.current().number) * kPerMicro;
-  const Bins columns(across, bins), rows(up, bins);
-  const auto places = static_cast<Eigen::Index>(bins * bins);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(places), variance = sum, count = sum;
-  for (Eigen::Index i = 0; i < residual.size(); ++i) {
-    if (!std::isfinite(sigma[i]) || !std::isfinite(across[i]) || !std::isfinite(up[i])) continue;
-    const auto at = static_cast<Eigen::Index>(rows.of(up[i]) * bins + columns.of(across[i]));
-    sum[at] += residual[i];
-    variance[at] += sigma[i] * sigma[i];
-    count[at] += 1.0;
-  }
-  const Eigen::VectorXd mean = sum.cwiseQuotient(count);
-  const Eigen::VectorXd u = variance.cwiseSqrt().cwiseQuotient(count);
-  return frame({{"model", session.current().number}, {"x_edges", columns.edges()}, {"y_edges", rows.edges()}},
-               {"mean", "u", "count"}, {mean, u, count});
-}
-
 Json periodogram_json(const Session& session, const std::string& variable) {
   const Eigen::VectorXd at = column(session, variable), sigma = session.sigma(session.current().number);
   const Eigen::VectorXd& residual = session.residual();
-  const Bins range(at, 1);
-  const double step = kWavesPerRange / static_cast<double>(kFrequencies) / range.width;
+  const auto [low, high] = range_of(at);
+  const double begin = low, width = high > low ? high - low : 1.0;
+  const double step = kWavesPerRange / static_cast<double>(kFrequencies) / width;
   std::vector<std::complex<double>> sums(kFrequencies, 0.0);
   double weights = 0.0;
   for (Eigen::Index i = 0; i < residual.size(); ++i) {
     if (!std::isfinite(sigma[i]) || !std::isfinite(at[i])) continue;
     const double weight = 1.0 / (sigma[i] * sigma[i]);
-    const std::complex<double> turn = std::polar(1.0, 2.0 * std::numbers::pi * step * (at[i] - range.from));
+    const std::complex<double> turn = std::polar(1.0, 2.0 * std::numbers::pi * step * (at[i] - begin));
     std::complex<double> wave = residual[i] * weight;
     for (std::complex<double>& sum : sums) sum += (wave *= turn);
     weights += weight;

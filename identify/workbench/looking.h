@@ -21,8 +21,6 @@ std::string formula_frame(Session& session, const std::string& text,
                           const std::vector<std::string>& parameters);
 /// Words that may stand at a place of a formula.
 Json completion_json(const Session& session, const std::string& text, std::size_t at);
-/// Framed: mean residual of the current model and its standard uncertainty over bins of two columns.
-std::string map_frame(const Session& session, const std::string& x, const std::string& y, std::size_t bins);
 /// Lomb-Scargle periodogram of the current residuals against a column, weighed by the noise.
 Json periodogram_json(const Session& session, const std::string& variable);
 /// Circles of the ball-bar: measured, and predicted by the current and by the first model.

@@ -1,8 +1,11 @@
 #include "volcal/identify/workbench/workbench.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <system_error>
@@ -23,7 +26,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{400};  // between looks at files that are to be mended
 constexpr std::size_t kLinesShown = 5;           // on either side of a wrong line
-constexpr std::size_t kMostBins = 200;
 constexpr std::size_t kMostColumns = 64;
 
 /// What cannot be done now.
@@ -130,6 +132,27 @@ bool is_command(const std::string& request) {
   return std::ranges::find(kCommands, request) != kCommands.end();
 }
 
+/// What `work` gives, made in a thread that the system prefers others to, with those that it begins: hovering
+/// and ranking are answered meanwhile.
+template <class Work>
+auto behind(const Work& work) {
+  decltype(work()) made;
+  std::exception_ptr failure;
+  std::thread([&] {
+#ifdef __linux__
+    constexpr int kBehind = 10;
+    static_cast<void>(nice(kBehind));  // of this thread alone; the program goes on where it may not
+#endif
+    try {
+      made = work();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  }).join();
+  if (failure) std::rethrow_exception(failure);
+  return made;
+}
+
 std::string command_line_of(const SessionCommand& command, std::size_t current) {
   if (command.verb != SessionCommand::Verb::Confirm || command.number) return to_string(command);
   return "confirm " + std::to_string(current);
@@ -231,11 +254,6 @@ std::optional<std::string> Workbench::look_framed(const std::string& request, co
     return frame({{"observations", session().linear().size()}}, names, columns);
   }
   if (request == "preview") return preview_frame(session(), text_of(body, "effect"));
-  if (request == "map") {
-    const std::size_t bins = body.contains("bins") ? number_of(body, "bins") : 40;
-    if (bins < 2 || bins > kMostBins) throw Refusal(400, "so many bins cannot be drawn", "2 to 200");
-    return map_frame(session(), text_of(body, "x"), text_of(body, "y"), bins);
-  }
   if (request != "formula") return std::nullopt;
   SessionCommand command;
   command.verb = SessionCommand::Verb::Formula;
@@ -428,7 +446,7 @@ void Workbench::run(Job& job, Lock& lock) {
   Json failed;
   std::function<void()> take;
   try {
-    take = job.run(progress());
+    take = job.behind ? behind([&] { return job.run(progress()); }) : job.run(progress());
   } catch (const SessionStopped&) {
   } catch (const InputError& error) {
     failed = error_json(error.problem(), error.remedy());

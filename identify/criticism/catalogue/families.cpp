@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <iterator>
-#include <numbers>
 #include <set>
 #include <utility>
 
+#include "volcal/identify/criticism/catalogue/family_products.h"
 #include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
-#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/registry.h"
@@ -42,99 +40,6 @@ void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_
     }
   }
 }
-
-/// Probability that the largest LM of a scan exceeds `lm` by chance, against that of one shape: the bound by
-/// the total variation of sqrt(LM) over the scan (Davies 1987, Biometrika 74, 33, eq. 3.4), and no more than
-/// the number of shapes.
-double scan_multiplicity(const std::vector<double>& lm_of_shapes, double lm, int dof) {
-  if (lm_of_shapes.size() < 2 || dof == 0 || !(lm > 0.0)) return 1.0;
-  double variation = 0.0;
-  for (std::size_t i = 1; i < lm_of_shapes.size(); ++i) {
-    variation += std::abs(std::sqrt(lm_of_shapes[i]) - std::sqrt(lm_of_shapes[i - 1]));
-  }
-  const double half = 0.5 * dof;
-  const double log10_crossings =
-      (0.5 * (dof - 1) * std::log(lm) - 0.5 * lm - half * std::numbers::ln2 - std::lgamma(half)) /
-          std::numbers::ln10 +
-      std::log10(std::max(variation, 1e-300));
-  const double multiplicity = 1.0 + std::pow(10.0, log10_crossings - log10_chi_squared_exceedance(lm, dof));
-  return std::min(multiplicity, static_cast<double>(lm_of_shapes.size()));
-}
-
-/// Families that are tested together, and the columns of all their shapes.
-struct FamilyBlock {
-  std::vector<std::size_t> family;
-  Eigen::Index columns = 0;
-};
-
-class FamilyTester {
- public:
-  FamilyTester(const LinearModel& model, const std::vector<Family>& families, const Projector& projector)
-      : model_(model), families_(families), projector_(projector) {
-    tests_.resize(families.size());
-  }
-
-  std::vector<FamilyTest> run(int threads) {
-    const std::vector<FamilyBlock> all = blocks();
-    run_parallel(all.size(), threads, [&](std::size_t i) { test(all[i]); });
-    return std::move(tests_);
-  }
-
- private:
-  Eigen::Index shapes(std::size_t family) const {
-    return static_cast<Eigen::Index>(families_[family].scan.size());
-  }
-
-  /// Widest first.
-  std::vector<FamilyBlock> blocks() const {
-    std::vector<FamilyBlock> all;
-    for (std::size_t family = 0; family < families_.size(); ++family) {
-      const Eigen::Index columns = shapes(family) * families_[family].amplitudes();
-      if (all.empty() || all.back().columns + columns > kBlockColumns) all.emplace_back();
-      all.back().family.push_back(family);
-      all.back().columns += columns;
-    }
-    std::ranges::stable_sort(all, std::greater{}, &FamilyBlock::columns);
-    return all;
-  }
-
-  void test(const FamilyBlock& block) {
-    std::vector<Hypothesis> all;
-    for (const std::size_t family : block.family) {
-      for (const Eigen::VectorXd& shape : families_[family].scan) all.push_back({family, shape});
-    }
-    const ProjectedColumns projected = projector_.project(columns_of(model_, families_, std::move(all)));
-    Eigen::Index first = 0;
-    for (const std::size_t family : block.family) {
-      tests_[family] = best_shape(projected, family, first, families_[family].amplitudes());
-      first += shapes(family) * families_[family].amplitudes();
-    }
-  }
-
-  FamilyTest best_shape(const ProjectedColumns& projected, std::size_t family, Eigen::Index first,
-                        Eigen::Index columns) const {
-    const auto& scan = families_[family].scan;
-    FamilyTest best;
-    best.family = family;
-    best.shape = scan.front();
-    std::vector<double> lm;
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      const ScoreTest test = score_test(projected, first + static_cast<Eigen::Index>(i) * columns, columns);
-      lm.push_back(test.lm);
-      if (i > 0 && test.lm <= best.score.lm) continue;
-      best.score = test;
-      best.shape = scan[i];
-    }
-    best.multiplicity = scan_multiplicity(lm, best.score.lm, best.score.dof);
-    update_test(best, families_[family], best.shape, best.score, projector_);
-    return best;
-  }
-
-  const LinearModel& model_;
-  const std::vector<Family>& families_;
-  const Projector& projector_;
-  std::vector<FamilyTest> tests_;
-};
 
 }  // namespace
 
@@ -284,7 +189,7 @@ Eigen::VectorXd displacement(const LinearModel& model, const Family& family, con
 
 std::vector<FamilyTest> test_families(const LinearModel& model, const std::vector<Family>& families,
                                       const Projector& projector, int threads) {
-  return FamilyTester(model, families, projector).run(threads);
+  return FamilyProducts(model, families, projector, threads).tests(families, projector, threads);
 }
 
 }  // namespace volcal

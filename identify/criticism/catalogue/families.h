@@ -16,7 +16,7 @@ namespace volcal {
 /// more of the function itself, a change of the model and no effect.
 struct Family {
   EffectSpec spec;
-  std::unique_ptr<Effect> effect;
+  std::shared_ptr<const Effect> effect;
   std::optional<ErrorSymbol> resolution;
   std::vector<Eigen::VectorXd> scan;  ///< shapes to look at; one when the shape is known
 

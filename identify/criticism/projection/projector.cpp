@@ -18,11 +18,11 @@ Eigen::MatrixXd ProjectedColumns::gram(Eigen::Index begin, Eigen::Index columns)
 
 Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
                      std::span<const NoiseParameters> noise, int threads, std::vector<Eigen::Index> parts)
-    : whitener_(data, noise),
+    : whitener_(std::make_shared<const Whitener>(data, noise)),
       threads_(threads),
       base_parameters_(problem.jacobian.cols()),
       parts_(parts.empty() ? std::vector<Eigen::Index>{0, problem.jacobian.rows()} : std::move(parts)),
-      whitened_(part_count()),
+      accepted_(part_count()),
       precision_(problem.prior_precision.size() > 0
                      ? problem.prior_precision
                      : Eigen::MatrixXd(Eigen::MatrixXd::Zero(base_parameters_, base_parameters_))) {
@@ -32,33 +32,42 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
                                    : Eigen::VectorXd(Eigen::VectorXd::Zero(base_parameters_));
   pull_ = precision_ * mean;
   prior_squares_ = mean.dot(pull_);
+  std::vector<Eigen::MatrixXd> whitened(part_count());
   run_parallel(part_count(), threads_, [&](std::size_t part) {
     Eigen::MatrixXd rows(part_rows(part), base_parameters_ + 1);
     rows << problem.jacobian.middleRows(parts_[part], part_rows(part)),
         problem.residual.segment(parts_[part], part_rows(part));
-    whitened_[part] = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]), rows);
+    whitened[part] = whitener_->whiten_part(static_cast<std::size_t>(parts_[part]), rows);
+    accepted_[part].resize(whitened[part].rows(), 0);
   });
+  whitened_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(whitened));
   if (problem.local && problem.local->columns() > 0) {
     std::vector<std::vector<std::size_t>> order;
     for (std::size_t part = 0; part < part_count(); ++part)
-      order.push_back(whitener_.order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
-    local_product_.emplace(problem.local, order);
+      order.push_back(whitener_->order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
+    local_product_ = std::make_shared<const LocalProduct>(problem.local, order);
   }
+  find_gram();
   factorise();
 }
 
-/// Columns are scaled to unit diagonal of A first: they carry different units.
-void Projector::factorise() {
+/// Without accepted columns.
+void Projector::find_gram() {
   const Eigen::Index count = parameters();
   std::vector<Eigen::MatrixXd> products(part_count());
   run_parallel(part_count(), threads_, [&](std::size_t part) {
     products[part] = Eigen::MatrixXd::Zero(count + 1, count + 1);
-    add_gram_upper(whitened_[part], 1.0, products[part]);
+    add_gram_upper((*whitened_)[part], 1.0, products[part]);
   });
   gram_ = std::move(products[0]);
   for (std::size_t part = 1; part < part_count(); ++part) gram_ += products[part];
   symmetrise_from_upper(gram_);
   residual_squares_ = gram_(count, count);
+}
+
+/// Columns are scaled to unit diagonal of A first: they carry different units.
+void Projector::factorise() {
+  const Eigen::Index count = parameters();
   Eigen::MatrixXd normal = gram_.topLeftCorner(count, count);
   normal.topLeftCorner(base_parameters_, base_parameters_) += precision_;
   scale_ = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
@@ -79,7 +88,8 @@ void Projector::factorise() {
 
 Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const {
   PartialProducts products;
-  products.with_others.setZero(parameters() + 1 - local_columns(), columns);
+  products.with_others.setZero(base_parameters_ + 1 - local_columns(), columns);
+  products.with_accepted.setZero(accepted(), columns);
   if (local_product_) {
     for (Eigen::Index column = 0; column < columns; column += kColumnBlock)
       products.with_local.push_back(local_product_->zero_sums());
@@ -90,28 +100,32 @@ Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const 
 Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd& rows,
                                         PartialProducts& products) const {
   const auto first = static_cast<std::size_t>(parts_[part]);
-  const auto others = whitened_[part].rightCols(parameters() + 1 - local_columns());
+  const auto others = (*whitened_)[part].rightCols(base_parameters_ + 1 - local_columns());
   Eigen::MatrixXd whitened;
   if (!local_product_) {
-    whitened = whitener_.whiten_part(first, rows);
+    whitened = whitener_->whiten_part(first, rows);
   } else {
     whitened.resize(others.rows(), rows.cols());
     Eigen::MatrixXd weighed;
     for (Eigen::Index column = 0; column < rows.cols(); column += kColumnBlock) {
       const Eigen::Index count = std::min(kColumnBlock, rows.cols() - column);
-      whitener_.weigh_part(first, rows.middleCols(column, count), whitened.middleCols(column, count),
-                           weighed);
+      whitener_->weigh_part(first, rows.middleCols(column, count), whitened.middleCols(column, count),
+                            weighed);
       local_product_->add(part, weighed,
                           products.with_local[static_cast<std::size_t>(column / kColumnBlock)]);
     }
   }
   add_transposed_product(others, whitened, products.with_others);
+  if (accepted() > 0) add_transposed_product(accepted_[part], whitened, products.with_accepted);
   return whitened;
 }
 
 Eigen::MatrixXd Projector::combined(const PartialProducts& products, Eigen::Index columns) const {
   Eigen::MatrixXd all(parameters() + 1, columns);
-  all.bottomRows(products.with_others.rows()) = products.with_others;
+  const Eigen::Index others = base_parameters_ - local_columns();
+  all.middleRows(local_columns(), others) = products.with_others.topRows(others);
+  all.middleRows(base_parameters_, accepted()) = products.with_accepted;
+  all.bottomRows(1) = products.with_others.bottomRows(1);
   for (Eigen::Index column = 0; column < columns && local_product_; column += kColumnBlock) {
     const Eigen::Index count = std::min(kColumnBlock, columns - column);
     local_product_->combine(products.with_local[static_cast<std::size_t>(column / kColumnBlock)],
@@ -167,16 +181,39 @@ Eigen::MatrixXd Projector::imitation(const Eigen::MatrixXd& columns) const {
   return scale_.asDiagonal() * lower_.triangularView<Eigen::Lower>().transpose().solve(rotated).eval();
 }
 
+Eigen::MatrixXd Projector::whitened_part(std::size_t part, const Eigen::MatrixXd& columns) const {
+  return whitener_->whiten_part(static_cast<std::size_t>(parts_[part]),
+                                columns.middleRows(parts_[part], part_rows(part)));
+}
+
 void Projector::accept(const Eigen::MatrixXd& columns) {
-  const Eigen::Index before = parameters();
-  for (std::size_t part = 0; part < part_count(); ++part) {
-    const Eigen::MatrixXd added = whitener_.whiten_part(static_cast<std::size_t>(parts_[part]),
-                                                        columns.middleRows(parts_[part], part_rows(part)));
-    Eigen::MatrixXd& all = whitened_[part];
-    all.conservativeResize(Eigen::NoChange, all.cols() + added.cols());
-    all.rightCols(1) = all.col(before).eval();
-    all.middleCols(before, added.cols()) = added;
-  }
+  const Eigen::Index before = parameters(), more = columns.cols();
+  std::vector<Eigen::MatrixXd> products(part_count());  // with base columns, residual, accepted ones, own
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    const Eigen::MatrixXd added = whitened_part(part, columns);
+    Eigen::MatrixXd& all = accepted_[part];
+    all.conservativeResize(Eigen::NoChange, all.cols() + more);
+    all.rightCols(more) = added;
+    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_ + 1, more);
+    add_transposed_product((*whitened_)[part], added, with_base);
+    Eigen::MatrixXd with_accepted = Eigen::MatrixXd::Zero(all.cols(), more);
+    add_transposed_product(all, added, with_accepted);
+    products[part].resize(with_base.rows() + with_accepted.rows(), more);
+    products[part] << with_base, with_accepted;
+  });
+  Eigen::MatrixXd sum = std::move(products[0]);
+  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
+  const Eigen::Index count = before + more;
+  Eigen::MatrixXd gram(count + 1, count + 1);
+  gram.topLeftCorner(before, before) = gram_.topLeftCorner(before, before);
+  gram.col(count).head(before) = gram_.col(before).head(before);
+  gram(count, count) = gram_(before, before);
+  gram.block(0, before, base_parameters_, more) = sum.topRows(base_parameters_);
+  gram.block(base_parameters_, before, count - base_parameters_, more) =
+      sum.bottomRows(count - base_parameters_);
+  gram.col(count).segment(before, more) = sum.row(base_parameters_).transpose();
+  symmetrise_from_upper(gram);
+  gram_ = std::move(gram);
   factorise();
 }
 
@@ -184,16 +221,36 @@ Eigen::VectorXd Projector::solution() const {
   return scale_.cwiseProduct(lower_.triangularView<Eigen::Lower>().transpose().solve(rotated_));
 }
 
+Eigen::MatrixXd Projector::left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
+                                        const Eigen::MatrixXd& at) const {
+  Eigen::MatrixXd left =
+      whitened - (*whitened_)[part].leftCols(base_parameters_) * at.topRows(base_parameters_);
+  if (accepted() > 0) left -= accepted_[part] * at.bottomRows(accepted());
+  return left;
+}
+
+void Projector::put_in_place(std::size_t part, const Eigen::MatrixXd& rows, Eigen::MatrixXd& all) const {
+  const auto order = whitener_->order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part));
+  for (std::size_t i = 0; i < order.size(); ++i)
+    all.row(static_cast<Eigen::Index>(order[i])) = rows.row(static_cast<Eigen::Index>(i));
+}
+
 Eigen::VectorXd Projector::weighed_residual() const {
   const Eigen::VectorXd at = solution();
-  Eigen::VectorXd whitened = Eigen::VectorXd::Zero(parts_.back());
-  for (std::size_t part = 0; part < part_count(); ++part) {
-    const Eigen::VectorXd left = whitened_[part].rightCols(1) - whitened_[part].leftCols(at.size()) * at;
-    const auto order = whitener_.order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part));
-    for (std::size_t i = 0; i < order.size(); ++i)
-      whitened[static_cast<Eigen::Index>(order[i])] = left[static_cast<Eigen::Index>(i)];
-  }
-  return whitener_.whiten_transposed(std::move(whitened));
+  Eigen::MatrixXd whitened = Eigen::MatrixXd::Zero(parts_.back(), 1);
+  for (std::size_t part = 0; part < part_count(); ++part)
+    put_in_place(part, left_of_part(part, (*whitened_)[part].rightCols(1), at), whitened);
+  return whitener_->whiten_transposed(whitened.col(0));
+}
+
+Eigen::MatrixXd Projector::weighed_projection(const Eigen::MatrixXd& columns) const {
+  const Eigen::MatrixXd at = imitation(columns);
+  Eigen::MatrixXd weighed = Eigen::MatrixXd::Zero(parts_.back(), columns.cols());
+  for (std::size_t part = 0; part < part_count(); ++part)
+    put_in_place(part, left_of_part(part, whitened_part(part, columns), at), weighed);
+  for (Eigen::Index k = 0; k < weighed.cols(); ++k)
+    weighed.col(k) = whitener_->whiten_transposed(weighed.col(k));
+  return weighed;
 }
 
 Eigen::MatrixXd Projector::rotated_rows(const Eigen::MatrixXd& rows) const {

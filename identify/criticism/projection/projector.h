@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -58,8 +58,12 @@ class Projector {
   ProjectedColumns project(const Eigen::MatrixXd& columns) const;
   /// Parameters of the model, accepted columns last, with which it imitates columns best; parameters x k.
   Eigen::MatrixXd imitation(const Eigen::MatrixXd& columns) const;
-  /// Takes columns into the model, without prior.
+  /// Takes columns into the model, without prior: their products alone are made, and the factor anew. A copy
+  /// shares the rows of the model with its original.
   void accept(const Eigen::MatrixXd& columns);
+  /// Sigma^-1 (columns - J times their imitation), of all observations, 0 where they are left out: with
+  /// columns g their products are g~^T times these columns after projection.
+  Eigen::MatrixXd weighed_projection(const Eigen::MatrixXd& columns) const;
 
   /// Correction of the model's parameters, accepted columns last, from the observations in use.
   Eigen::VectorXd solution() const;
@@ -78,20 +82,29 @@ class Projector {
   /// [J y]^T Sigma^-1 [J y], accepted columns last but for y; without prior.
   const Eigen::MatrixXd& gram() const { return gram_; }
   /// log|Sigma| of the observations in use.
-  double log_determinant() const { return whitener_.log_determinant(); }
-  std::size_t observations() const { return whitener_.observations(); }
-  Eigen::Index parameters() const { return whitened_.front().cols() - 1; }
+  double log_determinant() const { return whitener_->log_determinant(); }
+  std::size_t observations() const { return whitener_->observations(); }
+  Eigen::Index parameters() const { return base_parameters_ + accepted(); }
   int threads() const { return threads_; }
-  Eigen::Index accepted() const { return parameters() - base_parameters_; }
+  Eigen::Index accepted() const { return accepted_.front().cols(); }
 
  private:
   /// Products of columns with the model's, while parts are added.
   struct PartialProducts {
-    Eigen::MatrixXd with_others;              ///< columns that are not local, residual last
+    Eigen::MatrixXd with_others;  ///< base columns that are not local, residual last
+    Eigen::MatrixXd with_accepted;
     std::vector<Eigen::MatrixXd> with_local;  ///< of kColumnBlock columns each
   };
 
+  void find_gram();
   void factorise();
+  /// L^-1 (rows - rows of the model times `at`), whitened, of a part.
+  Eigen::MatrixXd left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
+                               const Eigen::MatrixXd& at) const;
+  /// Puts whitened rows of a part at their observations.
+  void put_in_place(std::size_t part, const Eigen::MatrixXd& rows, Eigen::MatrixXd& all) const;
+  /// L^-1 rows of a part of all observations.
+  Eigen::MatrixXd whitened_part(std::size_t part, const Eigen::MatrixXd& columns) const;
   PartialProducts zero_products(Eigen::Index columns) const;
   /// Adds the products with a part's rows; gives L^-1 rows.
   Eigen::MatrixXd add_products(std::size_t part, const Eigen::MatrixXd& rows,
@@ -102,12 +115,14 @@ class Projector {
   std::size_t part_count() const { return parts_.size() - 1; }
   Eigen::Index part_rows(std::size_t part) const { return parts_[part + 1] - parts_[part]; }
 
-  Whitener whitener_;
+  std::shared_ptr<const Whitener> whitener_;
   int threads_;
-  std::optional<LocalProduct> local_product_;
+  std::shared_ptr<const LocalProduct> local_product_;
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
-  std::vector<Eigen::MatrixXd> whitened_;  ///< per part, (observations in use) x (p + 1), residual last
+  /// Per part, (observations in use) x (base parameters + 1), residual last.
+  std::shared_ptr<const std::vector<Eigen::MatrixXd>> whitened_;
+  std::vector<Eigen::MatrixXd> accepted_;  ///< per part, the same of accepted columns
   Eigen::MatrixXd precision_;              ///< of the base parameters, not scaled
   Eigen::VectorXd pull_;                   ///< P m, base parameters
   double prior_squares_ = 0.0;

@@ -19,13 +19,37 @@ namespace {
 constexpr std::int32_t kStretch = 10;
 constexpr double kSmallestEigenvalue = 1e-9;  // of a precision with unit diagonal
 
+/// Parameters that elements other than zero tie together, directly or through others.
+std::vector<std::vector<Eigen::Index>> tied_parameters(const Eigen::MatrixXd& precision) {
+  std::vector<std::vector<Eigen::Index>> groups;
+  std::vector<bool> seen(static_cast<std::size_t>(precision.cols()), false);
+  for (Eigen::Index first = 0; first < precision.cols(); ++first) {
+    if (seen[static_cast<std::size_t>(first)]) continue;
+    seen[static_cast<std::size_t>(first)] = true;
+    std::vector<Eigen::Index>& group = groups.emplace_back(1, first);
+    for (std::size_t next = 0; next < group.size(); ++next) {
+      for (Eigen::Index other = 0; other < precision.rows(); ++other) {
+        if (seen[static_cast<std::size_t>(other)] || precision(other, group[next]) == 0.0) continue;
+        seen[static_cast<std::size_t>(other)] = true;
+        group.push_back(other);
+      }
+    }
+  }
+  return groups;
+}
+
 /// Of the prior: as many further observations.
 double prior_rank(const Eigen::MatrixXd& precision) {
   if (precision.size() == 0) return 0.0;
   const Eigen::VectorXd scale =
       precision.diagonal().unaryExpr([](double value) { return value > 0.0 ? 1.0 / std::sqrt(value) : 0.0; });
-  const Eigen::VectorXd values = eigenvalues(scale.asDiagonal() * precision * scale.asDiagonal());
-  return static_cast<double>((values.array() > kSmallestEigenvalue).count());
+  double rank = 0.0;
+  for (const std::vector<Eigen::Index>& group : tied_parameters(precision)) {
+    const Eigen::VectorXd own = scale(group);
+    const Eigen::VectorXd values = eigenvalues(own.asDiagonal() * precision(group, group) * own.asDiagonal());
+    rank += static_cast<double>((values.array() > kSmallestEigenvalue).count());
+  }
+  return rank;
 }
 
 /// Derivatives of observations to all parameters, columns of effects last.
@@ -40,7 +64,7 @@ Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const Noi
 
 HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
                                   std::span<const NoiseParameters> noise, const Projector& projector,
-                                  const Eigen::MatrixXd& effects, const Eigen::VectorXd& solution) {
+                                  const Eigen::MatrixXd& effects, const Eigen::VectorXd& residual) {
   const RowsOf rows = [&](const std::vector<Eigen::Index>& observations) {
     return rows_of(observations, problem, effects);
   };
@@ -51,8 +75,6 @@ HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector
   };
   const std::vector<HeldoutBlock> blocks =
       heldout_errors(problem.data, heldout, noise, projector, rows, column, projector.threads());
-  Eigen::VectorXd residual = problem.residual;
-  for (const HeldoutBlock& block : blocks) residual(block.observation) -= rows(block.observation) * solution;
   return heldout_figures(blocks, residual);
 }
 
@@ -64,22 +86,28 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   const NoiseProblem& problem = model.problem();
   const std::vector<double> variance = noise_variance(problem.data, noise);
   const Eigen::VectorXd solution = projector.solution();
-  std::vector<Eigen::Index> fitted, held;
+  const Eigen::Index own = problem.jacobian.cols();
+  const Eigen::VectorXd residual =
+      problem.residual - problem.jacobian * solution.head(own) - effects * solution.tail(effects.cols());
+  double squares = 0.0, fitted = 0.0;
+  bool any_held = false;
   for (std::size_t i = 0; i < model.size(); ++i) {
-    if (std::isfinite(variance[i])) (heldout[i] ? held : fitted).push_back(static_cast<Eigen::Index>(i));
+    if (!std::isfinite(variance[i])) continue;
+    any_held = any_held || heldout[i];
+    if (heldout[i]) continue;
+    squares += residual[static_cast<Eigen::Index>(i)] * residual[static_cast<Eigen::Index>(i)];
+    fitted += 1.0;
   }
   LadderStep step;
-  const Eigen::MatrixXd fitted_rows = rows_of(fitted, problem, effects);
-  const Eigen::VectorXd fitted_residual = problem.residual(fitted) - fitted_rows * solution;
-  step.rms_fit = std::sqrt(fitted_residual.squaredNorm() / std::max<double>(1.0, fitted_residual.size()));
+  step.rms_fit = std::sqrt(squares / std::max(1.0, fitted));
   const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
                      static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  if (held.empty()) {
+  if (!any_held) {
     step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
     return step;
   }
-  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, effects, solution);
+  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, effects, residual);
   const double excess = (figures.squares - figures.expected) / figures.count;
   const double spread = kCoverageFactor * figures.spread / figures.count;
   step.rms_heldout = std::sqrt(figures.squares / figures.count);
@@ -191,6 +219,11 @@ LadderStep last_step_of(const ModelState& state) {
 
 LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise) {
   return last_step(state, noise, *state.projector_at(noise));
+}
+
+LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise,
+                        const Projector& projector) {
+  return last_step(state, noise, projector);
 }
 
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {

@@ -30,6 +30,9 @@ std::vector<LadderStep> ladder_of(const ModelState& state);
 LadderStep last_step_of(const ModelState& state);
 /// Against another noise.
 LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise);
+/// With the projector at that noise at hand.
+LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise,
+                        const Projector& projector);
 
 /// The last step with another effect in the place of an added one, at the same noise and smoothing.
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead);

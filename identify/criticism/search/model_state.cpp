@@ -38,6 +38,14 @@ ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> s
   smoothing_of_steps_.push_back(model_.smoothing());
 }
 
+ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting, NoiseEstimate noise)
+    : setting_(std::move(setting)),
+      model_(std::move(model)),
+      noise_estimate_(std::move(noise)),
+      noise_(noise_estimate_.parameters()),
+      projector_(projector_without({})),
+      smoothing_of_steps_{model_.smoothing()} {}
+
 ModelState ModelState::with(const FamilyTest& effect) const {
   ModelState next = *this;
   next.tests_.reset();

@@ -45,6 +45,8 @@ class ModelState {
  public:
   /// Without any effect.
   ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting);
+  /// The same at a noise that was found before, with the smoothing of `model`.
+  ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting, NoiseEstimate noise);
 
   /// With a further effect, noise and smoothing found anew, and the readings back in use that agree with it:
   /// a fit without the effect takes what it moves most for outliers.

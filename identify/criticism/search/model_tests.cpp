@@ -87,8 +87,30 @@ SearchSetting::SearchSetting(const LinearModel& model, std::vector<bool> held,
   std::erase_if(families, [&](const Family& family) {
     return std::ranges::find(leave_out, family.name().kind) != leave_out.end();
   });
-  log10_families = log10_count(families.size());
+  set_level();
   std::ranges::move(travel_since_turning(model), std::back_inserter(constancy_variables));
+}
+
+void SearchSetting::set_level() {
+  log10_families = log10_count(families.size());
+  std::size_t most = 1;
+  for (const Family& family : families) most = std::max(most, static_cast<std::size_t>(family.amplitudes()));
+  detectable_.clear();
+  for (std::size_t dof = 1; dof <= most; ++dof)
+    detectable_.push_back(
+        volcal::detectable_noncentrality(log10_level(), static_cast<double>(dof), kThresholds.power));
+}
+
+double SearchSetting::detectable_noncentrality(int dof) const {
+  return detectable_.at(static_cast<std::size_t>(std::max(1, dof) - 1));
+}
+
+SearchSetting SearchSetting::with_more(const LinearModel& model, std::span<const EffectSpec> more) const {
+  SearchSetting all = *this;
+  std::ranges::move(own_families(model, more), std::back_inserter(all.families));
+  all.own += more.size();
+  all.set_level();
+  return all;
 }
 
 double SearchSetting::family_wise_log10_p(const FamilyTest& test) const {
@@ -140,18 +162,33 @@ std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const Linear
   return tests;
 }
 
-std::vector<FamilyTest> with_tests_of_own(std::vector<FamilyTest> known, std::span<const EffectSpec> own,
-                                          const SearchSetting& setting, const LinearModel& model,
-                                          const Projector& projector) {
-  const std::size_t count = known.size();
-  for (FamilyTest& test : test_families(model, own_families(model, own), projector, setting.threads)) {
-    test.family += count;
-    known.push_back(std::move(test));
-  }
-  if (known.size() != setting.families.size())
-    throw std::logic_error("the last families of the setting are other ones");
-  refine_shapes(setting, model, projector, count, known);
-  return known;
+CatalogueTests::CatalogueTests(FamilyProducts of, const ModelState& state)
+    : products(std::move(of)),
+      families(products.tests(state.setting().families, state.projector(), state.setting().threads)) {
+  refine_shapes(state.setting(), state.model(), state.projector(), 0, families);
+}
+
+CatalogueTests::CatalogueTests(const ModelState& state)
+    : CatalogueTests(
+          FamilyProducts(state.model(), state.setting().families, state.projector(), state.setting().threads),
+          state) {}
+
+CatalogueTests CatalogueTests::of_next(const ModelState& before, const ModelState& next) const {
+  return {products.accepting(next.added().back().columns, before.model(), before.setting().families,
+                             before.projector(), before.setting().threads),
+          next};
+}
+
+CatalogueTests CatalogueTests::with_more(const ModelState& with_them) const {
+  const SearchSetting& setting = with_them.setting();
+  CatalogueTests all = *this;
+  const std::size_t known = families.size();
+  all.products =
+      products.with_more(with_them.model(), setting.families, with_them.projector(), setting.threads);
+  std::ranges::move(all.products.tests(setting.families, with_them.projector(), setting.threads, known),
+                    std::back_inserter(all.families));
+  refine_shapes(setting, with_them.model(), with_them.projector(), known, all.families);
+  return all;
 }
 
 ModelTests tests_of(const ModelState& state) {

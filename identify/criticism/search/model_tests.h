@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/catalogue/families.h"
+#include "volcal/identify/criticism/catalogue/family_products.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/criticism/scans/scan_variables.h"
 
@@ -25,20 +25,29 @@ struct SearchSetting {
   /// effects that the user thinks of, tested beside the catalogue.
   SearchSetting(const LinearModel& model, std::vector<bool> heldout,
                 const std::vector<std::string>& leave_out, int threads, std::span<const EffectSpec> own = {});
+  /// The same with more effects that the user thinks of, behind the others.
+  SearchSetting with_more(const LinearModel& model, std::span<const EffectSpec> more) const;
 
   std::vector<Family> families;
   std::vector<ScanVariable> variables;            ///< of the scans
   std::vector<ScanVariable> constancy_variables;  ///< and the travel since turning (amplitude_constancy.h)
   std::vector<bool> heldout;
-  std::size_t own;        ///< number of effects that the user thinks of
-  int threads;            ///< at least 1
-  double log10_families;  ///< log10 of the number of families
+  std::size_t own;              ///< number of effects that the user thinks of
+  int threads;                  ///< at least 1
+  double log10_families = 0.0;  ///< log10 of the number of families
 
   double family_wise_log10_p(const FamilyTest& test) const;
   /// A test at its own level that is family-wise at the risk.
   double log10_level() const;
   /// Exceeds noise that is taken as known.
   bool exceeds(const FamilyTest& test) const;
+  /// Noncentrality of the smallest effect that such a test finds with the power of the thresholds.
+  double detectable_noncentrality(int dof) const;
+
+ private:
+  void set_level();
+
+  std::vector<double> detectable_;  ///< by dof, from 1
 };
 
 struct ModelTests {
@@ -60,9 +69,18 @@ ModelTests tests_of(const ModelState& state, std::vector<FamilyTest> families);
 /// Tests of the families alone, shapes refined where they could matter.
 std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,
                                       const Projector& projector);
-/// The same where tests of a setting without the last effects of the user's are known, `known` their number.
-std::vector<FamilyTest> with_tests_of_own(std::vector<FamilyTest> known, std::span<const EffectSpec> own,
-                                          const SearchSetting& setting, const LinearModel& model,
-                                          const Projector& projector);
+
+/// The same with the products that they were made of, from which those of a further effect follow.
+struct CatalogueTests {
+  FamilyProducts products;
+  std::vector<FamilyTest> families;
+
+  explicit CatalogueTests(const ModelState& state);
+  CatalogueTests(FamilyProducts of, const ModelState& state);
+  /// Of a state to which an effect was added at the same noise and smoothing; `before` is that without it.
+  CatalogueTests of_next(const ModelState& before, const ModelState& next) const;
+  /// Of a state with more effects of the user's own: those that were known stay as they are.
+  CatalogueTests with_more(const ModelState& with_them) const;
+};
 
 }  // namespace volcal

@@ -8,12 +8,17 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include "tests/support/hidden_studies.h"
+#include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/effect_findings.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/identify/session/proposed_measurements.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
 
@@ -92,6 +97,134 @@ TEST_F(SessionOfTwo, RanksAsADiagnosisToTheBit) {
   EXPECT_EQ(session().current().figures.systematic, ladder_of(given).back().systematic);
 }
 
+/// `volcal diagnose` does not stand on a session, which it needs no tree of; the numbers are the same ones.
+TEST_F(SessionOfTwo, IsADoorToTheNumbersOfDiagnose) {
+  DiagnoseOptions options;
+  options.threads = 1;
+  options.climb = true;
+  options.figures = options.compare = false;
+  const Diagnosis diagnosis = diagnose_model(campaign(), testing_support::polynomials(), options).diagnosis;
+  const LadderStep& as_given = diagnosis.ladder.front();
+  ASSERT_GE(diagnosis.ladder.size(), 3U);
+  EXPECT_EQ(as_given.model, "0");
+  const auto own = open();
+  own->take(own->climb());
+  const std::vector<EffectFinding> accepted = accepted_effects(diagnosis);
+  const std::vector<EffectFinding>& climbed = own->current().effects;
+  ASSERT_EQ(climbed.size(), accepted.size());
+  ASSERT_EQ(own->models().size(), accepted.size() + 1);
+  for (std::size_t i = 0; i < climbed.size(); ++i) {
+    EXPECT_EQ(climbed[i].name, accepted[i].name);
+    EXPECT_EQ(own->models()[i + 1].change, "+ " + accepted[i].label);
+  }
+  // What `volcal extend --accepted` writes is fitted to what the session has confirmed.
+  ModelSpec extended = testing_support::polynomials();
+  for (const EffectFinding& found : accepted)
+    extend_model({extended, campaign().machine, &campaign()}, found.spec,
+                 {.label = found.label, .place = {}, .remedy_if_known = "", .remedy_if_absent = ""});
+  ASSERT_EQ(own->model().effects.size(), extended.effects.size());
+  FitOptions fit_options;
+  fit_options.threads = 1;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;
+  const FitResult fitted = fit(campaign(), extended, fit_options);
+  EXPECT_EQ(fitted.parameters, own->fitted_result().parameters) << "to the bit";
+}
+
+/// The ranking of a preview follows from products that were kept; here the effect is taken into the model and
+/// everything tested anew.
+TEST_F(SessionOfTwo, RanksAPreviewAsTestsMadeAnew) {
+  session().rank();
+  session().add(kReversal);
+  FitOptions fit_options;
+  fit_options.threads = 1;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;
+  const FitResult result = fit(campaign(), testing_support::polynomials(), fit_options);
+  const LinearModel model(campaign(), result);
+  const ModelState given(
+      model, std::make_shared<SearchSetting>(model, heldout_lines(model, SessionOptions{}.heldout_share),
+                                             std::vector<std::string>{}, 1));
+  const auto is_it = [&](const FamilyTest& test) {
+    return given.setting().families[test.family].name() == kReversal;
+  };
+  const std::vector<FamilyTest> before = refined_tests(given.setting(), model, given.projector());
+  const ModelState next = given.with_at_this_noise(*std::ranges::find_if(before, is_it));
+  std::map<EffectName, EffectFinding> found;
+  for (const FamilyTest& test : refined_tests(next.setting(), next.model(), next.projector())) {
+    EffectFinding each = finding(next.setting(), test);
+    if (test.score.dof > 0) found[each.name] = std::move(each);
+  }
+  const std::vector<EffectFinding> ranking = session().rank();
+  ASSERT_EQ(ranking.size(), found.size());
+  EXPECT_EQ(ranking.front().name, kOther);
+  for (const EffectFinding& own : ranking) {
+    const EffectFinding& other = found.at(own.name);
+    const double alike = 1e-9 / (other.visible_fraction * other.visible_fraction);
+    EXPECT_NEAR(own.gain, other.gain, alike * (1.0 + other.lm)) << own.label;
+    EXPECT_NEAR(own.lm, other.lm, alike * (1.0 + other.lm)) << own.label;
+    for (std::size_t k = 0; k < own.amplitudes.size(); ++k)
+      EXPECT_NEAR(own.amplitudes[k].value, other.amplitudes[k].value, alike * other.amplitudes[k].u)
+          << own.label;
+  }
+}
+
+/// Full fits beyond a few are let go of, and are the same to the bit when they are looked at again.
+TEST_F(SessionOfTwo, KeepsFewFullFitsAndMakesTheOthersAgain) {
+  const auto own = open();
+  own->add(kReversal);
+  own->take(own->confirmation());
+  const Eigen::VectorXd residual = own->residual();
+  const std::vector<EffectFinding> ranking = own->rank();
+  const std::vector<EffectFinding> effects = own->current().effects;
+  for (const char* axis : {"EXX", "EZZ", "EXY"}) {
+    own->go_to(1);
+    own->add({"reversal", axis, std::string("dir_") + static_cast<char>(axis[2] + ('a' - 'A')), "step"});
+    own->take(own->confirmation());
+    EXPECT_LE(own->kept_fits(), Session::kKeptFits);
+  }
+  ASSERT_EQ(own->models().size(), 5U);
+  for (const std::size_t other : {0U, 2U, 3U, 4U}) {
+    own->go_to(other);
+    EXPECT_GT(own->linear().size(), 0U);
+    EXPECT_LE(own->kept_fits(), Session::kKeptFits);
+  }
+  own->go_to(1);
+  EXPECT_EQ(own->linear().size(), static_cast<std::size_t>(residual.size()));
+  EXPECT_LE(own->kept_fits(), Session::kKeptFits);
+  EXPECT_EQ(own->residual(), residual);
+  const std::vector<EffectFinding>& again = own->rank();
+  ASSERT_EQ(again.size(), ranking.size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_EQ(again[i].name, ranking[i].name);
+    EXPECT_EQ(again[i].gain, ranking[i].gain);
+  }
+  EXPECT_EQ(own->current().effects[0].amplitudes[0].value, effects[0].amplitudes[0].value);
+  own->add(kOther);
+  const SessionModel& second = own->models()[2];
+  EXPECT_EQ(own->models().back().effects.size(), second.effects.size());
+  EXPECT_NEAR(own->models().back().effects[1].amplitudes[0].value, second.effects[1].amplitudes[0].value,
+              0.25 * kCoverageFactor * second.effects[1].amplitudes[0].u);
+}
+
+/// As `volcal diagnose --separate` proposes for the same two.
+TEST_F(SessionOfTwo, ProposesWhatTellsTheLeadingEffectFromItsRivals) {
+  const std::vector<MeasurementProposal>& next = session().next_measurements();
+  const Rivalry rivalry = session().rivals(12);
+  std::set<EffectName> rivals;
+  for (Eigen::Index k = 1; k < rivalry.cosine.cols(); ++k) {
+    if (rivalry.cosine(0, k) > kRivalCosine) rivals.insert(rivalry.names[static_cast<std::size_t>(k)]);
+  }
+  ASSERT_FALSE(rivals.empty()) << "a reversal has relatives";
+  ASSERT_FALSE(next.empty());
+  for (const MeasurementProposal& each : next) {
+    ASSERT_EQ(each.separates.size(), 2U);
+    EXPECT_EQ(each.separates[0], kReversal);
+    EXPECT_TRUE(rivals.contains(each.separates[1])) << full_name(each.separates[1]);
+    EXPECT_GE(each.reached, each.separation);
+  }
+}
+
 TEST_F(SessionOfTwo, APreviewIsWhatAddingGives) {
   const EffectPreview preview = session().preview(kReversal);
   const double before = rms(session().residual());
@@ -101,7 +234,9 @@ TEST_F(SessionOfTwo, APreviewIsWhatAddingGives) {
   EXPECT_EQ(added.parent, 0U);
   ASSERT_EQ(added.effects.size(), 1U);
   const AmplitudeFigure& figure = added.effects[0].amplitudes[0];
-  EXPECT_NEAR(figure.value, preview.effect.amplitudes[0].value, 1e-9 * std::abs(figure.value));
+  // Tests have no held-out readings, amplitudes all.
+  EXPECT_NEAR(figure.value, preview.effect.amplitudes[0].value, preview.effect.amplitudes[0].u);
+  EXPECT_LT(figure.u, preview.effect.amplitudes[0].u);
   EXPECT_LT((session().residual() - preview.residual).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT(rms(session().residual()), before);
   EXPECT_LT(added.figures.rms_heldout, session().models()[0].figures.rms_heldout);

@@ -138,15 +138,7 @@ TEST_F(WorkbenchOnACampaign, APreviewIsWhatAddingGives) {
   EXPECT_EQ(page().ask("add", {{"effect", kReversal}}).status, 422) << "it is in the model";
 }
 
-TEST_F(WorkbenchOnACampaign, DrawsMapsWavesAndMeaning) {
-  const Framed map(page().ask("map", {{"x", "x"}, {"y", "z"}, {"bins", 10}}).body);
-  ASSERT_EQ(map.columns.size(), 3U);
-  ASSERT_EQ(map.columns[0].size(), 100U);
-  double readings = 0.0;
-  for (const float count : map.columns[2]) readings += count;
-  EXPECT_NEAR(readings, 1536.0, 16.0);
-  EXPECT_EQ(map.json["x_edges"].size(), 11U);
-  EXPECT_EQ(page().ask("map", {{"x", "x"}, {"y", "z"}, {"bins", 1000}}).status, 400);
+TEST_F(WorkbenchOnACampaign, DrawsWavesAndMeaning) {
   const Json waves = page().told("periodogram", {{"variable", "x"}});
   EXPECT_EQ(waves["period"].size(), waves["power"].size());
   EXPECT_TRUE(page().told("polar")["circles"].empty()) << "no bar was in use";

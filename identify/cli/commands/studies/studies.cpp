@@ -11,7 +11,8 @@ namespace volcal::cli {
   STUDY(compensation_study_command) \
   STUDY(criticism_study)            \
   STUDY(effect_tables_command)      \
-  STUDY(planning_study_command)
+  STUDY(planning_study_command)     \
+  STUDY(previews_study)
 
 #define VOLCAL_DECLARE_STUDY(name) const Command& name();
 #define VOLCAL_ADDRESS_OF_STUDY(name) &(name)(),

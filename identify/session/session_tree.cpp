@@ -1,0 +1,239 @@
+#include "volcal/identify/session/session_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "volcal/identify/criticism/search/ladder.h"
+#include "volcal/identify/solve/adjustment.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/solve/normals/datum.h"
+#include "volcal/model/effects/registry.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kShareOfFit = 0.6;    // of the time of a full step
+constexpr double kShareOfNoise = 0.9;  // with that of the noise
+
+void tell(const SessionProgress& progress, const std::string& stage, double done) {
+  if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
+}
+
+FitOptions fit_options(int threads, const SessionProgress& progress) {
+  FitOptions options;
+  options.threads = threads;
+  options.outliers = OutlierPolicy::Remove;
+  options.noise = NoisePolicy::White;  // found with the tests, as in a diagnosis
+  options.progress = [progress](const std::string& stage, double done) {
+    tell(progress, stage, kShareOfFit * done);
+  };
+  return options;
+}
+
+double mean_noise_variance(const ModelState& state) {
+  double sum = 0.0, count = 0.0;
+  for (const double variance : noise_variance(state.model().problem().data, state.noise())) {
+    if (!std::isfinite(variance)) continue;
+    sum += variance;
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+}  // namespace
+
+Session::Fitted::Fitted(std::shared_ptr<const Campaign> campaign, FitResult result, ModelState state)
+    : campaign_(std::move(campaign)),
+      result_(std::move(result)),
+      setting_(state.shared_setting()),
+      noise_estimate_(state.noise_estimate()),
+      noise_(state.noise()),
+      smoothing_(state.model().smoothing()),
+      variance_(volcal::noise_variance(state.model().problem().data, state.noise())),
+      noise_variance_(mean_noise_variance(state)),
+      kept_(std::move(state)) {
+  find_values();
+}
+
+/// Of all parameters at the noise and smoothing of the state: the fit itself takes the readings as
+/// independent.
+void Session::Fitted::find_values() {
+  const auto projector = projector_of_all_readings();
+  const DatumSpace datum(result_.layout, campaign_->machine, result_.parameters);
+  values_ = datum.raw(result_.adjustment->reduced + projector->solution());
+}
+
+ModelState Session::Fitted::state() const {
+  const std::lock_guard lock(mutex_);
+  if (!kept_)
+    kept_.emplace(LinearModel(*campaign_, result_).with_smoothing(smoothing_), setting_, noise_estimate_);
+  return *kept_;
+}
+
+std::shared_ptr<const Projector> Session::Fitted::projector_of_all_readings() const {
+  const ModelState own = state();
+  const std::lock_guard lock(mutex_);
+  if (!all_readings_) all_readings_ = own.projector_of_all_readings();
+  return all_readings_;
+}
+
+void Session::Fitted::let_go() const {
+  const std::lock_guard lock(mutex_);
+  kept_.reset();
+  all_readings_.reset();
+}
+
+bool Session::Fitted::is_kept() const {
+  const std::lock_guard lock(mutex_);
+  return kept_.has_value();
+}
+
+EffectFinding Session::Fitted::fitted(const EffectFinding& added) const {
+  EffectFinding out;
+  out.name = added.name;
+  out.label = added.label;
+  out.spec = added.spec;
+  const auto projector = projector_of_all_readings();
+  const DatumSpace datum(result_.layout, campaign_->machine, result_.parameters);
+  for (const EffectSpec& spec : result_.identified.effects) {
+    const auto effect = find_effect(spec.kind)->make(spec, {});
+    if (effect->name() != added.name) continue;
+    out.spec = spec;
+    for (const EffectAmplitude& amplitude : effect->amplitudes()) {
+      const ParameterBlock* block = result_.layout.find_block(amplitude.label);
+      if (block == nullptr) continue;  // one of the coefficients of a surface
+      Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, result_.parameters.size());
+      row(0, block->offset) = 1.0;
+      const double value = values_[block->offset];
+      const double u = std::sqrt(projector->prediction_variance(datum.reduce_rows(row))[0]);
+      out.amplitudes.push_back({amplitude.label, value, u, std::numeric_limits<double>::quiet_NaN(),
+                                amplitude.unit(), amplitude.si_per_unit()});
+      amplitude.keep(value, out.spec.options);
+    }
+  }
+  return out;
+}
+
+ModelState Session::Recipe::make() const {
+  ModelState state = base->state();
+  if (state.shared_setting() != setting) state = state.with_setting(setting);
+  for (const FamilyTest& test : added) state = state.with_at_this_noise(test);
+  return state;
+}
+
+const CatalogueTests& Session::SharedTests::get() {
+  const std::lock_guard lock(mutex_);
+  if (!made_) {
+    made_.emplace(make_());
+    make_ = {};
+  }
+  return *made_;
+}
+
+Session::Node::Node(std::shared_ptr<const Fitted> fitted, std::vector<EffectFinding> added)
+    : effects(std::move(added)) {
+  const auto setting = fitted->setting();
+  becomes({std::move(fitted), setting, {}});
+}
+
+void Session::Node::becomes(Recipe other) {
+  recipe = std::move(other);
+  tests = std::make_shared<SharedTests>([own = recipe] { return CatalogueTests(own.make()); });
+  ranking.reset();
+  unknown.reset();
+  drawn.clear();
+  residual.reset();
+  let_go();
+}
+
+const ModelState& Session::Node::state() const {
+  if (!state_) state_ = recipe.make();
+  return *state_;
+}
+
+void Session::Node::with_setting(std::shared_ptr<const SearchSetting> setting) {
+  state_ = state().with_setting(setting);
+  recipe.setting = std::move(setting);
+  tests = std::make_shared<SharedTests>(tests->get().with_more(*state_));
+  ranking.reset();
+}
+
+Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding) const {
+  Node next(recipe.base, effects);
+  next.effects.push_back(std::move(finding));
+  next.recipe = recipe;
+  next.recipe.added.push_back(test);
+  next.state_ = state().with_at_this_noise(test);
+  const Eigen::MatrixXd& columns = next.state_->added().back().columns;
+  const auto accepting = [&](const std::shared_ptr<const Projector>& projector) {
+    auto more = std::make_shared<Projector>(*projector);
+    more->accept(columns);
+    return more;
+  };
+  next.all_readings = accepting(of_all_readings());
+  if (at_least) {
+    next.at_least = accepting(at_least);
+    next.least = least;
+  }
+  next.tests = std::make_shared<SharedTests>([before = recipe, of_before = tests, after = next.recipe] {
+    return of_before->get().of_next(before.make(), after.make());
+  });
+  return next;
+}
+
+std::shared_ptr<const Projector> Session::Node::of_all_readings() const {
+  if (all_readings) return all_readings;
+  auto projector = recipe.base->projector_of_all_readings();
+  if (recipe.added.empty()) return projector;
+  auto more = std::make_shared<Projector>(*projector);
+  for (const AddedEffect& added : state().added()) more->accept(added.columns);
+  all_readings = std::move(more);
+  return all_readings;
+}
+
+void Session::Node::let_go() {
+  state_.reset();
+  scanned.reset();
+  previewed.clear();
+  at_least.reset();
+  least.reset();
+  all_readings.reset();
+}
+
+/// Of the models before. Those that stand on one fit share its projector.
+std::vector<LadderStep> Session::Fitting::figures_at(const std::vector<NoiseParameters>& noise) const {
+  std::map<const Fitted*, std::shared_ptr<const Projector>> of_fits;
+  std::vector<LadderStep> figures;
+  for (const Recipe& recipe : before) {
+    const bool was_kept = recipe.base->is_kept();
+    const ModelState state = recipe.make();
+    std::shared_ptr<const Projector>& of_fit = of_fits[recipe.base.get()];
+    if (!of_fit) of_fit = recipe.base->state().projector_at(noise);
+    Projector projector = *of_fit;
+    for (const AddedEffect& added : state.added()) projector.accept(added.columns);
+    figures.push_back(last_step_at(state, noise, projector));
+    if (!was_kept) recipe.base->let_go();
+  }
+  return figures;
+}
+
+Session::FittedModel Session::Fitting::operator()(const std::shared_ptr<const Campaign>& campaign,
+                                                  const ModelSpec& model,
+                                                  const SessionProgress& progress) const {
+  FitResult result = fit(*campaign, model, fit_options(options.threads, progress));
+  tell(progress, "noise", kShareOfFit);
+  const LinearModel linear(*campaign, result);
+  auto setting = std::make_shared<const SearchSetting>(linear, heldout_lines(linear, options.heldout_share),
+                                                       std::vector<std::string>{}, options.threads, own);
+  auto fitted =
+      std::make_shared<const Fitted>(campaign, std::move(result), ModelState(linear, std::move(setting)));
+  tell(progress, "models against this noise", kShareOfNoise);
+  std::vector<LadderStep> figures;
+  if (fitted->noise_variance() < least_variance) figures = figures_at(fitted->noise());
+  tell(progress, "done", 1.0);
+  return {std::move(fitted), std::move(figures)};
+}
+
+}  // namespace volcal

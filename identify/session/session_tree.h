@@ -1,0 +1,131 @@
+#pragma once
+/// What stands behind the models of a session's tree. Of a full fit stays what it found; the linear model
+/// about it, some hundred bytes a reading and parameter, is let go of and made again, to the bit.
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/identify/criticism/search/model_tests.h"
+#include "volcal/identify/session/session.h"
+
+namespace volcal {
+
+/// A model by a full fit, and what tests stand on. For several threads at once.
+class Session::Fitted {
+ public:
+  Fitted(std::shared_ptr<const Campaign> campaign, FitResult result, ModelState state);
+
+  const std::shared_ptr<const Campaign>& campaign() const { return campaign_; }
+  const FitResult& result() const { return result_; }
+  double noise_variance() const { return noise_variance_; }  ///< mean over the readings in use
+  /// Per observation; infinite: left out.
+  const std::vector<double>& variance() const { return variance_; }
+  const std::vector<NoiseParameters>& noise() const { return noise_; }
+  const std::shared_ptr<const SearchSetting>& setting() const { return setting_; }
+  /// As it was, kept from here on.
+  ModelState state() const;
+  /// Off its model, from all readings, those that are held out as well.
+  std::shared_ptr<const Projector> projector_of_all_readings() const;
+  /// Effects of the model as this fit found them, at the noise that it leaves.
+  EffectFinding fitted(const EffectFinding& added) const;
+  void let_go() const;
+  bool is_kept() const;
+
+ private:
+  void find_values();
+
+  std::shared_ptr<const Campaign> campaign_;
+  FitResult result_;
+  std::shared_ptr<const SearchSetting> setting_;
+  NoiseEstimate noise_estimate_;
+  std::vector<NoiseParameters> noise_;
+  std::vector<SmoothingTerm> smoothing_;
+  std::vector<double> variance_;
+  double noise_variance_;
+  Eigen::VectorXd values_;  ///< of all parameters, SI
+  mutable std::mutex mutex_;
+  mutable std::optional<ModelState> kept_;
+  mutable std::shared_ptr<const Projector> all_readings_;
+};
+
+/// How a model is made: of a full fit, and effects that were added since.
+struct Session::Recipe {
+  std::shared_ptr<const Fitted> base;
+  std::shared_ptr<const SearchSetting> setting;
+  std::vector<FamilyTest> added;
+
+  ModelState make() const;
+};
+
+/// Tests of a model, made once by whoever asks first, in whichever thread; others wait for them.
+class Session::SharedTests {
+ public:
+  using Make = std::function<CatalogueTests()>;
+  explicit SharedTests(Make make) : make_(std::move(make)) {}
+  explicit SharedTests(CatalogueTests made) : made_(std::move(made)) {}
+  const CatalogueTests& get();
+
+ private:
+  std::mutex mutex_;
+  Make make_;
+  std::optional<CatalogueTests> made_;
+};
+
+/// What stands behind a model of the tree.
+struct Session::Node {
+  Recipe recipe;
+  std::vector<EffectFinding> effects;  ///< added to the given model
+  std::shared_ptr<SharedTests> tests;
+  std::optional<std::vector<EffectFinding>> ranking;
+  std::optional<ModelState> scanned;                   ///< the state with all tests, once asked for
+  std::optional<std::vector<UnknownFinding>> unknown;  ///< of that
+  bool unknown_leads = false;
+  std::vector<MeasurementProposal> proposals;
+  std::vector<SurfaceFinding> drawn;                ///< for some of these
+  std::map<EffectName, Eigen::VectorXd> previewed;  ///< residuals with an effect in the model
+  std::optional<Eigen::VectorXd> residual;
+  /// At the least noise of a full fit, from readings that are not held out; and that fit.
+  std::shared_ptr<const Projector> at_least;
+  std::shared_ptr<const Fitted> least;
+  mutable std::shared_ptr<const Projector> all_readings;  ///< the same from all readings at the model's noise
+
+  Node(std::shared_ptr<const Fitted> fitted, std::vector<EffectFinding> added);
+  /// With another recipe.
+  void becomes(Recipe other);
+  /// With a further effect, whose test was found here.
+  Node with(const FamilyTest& test, EffectFinding finding) const;
+  /// With more effects of the user's own in the catalogue.
+  void with_setting(std::shared_ptr<const SearchSetting> setting);
+  const ModelState& state() const;
+  std::shared_ptr<const Projector> of_all_readings() const;
+  /// What can be made again.
+  void let_go();
+  std::size_t in_base() const { return effects.size() - recipe.added.size(); }
+
+ private:
+  mutable std::optional<ModelState> state_;
+};
+
+/// A fit, and where its noise is the least so far the figures of the models before against that noise.
+struct Session::FittedModel {
+  std::shared_ptr<const Fitted> fitted;
+  std::vector<LadderStep> figures;
+};
+
+/// What full fits need, apart from the session.
+struct Session::Fitting {
+  SessionOptions options;
+  std::vector<EffectSpec> own;
+  std::vector<Recipe> before;  ///< models of the tree
+  double least_variance;       ///< of these
+
+  std::vector<LadderStep> figures_at(const std::vector<NoiseParameters>& noise) const;
+  FittedModel operator()(const std::shared_ptr<const Campaign>& campaign, const ModelSpec& model,
+                         const SessionProgress& progress) const;
+};
+
+}  // namespace volcal

@@ -41,6 +41,6 @@ export async function open(browser, url, { width, height, scheme = 'light', moti
   page.on('console', (message) => { if (message.type() === 'error' && !quiet.on && !/status of [45]\d\d/.test(message.text())) fault(`the page says: ${message.text()}`); });
   page.on('response', async (response) => { if (response.status() >= 500) fault(`${response.url()} answers ${response.status()}: ${await response.text().catch(() => '')}, asked ${response.request().postData()}`); });
   page.on('request', (request) => { if (!request.url().startsWith(`http://${home}/`) && !/^(data|blob):/.test(request.url())) fault(`the page asks for ${request.url()}`); });
-  await page.goto(url);
+  await page.goto(url, { timeout: kStart });
   return { context, page, quiet };
 }

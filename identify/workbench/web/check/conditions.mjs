@@ -1,5 +1,5 @@
 // The page under other conditions: narrow, dark, printed, with another tab, with bad input, without its program.
-import { cp, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { cp, mkdtemp, readdir, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { open } from './browser.mjs';
@@ -82,6 +82,60 @@ export async function badInput(story, fault) {
   await context.close();
   program.child.kill();
   await rm(folder, { recursive: true, force: true });
+}
+
+/** What would run if a name were taken for markup: it would change the title of the page. */
+const markup = (what) => `<img src=x onerror=document.title=${what}>`;
+
+/** The campaign with a folder, machine, set-ups, a station and a temperature that are called so. */
+async function calledByMarkup(story) {
+  const folder = path.join(await mkdtemp(path.join(tmpdir(), 'volcal-story-')), markup('folder'));
+  await cp(path.dirname(story.campaign), folder, { recursive: true, filter: (from) => !from.endsWith('workbench') });
+  const file = path.join(folder, path.basename(story.campaign));
+  const rewritten = async (name, change) => writeFile(path.join(folder, name), change(await readFile(path.join(folder, name), 'utf8')));
+  await rewritten(path.basename(file), (text) => text.replace(/^name = "([^"]*)"/gm, (_, name) => `name = "${markup('setup')} ${name}"`).replace(/^station = "P2"/gm, `station = "${markup('station')}"`));
+  await rewritten('machine.toml', (text) => text.replace(/^name = .*/m, `name = "${markup('machine')}"`));
+  for (const name of await readdir(folder)) if (name.endsWith('.csv')) await rewritten(name, (text) => text.replace('T_column_degC', `T_${markup('column')}_degC`));
+  return file;
+}
+
+/** Names are texts, whatever stands in them: of campaign, machine, set-ups, columns and effects, and of what was added. */
+export async function namesWithMarkup(story, fault) {
+  const file = await calledByMarkup(story);
+  const program = story.startOn(file);
+  program.child.on('exit', () => {});
+  const { page, context } = await open(story.browser, await program.url, story.wide, fault);
+  await ranked(page);
+  const title = await page.title();
+  for (const what of ['folder', 'machine', 'setup']) if (await page.locator('body').evaluate((body, text) => !(body.innerText + [...body.querySelectorAll('[title], option')].map((node) => node.title + node.textContent).join()).includes(text), markup(what))) fault(`the name of the ${what} is not shown as it is written`);
+  const variables = await page.locator('.lens').first().locator('select').nth(1).locator('option').evaluateAll((list) => list.map(({ value, textContent }) => [value, textContent]));
+  const column = variables.find(([value]) => value.includes(markup('column')));
+  if (!column) fault('the column with markup in its name cannot be chosen');
+  else await page.locator('.lens').first().locator('select').nth(1).selectOption(column[0]);
+  await page.locator('.suspects details summary').evaluateAll((list) => list.forEach((node) => node.click()));
+  await page.waitForTimeout(500);
+  const named = page.locator('.suspect, .not-visible li').filter({ hasText: markup('column') });
+  if (await named.count() === 0) fault('no effect of the column with markup in its name is listed');
+  else await named.first().hover();
+  await page.waitForTimeout(500);
+  const called = page.locator('.suspect').filter({ has: page.locator('.title b', { hasText: markup('column') }) });
+  const add = called.locator('.add[aria-disabled="false"]').first();
+  const chips = await page.locator('.chip').count();
+  if (await add.count() > 0) {
+    await add.click();
+    await until(page, (n) => document.querySelectorAll('.chip').length > n, chips);
+    if (!(await page.locator('.chip').last().textContent()).includes(markup('column'))) fault('the model is not called by what was added');
+  }
+  await page.locator('.drawn-ladder summary').click();
+  await page.getByRole('combobox', { name: 'Formula' }).fill(`EXX += dir_x * ${markup('formula')}`);
+  await page.locator('.problem').waitFor();
+  await page.waitForTimeout(800);
+  await shot(page, story, 'markup');
+  if (await page.title() !== title) fault(`markup in the name of the ${await page.title()} was run`);
+  if (await page.locator('img').count() > 0) fault('a name became an element');
+  await context.close();
+  program.child.kill();
+  await rm(path.dirname(path.dirname(file)), { recursive: true, force: true });
 }
 
 export async function serverGone(story, fault) {

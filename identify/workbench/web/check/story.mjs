@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { browserOf, open, start } from './browser.mjs';
 import { aloneWithKeys } from './keyboard.mjs';
-import { badInput, looks, serverGone, twoTabs } from './conditions.mjs';
+import { badInput, looks, namesWithMarkup, serverGone, twoTabs } from './conditions.mjs';
 import { steps } from './steps.mjs';
 
 const [chromium, modules, out, campaign, command, ...given] = process.argv.slice(2);
@@ -46,6 +46,7 @@ for (const [name, view] of Object.entries(looks)) await chapter(name, (fault) =>
 await chapter('keyboard alone', (fault) => aloneWithKeys(story, fault));
 await chapter('two tabs', (fault) => { current = fault; return twoTabs(story, fault); });
 await chapter('bad input, then mended', (fault) => { current = fault; return badInput(story, fault); });
+if (command !== 'node') await chapter('names with markup', (fault) => { current = fault; return namesWithMarkup(story, fault); });
 await chapter('server gone', (fault) => { current = fault; return serverGone(story, fault); });
 await browser.close();
 program.child.kill();

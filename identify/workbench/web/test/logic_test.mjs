@@ -6,7 +6,7 @@ import { readFrame, writeFrame } from '../src/api/frames.js';
 import { indices, mark, meanOf, sharedValue, standOut } from '../src/data/selection.js';
 import { binIndex, histogram, magnitudeQuantile, meansInBins, numberLines, rangeOf, standardisedDifference } from '../src/data/statistics.js';
 import { sketchOf } from '../src/data/sketch.js';
-import { surfaceData } from '../src/data/surface.js';
+import { outlineOf, surfaceData } from '../src/data/surface.js';
 import { treeOf } from '../src/data/tree.js';
 import { directionWords, stepsOf, unitText, variablesOf } from '../src/data/variables.js';
 import { linear, niceTicks } from '../src/draw/scale.js';
@@ -131,6 +131,12 @@ test('a surface is drawn with the names and units of its variables, its largest 
   assert.equal(data.largest, -5);
   assert.equal(data.largest_U95, 2);
   assert.equal(data.axes[0].title, 'X [mm]');
+});
+
+test('a bump is outlined where half of it is left, at the edge of the drawing where it does not fall', () => {
+  const bump = { places: [[-20, -10, 0, 10, 20], [1, 2, 3]], value: [0, -1, -1, 0, -3, -3, 0, -4, -2, 0, -1.9, -2, 0, 0, 0], u95: Array(15).fill(0.5) };
+  assert.deepEqual(outlineOf(bump), { largest: -4, u95: 0.5, at: [0, 2], from: [-10, 2], to: [0, 3] });
+  assert.deepEqual(outlineOf({ places: [[0, 1, 2]], value: [1, 2, 0.5], u95: [1, 1, 1] }), { largest: 2, u95: 1, at: [1], from: [0], to: [1] });
 });
 
 test('an effect is sketched by its kind, one that has no known shape is not', () => {

@@ -141,7 +141,7 @@ export class Session {
   unknown() {
     const own = this.now().names;
     const unknown = own.includes('empirical:y:x:z') || own.some((name) => name.startsWith('formula:')) ? [] : [{ number: 0, label: 'something that depends on x and z along Y', variables: ['x', 'z'], direction: 'Y', rms_um: 0.42, p: '1e-40', period_mm: null }];
-    return { model: this.current, ready: true, unknown_leads: true, unknown, drawn: this.drawn[this.current] ?? [] };
+    return { model: this.current, ready: true, unknown_leads: true, unknown, drawn: this.drawn[this.current] ?? [], next: unknown.length === 0 ? [] : ['Measure Y once more from both sides at z = -260 mm: it halves the uncertainty of the surface.'] };
   }
 
   preview(effect, more = {}, columns = {}) {
@@ -180,7 +180,7 @@ export class Session {
 
   meaning() {
     const { systematic_um: left } = this.now().figures;
-    return { rms_um: 14.2, share: [['squareness', 9.1, 41], ['positioning', 7.2, 26], ['angles', 6, 18], ['straightness', 3.3, 8], ...this.now().effects.map((effect) => [effect.label, 1.2, 3])].map(([label, um, percent]) => ({ label, um, u95_um: 0.1 * um, percent })), tool: 'short', not_in_volume: [], left: { before_um: 14.2, by_uncertainty_um: left, by_time_and_temperature_um: 0.8, held_by_no_table: ['thermal EXX'] }, detectable: catalogue.filter((effect) => !effect.hidden).map((effect) => ({ kind: effect.name, label: effect.label, detectable: this.scored(effect).mdb, unit: effect.unit })), next: ['Measure Y once more from both sides at z = -260 mm: it halves the uncertainty of the surface.'] };
+    return { rms_um: 14.2, share: [['squareness', 9.1, 41], ['positioning', 7.2, 26], ['angles', 6, 18], ['straightness', 3.3, 8], ...this.now().effects.map((effect) => [effect.label, 1.2, 3])].map(([label, um, percent]) => ({ label, um, u95_um: 0.1 * um, percent })), tool: 'short', not_in_volume: [], left: { before_um: 14.2, by_uncertainty_um: left, by_time_and_temperature_um: 0.8, held_by_no_table: ['thermal EXX'] }, detectable: catalogue.filter((effect) => !effect.hidden).map((effect) => ({ kind: effect.name, label: effect.label, detectable: this.scored(effect).mdb, unit: effect.unit })) };
   }
 
   moved(number) {

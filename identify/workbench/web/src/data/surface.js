@@ -30,3 +30,21 @@ export function surfaceData(surface, variables) {
     value: surface.value, U95: surface.u95, at: placeOf(at, places), largest: surface.value[at], largest_U95: surface.u95[at], formulas: [],
   };
 }
+
+/** Where a surface or curve is largest, and how far at least half of that reaches along every driver. */
+export function outlineOf(surface) {
+  const places = surface.places.slice(0, 2);
+  const best = largestAt(surface.value);
+  const inner = places.length > 1 ? places[1].length : 1;
+  const at = places.length > 1 ? [Math.floor(best / inner), best % inner] : [best];
+  const valueAt = (index) => surface.value[places.length > 1 ? index[0] * inner + index[1] : index[0]];
+  const reach = (axis, step) => {
+    const index = [...at];
+    while (index[axis] + step >= 0 && index[axis] + step < places[axis].length) {
+      index[axis] += step;
+      if (valueAt(index) / surface.value[best] < 0.5) return places[axis][index[axis] - step];
+    }
+    return places[axis][index[axis]];
+  };
+  return { largest: surface.value[best], u95: surface.u95[best], at: at.map((k, axis) => places[axis][k]), from: at.map((_, axis) => reach(axis, -1)), to: at.map((_, axis) => reach(axis, 1)) };
+}

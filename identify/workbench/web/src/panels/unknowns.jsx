@@ -6,7 +6,7 @@ import { add, addFormula, draw } from '../app/actions.js';
 import { lookAlong, shiftOf } from '../app/pictures.js';
 import { chance } from '../app/sentences.js';
 import { busy, currentModel, mayAct, state, surfaces, variables } from '../app/store.js';
-import { surfaceData } from '../data/surface.js';
+import { outlineOf, surfaceData } from '../data/surface.js';
 import { unitText } from '../data/variables.js';
 import { Drawing, words } from './parts.jsx';
 
@@ -28,11 +28,22 @@ function Formula({ formula }) {
   );
 }
 
+/** What the picture shows, in words. */
+function Outline({ surface }) {
+  const { largest, u95, at, from, to } = outlineOf(surface);
+  const drivers = surfaceData(surface, variables.value).axes.map(({ name, title }) => ({ name, unit: title.match(/\[(.*)\]/)?.[1] ?? '' }));
+  const placed = (k, value) => `${significant(value, 3)}${drivers[k].unit ? ` ${drivers[k].unit}` : ''}`;
+  return (
+    <p class="outline">Largest <b>{significant(largest, 3)} ± {significant(u95, 2)} {unitText(surface.unit)}</b> at {drivers.map(({ name }, k) => `${name} = ${placed(k, at[k])}`).join(', ')}; at least half of it {drivers.map(({ name }, k) => `from ${name} = ${placed(k, from[k])} to ${placed(k, to[k])}`).join(' and ')}.</p>
+  );
+}
+
 function Surface({ surface }) {
   const [figures, setFigures] = useState([]);
   useEffect(() => setFigures(surfaceFigures(surfaceData(surface, variables.value))), [surface]);
   return (
     <div class="surface-drawn">
+      <Outline surface={surface} />
       {figures.slice(0, 1).map((figure) => <Figure key={figure.caption} figure={figure} />)}
       <button type="button" class="primary" disabled={!mayAct.value} onClick={() => add(surface.name)}>Add the {surface.drivers.length > 1 ? 'surface' : 'curve'}</button>
       {figures.slice(1).map((figure) => <Figure key={figure.caption} figure={figure} />)}

@@ -3,7 +3,7 @@ import { useEffect, useState } from 'preact/hooks';
 import { fixed, significant } from '../../../../report/web/src/dom.js';
 import { latest, NoAnswer, Refusal } from '../api/call.js';
 import { act, report } from '../app/actions.js';
-import { busy, currentModel, exported, mayAct, modelName, state } from '../app/store.js';
+import { busy, currentModel, exported, mayAct, modelName, state, unknowns } from '../app/store.js';
 import { unitText } from '../data/variables.js';
 import { words } from '../panels/parts.jsx';
 
@@ -53,6 +53,19 @@ function Detectable({ effects }) {
   );
 }
 
+/** What tells apart what these readings do not, or shows what they cannot; found with what has no name. */
+function Next() {
+  const found = unknowns.value?.model === state.value.current && unknowns.value.ready ? unknowns.value.next : null;
+  return (
+    <div>
+      <h3>What to measure next</h3>
+      {!found && <p class="muted">It is being looked for.</p>}
+      {found?.length === 0 && <p class="muted">No further measurement is called for.</p>}
+      {found?.length > 0 && <ul class="plain-list next-measurements">{found.map((sentence) => <li key={sentence}>{words(sentence)}</li>)}</ul>}
+    </div>
+  );
+}
+
 export function Meaning() {
   const { got, stale } = useMeaning();
   const model = currentModel.value;
@@ -65,7 +78,7 @@ export function Meaning() {
         <div class={`three ${stale ? 'is-stale' : ''}`}>
           <Volume got={got} />
           <Detectable effects={got.detectable ?? []} />
-          {got.next && <div><h3>What to measure next</h3><ul class="plain-list">{got.next.map((sentence) => <li key={sentence}>{words(sentence)}</li>)}</ul>{got.next.length === 0 && <p class="muted">No further measurement is called for.</p>}</div>}
+          <Next />
         </div>
       )}
     </section>

@@ -4,17 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "volcal/model/kinematics/location_sign.h"
+
 namespace volcal {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Sign of a rotary location error in the tool's motion relative to the workpiece: it is stated for the
-/// physical axis line in the machine frame, and a table's axis line moves with the workpiece.
 double location_sign(const JointLever& lever, Component component) {
-  const bool zero_position = is_rotation(component) && direction_of(component) == direction_of(lever.axis);
-  return lever.workpiece_side && !zero_position ? -1.0 : 1.0;
+  return rotary_location_sign(lever.workpiece_side, lever.axis, component);
 }
 
 /// rotation_about() of a nominal angle, the same to the bit, with one sine and cosine.

@@ -9,6 +9,7 @@
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/functions/legendre_polynomials.h"
+#include "volcal/model/kinematics/location_sign.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
@@ -118,16 +119,16 @@ std::unique_ptr<Effect> squareness(LocationSymbol location) {
 /// A location error of a rotary axis: a constant motion of it (chain.h).
 std::unique_ptr<Effect> axis_location(const Machine& machine, LocationSymbol location) {
   const auto joint = std::ranges::find(machine.structure.joints, location.axis, &Joint::axis);
-  const bool turned =
-      joint->workpiece_side && direction_of(location.component) != direction_of(location.axis);
+  const double sign = rotary_location_sign(joint->workpiece_side, location.axis, location.component);
   return std::make_unique<FormulaEffect>(
       EffectName{kLeftOut, location.name(), std::string(1, lower_letter_of(location.axis)), "location"},
       std::vector<EffectAmplitude>{
           {.label = location.name() + " left out",
            .target = {.kind = TargetKind::Motion, .symbol = {location.component, location.axis}},
            .key = "amplitude_" + std::string(edge_unit(location.component))}},
-      [sign = turned ? -1.0 : 1.0](const SetupView& view, const Eigen::VectorXd& /*shape*/)
-          -> Eigen::MatrixXd { return constant(view, sign); },
+      [sign](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return constant(view, sign);
+      },
       [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
 }
 

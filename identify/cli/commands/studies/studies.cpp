@@ -11,6 +11,7 @@ namespace volcal::cli {
   STUDY(compensation_study_command) \
   STUDY(criticism_study)            \
   STUDY(effect_tables_command)      \
+  STUDY(five_axis_study_command)    \
   STUDY(planning_study_command)     \
   STUDY(previews_study)
 

@@ -1,0 +1,266 @@
+#include "volcal/studies/five_axis.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "volcal/identify/errors/error_field.h"
+#include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/result/result.h"
+#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
+#include "volcal/model/description/unknowns.h"
+#include "volcal/studies/five_axis_campaign.h"
+
+namespace volcal::cli {
+namespace {
+
+constexpr std::uint64_t kNoiseSeed = 500000, kPoseSeed = 900000;
+constexpr double kResidualLength = 1e-6;  // m, of linear axes
+constexpr double kResidualAngle = 2e-6;   // rad
+
+/// Rotary errors alone: linear axes are known.
+ModelSpec rotary_errors(const Machine& machine) {
+  ModelSpec model;
+  for (const ErrorSymbol symbol : linear_axis_motions(machine)) model.functions[symbol].basis = "zero";
+  model.locations_off = squareness_errors(machine);
+  return model;
+}
+
+ModelSpec rotary_locations(const Machine& machine) {
+  ModelSpec model = rotary_errors(machine);
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) continue;
+    for (const Component component : kAllComponents) model.functions[{component, axis.name}].basis = "zero";
+  }
+  return model;
+}
+
+FitResult identified_by(const Campaign& campaign, const ModelSpec& model) {
+  FitOptions options;
+  options.threads = 1;
+  return fit(campaign, model, options);
+}
+
+/// What the datums of a set-up leave of errors less prediction, with the prediction's covariance.
+struct Judged {
+  double rms = 0.0;
+  double coverage = 0.0;
+};
+
+class FreshJudge {
+ public:
+  FreshJudge(const sim::TruthMachine& truth, std::uint64_t seed)
+      : truth_(truth),
+        poses_(fresh_poses(truth.machine(), seed)),
+        datums_(setup_datums(truth.machine(), poses_)),
+        errors_(datums_.rows()) {
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose)
+      errors_.segment<3>(row(pose)) =
+          truth.point_error(state_of(poses_[pose].position, poses_[pose].tool), tool_of(pose).offset);
+  }
+
+  double before() const { return rms_of(freed(errors_)); }
+
+  Judged of(const FitResult& result) const {
+    std::vector<ErrorField> fields;
+    for (const Tool& tool : truth_.machine().tools) fields.emplace_back(result, tool);
+    Eigen::MatrixXd rows(errors_.size(), result.layout.size);
+    for (std::size_t pose = 0; pose < poses_.size(); ++pose)
+      rows.middleRows<3>(row(pose)) = fields[poses_[pose].tool].rows(poses_[pose].position).topRows<3>();
+    rows -= datums_ * (datums_.transpose() * rows).eval();
+    const Eigen::VectorXd left = freed(errors_) - rows * result.parameters;
+    const Eigen::VectorXd variance = (rows * result.covariance).cwiseProduct(rows).rowwise().sum();
+    const auto inside = (left.array().abs() <= kCoverageFactor * variance.array().max(0.0).sqrt()).count();
+    return {rms_of(left), static_cast<double>(inside) / static_cast<double>(left.size())};
+  }
+
+ private:
+  static Eigen::Index row(std::size_t pose) { return 3 * static_cast<Eigen::Index>(pose); }
+  const Tool& tool_of(std::size_t pose) const { return truth_.machine().tools[poses_[pose].tool]; }
+  Eigen::VectorXd freed(const Eigen::VectorXd& values) const {
+    return values - datums_ * (datums_.transpose() * values).eval();
+  }
+  double rms_of(const Eigen::VectorXd& values) const {
+    return std::sqrt(values.squaredNorm() / static_cast<double>(poses_.size()));
+  }
+
+  const sim::TruthMachine& truth_;
+  std::vector<FreshPose> poses_;
+  Eigen::MatrixXd datums_;
+  Eigen::VectorXd errors_;
+};
+
+FiveAxisCampaign counted(const FiveAxisStudyOptions& options, int number) {
+  FiveAxisCampaign campaign;
+  campaign.structure =
+      five_axis_structures()[static_cast<std::size_t>(number) % five_axis_structures().size()];
+  campaign.seed = options.seed + static_cast<std::uint64_t>(number);
+  const Machine machine = five_axis_machine(campaign.structure);
+  GridPlan plan;
+  plan.turns = options.turns;
+  plan.tilts = options.tilts;
+  const std::uint64_t noise = kNoiseSeed + campaign.seed, poses = kPoseSeed + campaign.seed;
+
+  const sim::TruthMachine alone = five_axis_truth(machine, {}, campaign.seed);
+  const FitResult of_alone = identified_by(r_test_campaign(alone, plan, noise), rotary_errors(machine));
+  const FreshJudge judge(alone, poses);
+  campaign.before = judge.before();
+  const Judged judged = judge.of(of_alone);
+  campaign.after = judged.rms;
+  campaign.coverage = judged.coverage;
+  campaign.chi2 = of_alone.sigma0 * of_alone.sigma0;
+
+  FiveAxisErrors beside;
+  beside.linear_displacement = kResidualLength;
+  beside.linear_rotation = kResidualAngle;
+  const sim::TruthMachine residual = five_axis_truth(machine, beside, campaign.seed);
+  const Campaign readings = r_test_campaign(residual, plan, noise);
+  const FreshJudge beside_judge(residual, poses);
+  campaign.before_beside = beside_judge.before();
+  const Judged judged_beside = beside_judge.of(identified_by(readings, rotary_errors(machine)));
+  campaign.after_beside = judged_beside.rms;
+  campaign.coverage_beside = judged_beside.coverage;
+  campaign.locations_only = beside_judge.of(identified_by(readings, rotary_locations(machine))).rms;
+
+  GridPlan cycle = plan;
+  cycle.spheres_w.resize(1);
+  cycle.tools = 1;
+  cycle.singly = true;
+  campaign.one_sphere_singly =
+      beside_judge.of(identified_by(r_test_campaign(residual, cycle, noise), rotary_locations(machine))).rms;
+  return campaign;
+}
+
+// ---- Finished campaigns, one line of JSON each
+
+constexpr std::array<std::pair<const char*, double FiveAxisCampaign::*>, 9> kFigures = {
+    {{"before", &FiveAxisCampaign::before},
+     {"after", &FiveAxisCampaign::after},
+     {"coverage", &FiveAxisCampaign::coverage},
+     {"chi2", &FiveAxisCampaign::chi2},
+     {"before_beside", &FiveAxisCampaign::before_beside},
+     {"after_beside", &FiveAxisCampaign::after_beside},
+     {"coverage_beside", &FiveAxisCampaign::coverage_beside},
+     {"locations_only", &FiveAxisCampaign::locations_only},
+     {"one_sphere_singly", &FiveAxisCampaign::one_sphere_singly}}};
+
+std::string line_of(const FiveAxisStudyOptions& options, int number, const FiveAxisCampaign& campaign) {
+  nlohmann::json json = {{"number", number},
+                         {"seed", campaign.seed},
+                         {"grid", {options.turns, options.tilts}},
+                         {"structure", campaign.structure}};
+  for (const auto& [name, member] : kFigures) {
+    json[name] = campaign.*member;
+  }
+  return json_text(json, -1);
+}
+
+/// Nothing for a line that a killed run left half written.
+std::optional<std::pair<int, FiveAxisCampaign>> campaign_of_line(const std::string& line,
+                                                                 const FiveAxisStudyOptions& options,
+                                                                 const SourcePlace& place) {
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  try {
+    const int number = json.at("number").get<int>();
+    FiveAxisCampaign campaign;
+    campaign.seed = json.at("seed").get<std::uint64_t>();
+    campaign.structure = json.at("structure").get<std::string>();
+    for (const auto& [name, member] : kFigures) {
+      campaign.*member = json.at(name).get<double>();
+    }
+    const bool same = campaign.seed == options.seed + static_cast<std::uint64_t>(number) &&
+                      json.at("grid") == nlohmann::json({options.turns, options.tilts});
+    if (same) return std::pair(number, campaign);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(place, "the line is no campaign of this study", "choose another folder");
+  }
+  throw InputError(place, "it holds campaigns of another seed or grid",
+                   "give the same, or choose another folder");
+}
+
+class FinishedCampaigns {
+ public:
+  explicit FinishedCampaigns(const FiveAxisStudyOptions& options) : options_(options) {
+    if (options.output.empty()) return;
+    path_ = std::filesystem::path(options.output) / "campaigns.jsonl";
+    std::filesystem::create_directories(options.output);
+    if (std::filesystem::exists(path_)) read();
+    file_.open(path_, std::ios::app);
+    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "choose another folder");
+  }
+
+  const FiveAxisCampaign* find(int number) const {
+    const auto found = finished_.find(number);
+    return found == finished_.end() ? nullptr : &found->second;
+  }
+
+  void append(int number, const FiveAxisCampaign& campaign) {
+    if (path_.empty()) return;
+    file_ << line_of(options_, number, campaign) << '\n' << std::flush;
+    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "make room on the disk");
+  }
+
+ private:
+  void read() {
+    if (!options_.resume)
+      throw InputError({path_.string(), 0}, "it holds the campaigns of an earlier run",
+                       "add --resume to go on with it, or choose another folder");
+    std::ifstream file(path_);
+    std::string line, complete;
+    for (int number = 1; std::getline(file, line) && !file.eof(); ++number) {
+      const auto campaign = campaign_of_line(line, options_, {path_.string(), number});
+      if (!campaign) continue;
+      finished_.insert(*campaign);
+      complete += line + '\n';
+    }
+    file.close();
+    std::ofstream(path_, std::ios::trunc) << complete;
+  }
+
+  const FiveAxisStudyOptions& options_;
+  std::filesystem::path path_;
+  std::ofstream file_;
+  std::map<int, FiveAxisCampaign> finished_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& five_axis_structures() {
+  static const std::vector<std::string> kStructures = {"w C' A' b X Y Z t", "w X' b Y Z C B t",
+                                                       "w C' X' b Y Z B t", "w C' B' b X Y Z t"};
+  return kStructures;
+}
+
+std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& options) {
+  FinishedCampaigns finished(options);
+  std::vector<FiveAxisCampaign> campaigns(static_cast<std::size_t>(options.campaigns));
+  std::vector<int> open;
+  for (int number = 0; number < options.campaigns; ++number) {
+    if (const FiveAxisCampaign* known = finished.find(number)) {
+      campaigns[static_cast<std::size_t>(number)] = *known;
+    } else {
+      open.push_back(number);
+    }
+  }
+  int done = options.campaigns - static_cast<int>(open.size());
+  std::mutex reporting;
+  run_parallel(open.size(), thread_count(options.threads), [&](std::size_t i) {
+    FiveAxisCampaign campaign = counted(options, open[i]);
+    const std::lock_guard lock(reporting);
+    finished.append(open[i], campaign);
+    campaigns[static_cast<std::size_t>(open[i])] = std::move(campaign);
+    if (options.progress) options.progress(++done, options.campaigns);
+  });
+  return campaigns;
+}
+
+}  // namespace volcal::cli

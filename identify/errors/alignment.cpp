@@ -9,6 +9,8 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/reversal_label.h"
+#include "volcal/model/kinematics/rotary_datum.h"
+#include "volcal/model/observation/measurement_model.h"
 
 namespace volcal {
 namespace {
@@ -19,9 +21,8 @@ using VectorRows = Eigen::Matrix<double, 3, Eigen::Dynamic>;  ///< a vector as f
 constexpr double kHolds = 1e-9;         // largest misfit of 1, or of a slope over the travel, in a basis
 constexpr double kSameOrigin = 1e-9;    // m
 constexpr double kLargestTilt = 10e-3;  // rad
-constexpr const char* kFitAnew =
-    "alignment turns the frame of linear axes alone; name the axes as datum and the origin as home_mm in the "
-    "machine file and fit again: a fit carries the lines of the rotary axes along";
+constexpr double kHeld = 1e-7;          // share of a displacement that locations and frames may leave
+constexpr int kAlignedPoses = 180;
 
 Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
@@ -50,8 +51,18 @@ Eigen::VectorXd straight_line(const Basis& basis, ErrorSymbol symbol, double val
   return coefficients;
 }
 
+bool is_of_rotary_axis(const ParameterBlock& block) {
+  return block.location && is_rotary(block.location->axis);
+}
+
 /// Parameters of the machine itself; the others belong to the campaign.
 bool belongs_to_machine(const ParameterBlock& block) { return block.kind != ParameterKind::Nuisance; }
+
+bool has_rotary_errors(const FitResult& result) {
+  return std::ranges::any_of(result.layout.groups,
+                             [](const FunctionGroup& group) { return is_rotary(group.axis); }) ||
+         std::ranges::any_of(result.layout.blocks, is_of_rotary_axis);
+}
 
 class Realignment {
  public:
@@ -68,7 +79,8 @@ class Realignment {
   AlignedResult aligned() {
     AlignedResult aligned{old_};
     FitResult& result = aligned.result;
-    const Eigen::MatrixXd jacobian = parameter_rows(result.layout);
+    Eigen::MatrixXd jacobian = parameter_rows(result.layout);
+    if (has_rotary_errors(old_)) carry_rotary_axes(result.layout, jacobian);
     const Eigen::Index size = old_.parameters.size();
     result.parameters = jacobian * extended();
     const Eigen::MatrixXd inner = jacobian.leftCols(size);
@@ -216,12 +228,18 @@ class Realignment {
     };
     for (const LocationSymbol symbol : machine_.datum.squareness()) append(location_block(symbol));
     for (const ParameterBlock& block : old_.layout.blocks) {
-      if (belongs_to_machine(block) && !block.location) append(block);
+      if (belongs_to_machine(block) && (!block.location || is_of_rotary_axis(block))) append(block);
     }
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(layout.size, columns());
     for (const FunctionGroup& group : layout.groups) {
-      for (int slot = 0; slot < group.count(); ++slot)
-        write_function(group.symbols[static_cast<std::size_t>(slot)], group, slot, rows);
+      for (int slot = 0; slot < group.count(); ++slot) {
+        if (is_rotary(group.axis)) {
+          for (int j = 0; j < group.basis->size(); ++j)
+            rows(group.index(j, slot), group.index(j, slot)) = 1.0;
+        } else {
+          write_function(group.symbols[static_cast<std::size_t>(slot)], group, slot, rows);
+        }
+      }
     }
     const std::array<Functional, 3> squareness = squareness_rows();
     for (std::size_t i = 0; i < 3; ++i) rows.row(layout.blocks[i].offset) = squareness[i];
@@ -233,11 +251,73 @@ class Realignment {
     return rows;
   }
 
-  void turn_tools() {
+  /// Displacements that the linear axes' new errors and the old ones differ by, three rows a point.
+  Eigen::MatrixXd displaced(const ParameterLayout& layout, const Eigen::MatrixXd& rows,
+                            const std::vector<PosedPoint>& points) const {
+    const KinematicChain chain(old_.machine), chain_now(machine_);
+    Eigen::MatrixXd displacements(3 * static_cast<Eigen::Index>(points.size()), columns());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const PosedPoint& at = points[i];
+      auto part = displacements.middleRows<3>(3 * static_cast<Eigen::Index>(i));
+      part = pose_error_rows(chain_now, layout, at.position, at.offset_t, at.position).topRows<3>() * rows;
+      part.leftCols(old_.parameters.size()) -=
+          pose_error_rows(chain, old_.layout, at.position, at.offset_t, at.position).topRows<3>();
+    }
+    return displacements;
+  }
+
+  /// The machine frame is that of the linear axes: the lines of rotary axes stand in it as the physical lines
+  /// do, and where the angles of linear axes changed at their origin the tools, or the lines of a head,
+  /// turned.
+  void carry_rotary_axes(const ParameterLayout& layout, Eigen::MatrixXd& rows) {
+    std::vector<LocationSymbol> lines;
+    std::vector<int> offsets;
+    for (const ParameterBlock& block : layout.blocks) {
+      if (!is_of_rotary_axis(block)) continue;
+      lines.push_back(*block.location);
+      offsets.push_back(block.offset);
+    }
+    const std::vector<PosedPoint> points = spread_points(machine_, kAlignedPoses);
+    const Eigen::MatrixXd missing = displaced(layout, rows, points);
+    const FrameChangeColumns change = frame_change_columns(machine_, lines, points);
+    const auto line_count = static_cast<Eigen::Index>(lines.size());
+    Eigen::MatrixXd moved(missing.rows(), line_count + 9);
+    moved << change.locations, change.workpiece, change.tools;
+    Eigen::MatrixXd solution;
+    for (const Eigen::Index taken : {line_count + 6, line_count + 9}) {
+      solution = -solved(moved.leftCols(taken), missing);
+      if ((moved.leftCols(taken) * solution + missing).norm() <= kHeld * missing.norm()) break;
+      if (taken == moved.cols())
+        throw InputError({},
+                         "location errors of the rotary axes do not hold how the new frame moves their lines",
+                         "fit with all location errors of rotary axes in the model");
+    }
+    for (Eigen::Index i = 0; i < line_count; ++i)
+      rows.row(offsets[static_cast<std::size_t>(i)]) += solution.row(i);
+    tool_turn_ = solution.rows() > line_count + 6 ? VectorRows(solution.bottomRows<3>())
+                                                  : VectorRows::Zero(3, columns());
+  }
+
+  static Eigen::MatrixXd solved(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    Eigen::MatrixXd x(a.cols(), b.cols());
+    for (Eigen::Index k = 0; k < b.cols(); ++k) {
+      const bool any = b.col(k).squaredNorm() > 0.0;
+      x.col(k) = any ? least_squares(a, b.col(k), 1e-9).solution : Eigen::VectorXd::Zero(a.cols());
+    }
+    return x;
+  }
+
+  Eigen::Vector3d tool_turn() const {
+    if (tool_turn_) return *tool_turn_ * extended();
     Eigen::Vector3d turn = -(phi_ * extended());
     for (const Joint& joint : machine_.structure.joints) {
       if (!is_rotary(joint.axis)) turn += angles_at_origin(joint.axis) * extended();
     }
+    return turn;
+  }
+
+  void turn_tools() {
+    const Eigen::Vector3d turn = tool_turn();
     for (Tool& tool : machine_.tools) tool.offset += turn.cross(tool.offset);
   }
 
@@ -248,10 +328,10 @@ class Realignment {
       function.coefficients.assign(values.begin(), values.end());
     }
     result.identified.locations.clear();
-    result.identified.locations_off.clear();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const ParameterBlock& block = result.layout.blocks[i];
-      result.identified.locations[*block.location] = result.parameters[block.offset];
+    std::erase_if(result.identified.locations_off,
+                  [](const LocationSymbol& symbol) { return !is_rotary(symbol.axis); });
+    for (const ParameterBlock& block : result.layout.blocks) {
+      if (block.location) result.identified.locations[*block.location] = result.parameters[block.offset];
     }
   }
 
@@ -259,8 +339,15 @@ class Realignment {
   void update_rank(FitResult& result) const {
     auto& errors = result.rank.errors;
     const auto is_location = [](const Observability& error) {
-      return LocationSymbol::parse(error.symbol).has_value();
+      const auto symbol = LocationSymbol::parse(error.symbol);
+      return symbol && !is_rotary(symbol->axis);
     };
+    for (Observability& error : errors) {
+      const auto symbol = LocationSymbol::parse(error.symbol);
+      if (!symbol || !is_rotary(symbol->axis)) continue;
+      if (const ParameterBlock* block = result.layout.find_location(*symbol))
+        error.u_rms = std::sqrt(std::max(0.0, result.covariance(block->offset, block->offset)));
+    }
     Observability worst;
     worst.visible_fraction = 1.0;
     for (const Observability& error : errors) {
@@ -283,6 +370,7 @@ class Realignment {
   Machine machine_;
   std::array<VectorRows, 3> direction_;
   VectorRows phi_;
+  std::optional<VectorRows> tool_turn_;  ///< that errors make up for; of a machine with rotary errors
 };
 
 void check_linear_axes(const Machine& machine) {
@@ -310,14 +398,7 @@ bool moves_origin(const Machine& machine, const Alignment& alignment) {
 }
 
 void check_parameters(const FitResult& result, bool origin_moves) {
-  for (const FunctionGroup& group : result.layout.groups) {
-    if (is_rotary(group.axis))
-      throw InputError(
-          {}, std::string("functions of rotary axis ") + letter_of(group.axis) + " are identified", kFitAnew);
-  }
   for (const ParameterBlock& block : result.layout.blocks) {
-    if (block.location && is_rotary(block.location->axis))
-      throw InputError({}, block.name + " of a rotary axis is identified", kFitAnew);
     const bool refers_to_origin =
         block.kind == ParameterKind::Expansion ||
         ((block.kind == ParameterKind::Effect || block.kind == ParameterKind::EffectShape) &&

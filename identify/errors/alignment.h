@@ -2,7 +2,8 @@
 /// An identified machine seen in another machine coordinate system: other primary and secondary axis, other
 /// origin, other reference direction (ISO/TR 16907:2015, 7.3, 10.2 and 11.3 d). Nothing is identified anew.
 ///
-/// With dP the error of the functional point, q the axes' positions and t the tool, to first order
+/// With dP the error of the functional point, q the axes' positions and t the tool, to first order and up to
+/// a rigid motion of the workpiece
 ///   dP'(q, t) = dP(q, t) - phi x q - tau(t)
 /// phi turns the machine frame, tau moves its origin. Both are linear in the parameters, so theta' = J theta
 /// + k and C' = J C J^T: errors are the same up to the rigid motion, and so is the covariance of what a rigid
@@ -40,9 +41,14 @@ struct AlignedResult {
   Eigen::Matrix3d frame_covariance = Eigen::Matrix3d::Zero();  ///< of phi, rad^2
 };
 
-/// Throws InputError with a remedy: a machine without X, Y and Z or with identified rotary axes, primary =
-/// secondary, an origin outside the travel, a spindle with another primary axis than Z, a function whose
-/// basis cannot hold the constant or the slope, or effects that refer to the former origin.
+/// Lines of rotary axes stay where they are: their location errors are restated in the new frame, so that
+/// the error at every pose is the same but for a rigid motion of the workpiece and, where no rotary axis
+/// stands between the linear axes and the tool, of the tools. Error motions of rotary axes do not change.
+///
+/// Throws InputError with a remedy: a machine without X, Y and Z, location errors of rotary axes that the
+/// model lacks and the new frame needs, primary = secondary, an origin outside the travel, a spindle with
+/// another primary axis than Z, a function whose basis cannot hold the constant or the slope, or effects that
+/// refer to the former origin.
 AlignedResult align_result(const FitResult& result, const Alignment& alignment);
 
 /// Readings of a campaign of the machine as it was identified, in the coordinate system of an aligned result:

@@ -126,6 +126,41 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> frame_columns(const Machine& machine, c
   return columns;
 }
 
+std::vector<PosedPoint> spread_points(const Machine& machine, int count) {
+  const std::array<Eigen::Vector3d, 3> offsets = {Eigen::Vector3d(0.0, 0.0, -kLever),
+                                                  Eigen::Vector3d(kLever, 0.0, 0.0),
+                                                  Eigen::Vector3d(0.0, kLever, 0.0)};
+  std::vector<PosedPoint> points;
+  for (const AxisPosition& pose : spread_poses(machine, count))
+    points.push_back({pose, offsets[points.size() % 3]});
+  return points;
+}
+
+FrameChangeColumns frame_change_columns(const Machine& machine, const std::vector<LocationSymbol>& locations,
+                                        const std::vector<PosedPoint>& points) {
+  const KinematicChain chain(machine);
+  std::vector<JointLever> levers(chain.joint_count());
+  const auto rows = 3 * static_cast<Eigen::Index>(points.size());
+  FrameChangeColumns columns{Eigen::MatrixXd(rows, static_cast<Eigen::Index>(locations.size())),
+                             Eigen::MatrixXd(rows, 6), Eigen::MatrixXd(rows, 3)};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d point_w = chain.levers(points[i].position, points[i].offset_t, levers.data());
+    for (std::size_t k = 0; k < locations.size(); ++k) {
+      const auto lever = std::ranges::find(levers, locations[k].axis, &JointLever::axis);
+      columns.locations.block<3, 1>(row, static_cast<Eigen::Index>(k)) =
+          KinematicChain::location_lever_w(*lever, locations[k].component);
+    }
+    const Eigen::Matrix3d rotation_wt = chain.nominal_rotation_wt(points[i].position);
+    for (int k = 0; k < 3; ++k) {
+      columns.workpiece.block<3, 1>(row, k) = Eigen::Vector3d::Unit(k);
+      columns.workpiece.block<3, 1>(row, 3 + k) = Eigen::Vector3d::Unit(k).cross(point_w);
+      columns.tools.block<3, 1>(row, k) = rotation_wt * Eigen::Vector3d::Unit(k).cross(points[i].offset_t);
+    }
+  }
+  return columns;
+}
+
 std::vector<LocationSymbol> independent_locations(const Machine& machine) {
   if (machine.tools.empty()) return possible_locations(machine);
   const std::vector<LocationSymbol> symbols = locations_by_rank(machine);

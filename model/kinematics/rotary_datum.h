@@ -21,6 +21,24 @@ std::vector<AxisPosition> spread_poses(const Machine& machine, int count);
 Eigen::Matrix<double, 3, Eigen::Dynamic> frame_columns(const Machine& machine, const KinematicChain& chain,
                                                        const AxisPosition& position, std::size_t tool);
 
+/// A pose with a functional point of its own.
+struct PosedPoint {
+  AxisPosition position{};
+  Eigen::Vector3d offset_t = Eigen::Vector3d::Zero();  ///< m, from the spindle's reference point
+};
+/// spread_poses() with offsets along the spindle and to either side of it, which tell every rotation.
+std::vector<PosedPoint> spread_points(const Machine& machine, int count);
+
+/// Displacements of functional points by what a change of the machine's coordinate system moves, three rows a
+/// point, workpiece coordinates.
+struct FrameChangeColumns {
+  Eigen::MatrixXd locations;  ///< a column for each
+  Eigen::MatrixXd workpiece;  ///< shift, m; rotation, rad
+  Eigen::MatrixXd tools;      ///< rotation of the tools' common frame, rad
+};
+FrameChangeColumns frame_change_columns(const Machine& machine, const std::vector<LocationSymbol>& locations,
+                                        const std::vector<PosedPoint>& points);
+
 /// Location errors of which none is a combination of the others, the place of the workpiece and, where the
 /// machine states an uncertainty, the offsets of its tools: squareness, then of the rotary axes from the bed
 /// outwards the tilts of the axis line, its displacements and the zero position. An error that follows from

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/five_axis.h"
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/sim/machine/transforms.h"
 
 namespace volcal {
@@ -198,6 +200,104 @@ TEST(Alignment, ToolsTurnWithTheFrame) {
   }
   EXPECT_GT(changes.front().norm(), 1e-6);
   EXPECT_LT(sim::rms_after_alignment(points, changes), 1e-15);
+}
+
+/// Linear and rotary axes with errors of all of them, the location errors that the machine's datum leaves.
+FitResult result_with_rotary_axes(std::mt19937_64& random, const std::string& code) {
+  Machine machine = testing_support::five_axis_machine(code);
+  testing::GivenErrors given;
+  for (const Axis& axis : machine.axes) {
+    for (const Component component : kAllComponents)
+      given.functions[ErrorSymbol{component, axis.name}.name()] = [&random](double) {
+        return testing_support::uniform(random, 20e-6);
+      };
+  }
+  for (const LocationSymbol symbol : independent_locations(machine))
+    given.locations[symbol.name()] = testing_support::uniform(random, 50e-6);
+  FitResult result = result_with(machine, given, 3);
+  Eigen::MatrixXd factor(result.layout.size, result.layout.size);
+  for (double& element : factor.reshaped()) element = testing_support::uniform(random, 1e-6);
+  result.covariance = factor * factor.transpose();
+  return result;
+}
+
+/// Errors of all tools at poses of all axes, tools as the result has them less their former offsets, less
+/// what a rigid motion of the workpiece explains.
+struct PosedErrors {
+  Eigen::MatrixXd rows;
+  Eigen::VectorXd value;
+};
+
+PosedErrors posed_errors(const FitResult& result, const Machine& former, std::uint64_t seed) {
+  constexpr Eigen::Index kPoses = 40;
+  std::mt19937_64 random(seed);
+  const KinematicChain chain(former);
+  const auto tools = static_cast<Eigen::Index>(former.tools.size());
+  PosedErrors errors{Eigen::MatrixXd(3 * kPoses, result.layout.size), Eigen::VectorXd(3 * kPoses)};
+  Eigen::MatrixXd motions(3 * kPoses, 6);
+  for (Eigen::Index pose = 0; pose < kPoses; ++pose) {
+    AxisPosition position{};
+    for (const Axis& axis : former.axes)
+      position[index_of(axis.name)] =
+          std::uniform_real_distribution<double>(axis.travel_min, axis.travel_max)(random);
+    const auto tool = static_cast<std::size_t>(pose % tools);
+    const Tool& before = former.tools[tool];
+    const Eigen::Vector3d at_w = chain.nominal_point_w(position, before.offset);
+    errors.rows.middleRows<3>(3 * pose) = volumetric_error_rows(result, position, before).topRows<3>();
+    errors.value.segment<3>(3 * pose) =
+        errors.rows.middleRows<3>(3 * pose) * result.parameters +
+        chain.nominal_rotation_wt(position) * (result.machine.tools[tool].offset - before.offset);
+    for (int k = 0; k < 3; ++k) {
+      motions.block<3, 1>(3 * pose, k) = Eigen::Vector3d::Unit(k);
+      motions.block<3, 1>(3 * pose, 3 + k) = Eigen::Vector3d::Unit(k).cross(at_w);
+    }
+  }
+  const Eigen::MatrixXd q = motions.householderQr().householderQ() * Eigen::MatrixXd::Identity(3 * kPoses, 6);
+  errors.rows -= q * (q.transpose() * errors.rows).eval();
+  errors.value -= q * (q.transpose() * errors.value).eval();
+  return errors;
+}
+
+/// Lines of rotary axes stand where they stood, whichever axes and origin the frame follows.
+TEST(Alignment, CarriesTheLinesOfRotaryAxes) {
+  std::mt19937_64 random(29);
+  for (const char* code : {"w C' A' b X Y Z t", "w C' A' Y' b X Z t", "w X' b Y Z C B t", "w C' X' b Y Z B t",
+                           "w C' B' b X Y Z t", "w A' b X Y Z t"}) {
+    const FitResult result = result_with_rotary_axes(random, code);
+    for (const auto& [primary, secondary] :
+         {std::pair(AxisName::Y, AxisName::X), std::pair(AxisName::Z, AxisName::Y)}) {
+      Alignment alignment = to_datum(primary, secondary);
+      alignment.origin = AxisPosition{0.3, -0.2, 0.25};
+      if (primary == AxisName::Z) alignment.spindle_tilt = Eigen::Vector2d(40e-6, -25e-6);
+      const FitResult aligned = align_result(result, alignment).result;
+      const PosedErrors before = posed_errors(result, result.machine, 3);
+      const PosedErrors after = posed_errors(aligned, result.machine, 3);
+      EXPECT_GT(before.value.norm(), 1e-4) << code;
+      EXPECT_LT((before.value - after.value).norm(), 1e-7 * before.value.norm()) << code;
+      for (const LocationSymbol symbol : independent_locations(result.machine)) {
+        if (is_rotary(symbol.axis)) {
+          EXPECT_NE(aligned.layout.find_location(symbol), nullptr) << code << " " << symbol.name();
+        }
+      }
+    }
+  }
+}
+
+/// X turned by 20 urad about z against the frame of Y: with Y as primary axis the frame turns, and the line
+/// of A, which was along the nominal x, is turned back: EC0A = -phi_z. Zero where it was.
+TEST(Alignment, TiltsTheLineOfARotaryAxisByHand) {
+  const Machine machine = testing_support::five_axis_machine("w A' b X Y Z t");
+  testing::GivenErrors given;
+  for (const LocationSymbol symbol : independent_locations(machine)) given.locations[symbol.name()] = 0.0;
+  given.locations["EC0Y"] = 20e-6;
+  const FitResult result = result_with(machine, given, 4);
+  const AlignedResult aligned = align_result(result, to_datum(AxisName::Y, AxisName::X));
+  EXPECT_NEAR(aligned.frame_rotation.z(), 20e-6, 1e-12);
+  EXPECT_NEAR(location_of(aligned.result, "EC0A"), -20e-6, 1e-12);
+  EXPECT_NEAR(location_of(aligned.result, "EB0A"), 0.0, 1e-12);
+  // The line passes (0, 20, 50) mm of the old frame: 20 urad about z move it by phi x p = (-0.4, 0, 0) um,
+  // along itself.
+  EXPECT_NEAR(location_of(aligned.result, "EZ0A"), 0.0, 1e-12);
 }
 
 std::string refused_alignment(const FitResult& result, const Alignment& alignment) {

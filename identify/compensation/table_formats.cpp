@@ -13,6 +13,7 @@ namespace volcal {
   FORMAT(neutral_csv_format)         \
   FORMAT(linuxcnc_format)            \
   FORMAT(linuxcnc_grid_format)       \
+  FORMAT(linuxcnc_trt_format)        \
   FORMAT(klipper_format)             \
   FORMAT(marlin_format)              \
   FORMAT(isg_csv_format)             \

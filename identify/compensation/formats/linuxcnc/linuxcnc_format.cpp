@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "volcal/identify/compensation/formats/linuxcnc_units.h"
+#include "volcal/identify/compensation/formats/linuxcnc/linuxcnc_units.h"
 #include "volcal/identify/compensation/sampled_tables.h"
 #include "volcal/model/description/errors.h"
 

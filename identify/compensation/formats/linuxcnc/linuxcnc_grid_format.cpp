@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "volcal/identify/compensation/formats/linuxcnc_units.h"
+#include "volcal/identify/compensation/formats/linuxcnc/linuxcnc_units.h"
 #include "volcal/identify/compensation/rotary_grid_csv.h"
 #include "volcal/identify/compensation/rotary_tables.h"
 #include "volcal/identify/compensation/sampled_tables.h"

@@ -36,21 +36,25 @@ std::vector<TemperatureRange> temperatures_of(const Setup& setup) {
   return ranges;
 }
 
-DriftFigures figures_of(const Setup& setup, const SetupValues& values, const std::vector<double>& value) {
+std::vector<DriftReading> plot_of(const Setup& setup, const SetupValues& values,
+                                  const std::vector<double>& value) {
   std::vector<DriftReading> readings;
   for (std::size_t row = 0; row < setup.readings.size(); ++row) {
     if (values.has(row)) readings.push_back({setup.readings.time[row], value[row]});
   }
-  return drift_figures(readings);
+  return readings;
 }
 
 DriftTest channel_test(const Setup& setup, const SetupValues& values, std::size_t channel,
                        std::string quantity, bool angle) {
+  SideBySide<std::vector<DriftReading>> plots = {plot_of(setup, values, values.reading[channel]),
+                                                 plot_of(setup, values, values.predicted[channel])};
+  const SideBySide<DriftFigures> figures = {drift_figures(plots.readings), drift_figures(plots.model)};
   return {setup.name,
           std::move(quantity),
           angle,
-          {figures_of(setup, values, values.reading[channel]),
-           figures_of(setup, values, values.predicted[channel])},
+          figures,
+          std::move(plots),
           temperatures_of(setup),
           notes_on_removed(values)};
 }
@@ -104,7 +108,7 @@ void add_tilts_between(const Campaign& campaign, const RestingSphere& one, const
         readings.push_back({one.setup->readings.time[row],
                             (apart.cross(second[row] - first[row]) / apart.squaredNorm())[about]});
     }
-    return drift_figures(readings);
+    return readings;
   };
   for (int about = 0; about < 3; ++about) {
     const Vector3d across = Vector3d::Unit(about).cross(apart.normalized());
@@ -112,10 +116,14 @@ void add_tilts_between(const Campaign& campaign, const RestingSphere& one, const
     std::vector<Finding> notes = notes_on_removed(*one.values);
     const std::vector<Finding> more = notes_on_removed(*other.values);
     notes.insert(notes.end(), more.begin(), more.end());
+    SideBySide<std::vector<DriftReading>> plots = {tilts(&SetupValues::reading, about),
+                                                   tilts(&SetupValues::predicted, about)};
+    const SideBySide<DriftFigures> figures = {drift_figures(plots.readings), drift_figures(plots.model)};
     tests.push_back({one.setup->name + ", " + other.setup->name,
                      {"ABC"[about]},
                      true,
-                     {tilts(&SetupValues::reading, about), tilts(&SetupValues::predicted, about)},
+                     figures,
+                     std::move(plots),
                      temperatures_of(*one.setup),
                      std::move(notes)});
   }

@@ -112,6 +112,7 @@ struct DriftTest {
   std::string quantity;  ///< "X" displacement, "A" tilt, as directions of the setup's frame; "beam"
   bool angle = false;
   SideBySide<DriftFigures> figures;
+  SideBySide<std::vector<DriftReading>> plots = {};
   std::vector<TemperatureRange> temperatures = {};
   std::vector<Finding> notes = {};
 };

@@ -105,6 +105,10 @@ TEST_F(DirectTestsPage, HoldsDriftAndTemperatures) {
   EXPECT_EQ(z.at("sources").at(0).at("range"), 4);
   EXPECT_EQ(z.at("sources").at(0).at("first_hour"), 4);
   EXPECT_EQ(z.at("sources").at(2).at("change"), 2);
+  EXPECT_EQ(z.at("time").at(0), 0) << "hours since the first reading";
+  EXPECT_EQ(z.at("sources").at(0).at("value").at(0), 0);
+  EXPECT_EQ(z.at("sources").at(0).at("value").size(), z.at("time").size());
+  EXPECT_EQ(z.at("sources").at(2).at("value").back(), 2) << "the last less the first, as its figure says";
 }
 
 TEST_F(DirectTestsPage, AnglesStandBesideLinesInTheirOwnUnits) {

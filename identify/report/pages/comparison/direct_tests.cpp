@@ -63,12 +63,30 @@ Json drift_figures_json(const std::string& name, const DriftFigures& figures) {
           {"change", micro_or_null(figures.change)}};
 }
 
+/// Less the first reading, at the times drawn.
+Json drift_curve(const std::vector<DriftReading>& plot, const std::vector<std::size_t>& drawn) {
+  Json values = Json::array();
+  for (const std::size_t i : drawn)
+    values.push_back(rounded((plot[i].value - plot.front().value) * kPerMicro, 4));
+  return values;
+}
+
 Json drift_test_json(std::span<const ComparedModel> models, std::size_t test_index) {
   const DriftTest& test = models.front().figures.drifts[test_index];
+  const std::vector<std::size_t> drawn = even_sample(test.plots.readings.size(), kPlacesDrawn);
+  Json hours = Json::array();
+  for (const std::size_t i : drawn)
+    hours.push_back(
+        rounded((test.plots.readings[i].time - test.plots.readings.front().time) / kSecondsPerHour, 5));
   Json sources = Json::array({drift_figures_json("measured", test.figures.readings)});
-  for (const ComparedModel& model : models)
-    sources.push_back(drift_figures_json(model.name, model.figures.drifts[test_index].figures.model));
+  sources.back()["value"] = drift_curve(test.plots.readings, drawn);
+  for (const ComparedModel& model : models) {
+    const DriftTest& own = model.figures.drifts[test_index];
+    sources.push_back(drift_figures_json(model.name, own.figures.model));
+    sources.back()["value"] = drift_curve(own.plots.model, drawn);
+  }
   return {{"setup", test.setup},
+          {"time", std::move(hours)},
           {"drift", drift_name(test)},
           {"unit", test.angle ? "µrad" : "µm"},
           {"temperatures", temperatures_text(test)},

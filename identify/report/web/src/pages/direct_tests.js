@@ -1,4 +1,5 @@
 import { count, el, fixed, note, significant, table } from '../dom.js';
+import { addDrift } from '../lenses/drift.js';
 import { addTurn } from '../lenses/motion.js';
 import { modelChoice } from './model_choice.js';
 
@@ -51,6 +52,15 @@ export function renderDirectTests(body, data) {
     if (data.total > data.motions.length) body.append(note(`${count(data.total - data.motions.length)} more: their figures are in the text and the JSON of the comparison.`));
   }
   if (data.drifts.length > 0) {
-    body.append(el('h3', {}, 'Drift at rest'), note('Nothing moves: range of the readings over the whole time, in the first hour, in any one hour, and the last less the first.'), driftTable(data.drifts), ...[...new Set(data.drifts.flatMap(({ notes }) => notes))].map((text) => note(text)));
+    const redraws = [];
+    const chosen = modelChoice(data.drifts[0].sources.slice(1).map(({ name }) => name), () => redraws.forEach((again) => again()));
+    const cards = data.drifts.map((test) => {
+      const plot = el('div', { class: 'plot' });
+      redraws.push(addDrift(plot, test, () => chosen.index));
+      return el('figure', { class: 'card' }, [el('figcaption', {}, [el('strong', {}, test.drift), ` (${test.setup})`]), plot]);
+    });
+    body.append(el('h3', {}, 'Drift at rest'), note('Nothing moves: curves over time less the first reading, measured and predicted; range of the readings over the whole time, in the first hour, in any one hour, and the last less the first.'));
+    if (chosen.node) body.append(el('div', { class: 'controls' }, chosen.node));
+    body.append(el('div', { class: 'pair cards' }, cards), driftTable(data.drifts), ...[...new Set(data.drifts.flatMap(({ notes }) => notes))].map((text) => note(text)));
   }
 }

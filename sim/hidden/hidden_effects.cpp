@@ -10,8 +10,8 @@ namespace {
 std::vector<HiddenKind> collected() {
   std::vector<HiddenKind> all;
   for (const auto& group :
-       {hidden_drive_kinds(), hidden_thermal_kinds(), hidden_structure_kinds(), hidden_instrument_kinds(),
-        hidden_unlisted_kinds(), hidden_unlisted_time_kinds()}) {
+       {hidden_drive_kinds(), hidden_thermal_kinds(), hidden_structure_kinds(), hidden_rotary_kinds(),
+        hidden_instrument_kinds(), hidden_unlisted_kinds(), hidden_unlisted_time_kinds()}) {
     all.insert(all.end(), group.begin(), group.end());
   }
   return all;

@@ -79,6 +79,7 @@ std::vector<KeySchema> place_keys();  ///< setup, station
 std::vector<HiddenKind> hidden_drive_kinds();
 std::vector<HiddenKind> hidden_thermal_kinds();
 std::vector<HiddenKind> hidden_structure_kinds();
+std::vector<HiddenKind> hidden_rotary_kinds();
 std::vector<HiddenKind> hidden_instrument_kinds();
 std::vector<HiddenKind> hidden_unlisted_kinds();
 std::vector<HiddenKind> hidden_unlisted_time_kinds();

@@ -153,6 +153,10 @@ std::string in_mm(const Eigen::Vector3d& place) {
                      edge_number(place.z(), kMetrePerMillimetre));
 }
 
+constexpr const char* kKnownLinearAxes =
+    "[truth]  # linear axes are known\nvolumetric_rms_um = [0.0, 0.0]\nreversal_max_um = "
+    "0.0\nangular_reversal_max_urad = 0.0\n";
+
 std::string points_of(const Setup& setup) { return toml_text("campaign/" + readings_file_name(setup)); }
 
 /// Where a setup of the plan's instrument stands.
@@ -217,9 +221,29 @@ std::string bar_runs_toml(const CampaignPlan& plan) {
   return text;
 }
 
+/// Spheres, and runs that name them.
+std::string sphere_runs_toml(const CampaignPlan& plan) {
+  std::string spheres, runs;
+  std::set<std::string> known;
+  for (const Setup& setup : plan.plan.campaign.setups) {
+    const auto place = simulated_at(plan, setup);
+    if (!place) continue;
+    if (known.insert(place->name).second) {
+      spheres += fmt::format("[[measurements.spheres]]\nname = {}\nposition_mm = {}\n",
+                             toml_text(place->name), in_mm(place->place_w));
+    }
+    runs += fmt::format("[[measurements.runs]]\nname = {}\nsphere = {}\ntool = {}\npoints = {}\n",
+                        toml_text(setup.name), toml_text(place->name),
+                        toml_text(plan.settings.machine.tools[setup.tool].name), points_of(setup));
+  }
+  return spheres + runs;
+}
+
 /// [[measurements]] of a study that takes the planned readings.
 std::string planned_measurement_toml(const CampaignPlan& plan) {
   const InstrumentTraits& traits = find_instrument(plan.settings.instrument)->schema().traits;
+  if (plan_instrument_of(plan.settings).turns_rotary_axes())
+    return measurement_toml(plan.settings, traits) + sphere_runs_toml(plan);
   return measurement_toml(plan.settings, traits) +
          (traits.has_bar ? bar_runs_toml(plan) : station_runs_toml(plan));
 }
@@ -257,9 +281,9 @@ std::string plan_study_toml(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
   return fmt::format(
       "# The plan measured on a random machine: volcal simulate study.toml -o simulated\n"
-      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}\n{}",
+      "format = \"volcal-study-1\"\nmachine = \"machine.toml\"\nseed = {}\npause_s = {}\n{}{}\n{}",
       settings.seed, edge_number(settings.costs.run, 1.0), not_simulated(plan),
-      planned_measurement_toml(plan));
+      settings.linear_axes_known ? kKnownLinearAxes : "", planned_measurement_toml(plan));
 }
 
 void write_plan_campaign(const CampaignPlan& plan, const AtomicFolder& folder) {

@@ -31,6 +31,16 @@ void find_worst_values(ExpectedCampaign& expected) {
   }
 }
 
+VolumetricUncertainty volume_of(const FitResult& result, const PlanSettings& settings) {
+  const std::vector<Tool> tools = own_tools(settings);
+  const LineOfSight sight(settings);
+  if (!sight.instrument().turns_rotary_axes()) return volumetric_uncertainty(result, tools, kReportedVolume);
+  std::vector<std::vector<AxisPosition>> poses;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool)
+    poses.push_back(sight.volume(tool, kReportedVolume));
+  return uncertainty_at_poses(result, tools, poses);
+}
+
 double target_uncertainty(const ExpectedCampaign& expected, const PlanSettings& settings) {
   if (settings.target != PlanTarget::Symbol) return expected.volumetric.rms;
   for (const Observability& error : expected.result.rank.errors) {
@@ -68,7 +78,7 @@ ExpectedCampaign expected_campaign(const std::string& name, const Campaign& camp
   expected.name = name;
   expected.campaign = campaign;
   expected.result = expected_result(campaign, settings.model, settings.roughness, settings.threads);
-  expected.volumetric = volumetric_uncertainty(expected.result, own_tools(settings), kReportedVolume);
+  expected.volumetric = volume_of(expected.result, settings);
   expected.target_u = target_uncertainty(expected, settings);
   expected.duration = std::nan("");
   find_worst_values(expected);
@@ -80,7 +90,9 @@ CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given) 
   check_plan_settings(settings);
   CampaignPlan plan;
   plan.settings = settings;
-  const PlanSettings searching = with_share(settings, 0.0, 0.8);
+  PlanSettings searching = with_share(settings, 0.0, 0.8);
+  // What verifies is best where the first campaign knows least.
+  if (settings.apart_from != nullptr) searching.existing = settings.apart_from;
   const LineOfSight sight(searching);
   const PlanProblem problem(searching);
   plan.searched = search_plan(searching, problem, sight);

@@ -159,4 +159,25 @@ VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std:
   return out;
 }
 
+VolumetricUncertainty uncertainty_at_poses(const FitResult& result, const std::vector<Tool>& tools,
+                                           const std::vector<std::vector<AxisPosition>>& poses) {
+  const FitResult everywhere = without_measured_ends(result);
+  VolumetricUncertainty out;
+  double count = 0.0;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    const ErrorField field(everywhere, tools[tool]);
+    for (const AxisPosition& position : poses[tool]) {
+      const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field.rows(position).topRows<3>();
+      const double variance =
+          (rows * everywhere.covariance * rows.transpose()).trace() + 3.0 * field.stated_tool_variance();
+      out.rms += variance;
+      out.largest = std::max(out.largest, variance);
+      count += 1.0;
+    }
+  }
+  out.rms = std::sqrt(out.rms / std::max(1.0, count));
+  out.largest = std::sqrt(out.largest);
+  return out;
+}
+
 }  // namespace volcal

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/planning/plan_settings.h"
 #include "volcal/identify/result/result.h"
+#include "volcal/model/kinematics/chain.h"
 
 namespace volcal {
 
@@ -19,7 +20,7 @@ namespace volcal {
 FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
                           const FunctionRoughnessGuess& roughness, int threads = 0);
 
-/// Root mean square over a grid in the volume and the tools of the standard uncertainty of the error vector,
+/// Root mean square over the volume and the tools of the standard uncertainty of the error vector,
 /// sqrt(u_ex^2 + u_ey^2 + u_ez^2), m; and its largest.
 struct VolumetricUncertainty {
   double rms = 0.0;
@@ -27,5 +28,8 @@ struct VolumetricUncertainty {
 };
 VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std::vector<Tool>& tools,
                                              int per_axis);
+/// The same over poses, of each tool its own.
+VolumetricUncertainty uncertainty_at_poses(const FitResult& result, const std::vector<Tool>& tools,
+                                           const std::vector<std::vector<AxisPosition>>& poses);
 
 }  // namespace volcal

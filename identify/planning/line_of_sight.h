@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "volcal/identify/planning/measured_positions.h"
 #include "volcal/identify/planning/plan_instrument.h"
 #include "volcal/identify/planning/swept_volume.h"
 
@@ -35,14 +36,20 @@ class LineOfSight {
   std::vector<PlanRun> candidate_runs(const Eigen::Vector3d& station_w, std::size_t station, std::size_t tool,
                                       const CandidateGrid& grid) const;
   PlanRun moved(const Eigen::Vector3d& station_w, const PlanRun& run) const;
+  /// Poses of a tool over which the error of the machine is judged: a grid of the linear axes with rotary
+  /// axes at home; of an instrument that turns rotary axes corners and middle of the region of its places,
+  /// `per_axis` positions of every rotary axis.
+  std::vector<AxisPosition> volume(std::size_t tool, int per_axis) const;
 
  private:
   PlanScene scene() const { return {settings_, swept_}; }
+  PlanRun apart(PlanRun run) const;
 
   const PlanSettings& settings_;
   const PlanInstrument& instrument_;
   SweptVolume swept_;
   Eigen::AlignedBox3d stations_w_;
+  MeasuredPositions measured_;
 };
 
 }  // namespace volcal

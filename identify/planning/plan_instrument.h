@@ -4,7 +4,7 @@
 /// and one line in instruments/registry.cpp.
 ///
 /// A place is where the instrument stands in workpiece coordinates, m: a tracker's station, the centre ball
-/// of a ball-bar.
+/// of a ball-bar, a sphere on the table.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -26,11 +26,13 @@ struct PlanScene {
 
 /// What reports call things.
 struct InstrumentWords {
-  std::string place;    ///< "station"
-  std::string places;   ///< "stations"
-  std::string heading;  ///< of their table
-  std::string region;   ///< what the region of places is
-  std::string checked;  ///< what is checked of a position and what is not, sentences
+  std::string place;             ///< "station"
+  std::string places;            ///< "stations"
+  std::string heading;           ///< of their table
+  std::string region;            ///< what the region of places is
+  std::string checked;           ///< what is checked of a position and what is not, sentences
+  std::string unreached;         ///< what is wrong where nothing can be measured from any place
+  std::string unreached_remedy;  ///< and what to do
 };
 
 /// How dense the positions are that are chosen from, where they are exchanged one by one.
@@ -72,6 +74,8 @@ class PlanInstrument {
   /// What everybody would do.
   virtual std::vector<Eigen::Vector3d> textbook_places_w(const PlanScene& scene, int count) const = 0;
 
+  /// Its runs move the rotary axes, the linear axes following; otherwise rotary axes stand at home.
+  virtual bool turns_rotary_axes() const { return false; }
   /// A run is taken whole or not at all; otherwise its positions are exchanged one by one.
   virtual bool takes_runs_whole() const = 0;
   /// Runs of one tool at a place with all the positions that can be chosen of; none where nothing is reached.
@@ -82,8 +86,9 @@ class PlanInstrument {
 
   /// Options and noise of the setup of a run at a place.
   virtual void describe(const PlanSettings& settings, const NamedPlace& place, Setup& setup) const = 0;
-  /// Nominal reading of a functional point, by the vector from the place to it.
-  virtual std::vector<double> nominal_reading(const Eigen::Vector3d& from_place_w) const = 0;
+  /// Nominal reading of a functional point, m and rad.
+  virtual std::vector<double> nominal_reading(const Eigen::Vector3d& place_w,
+                                              const Eigen::Vector3d& point_w) const = 0;
   /// Of a setup of this instrument; nullopt where it does not say.
   virtual std::optional<NamedPlace> place_of(const Setup& setup, const Machine& machine) const = 0;
 };

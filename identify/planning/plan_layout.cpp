@@ -23,11 +23,13 @@ std::array<std::int8_t, kAxisCount> approach(const AxisPosition& from, const Axi
   return before;
 }
 
-double move_time(const AxisPosition& from, const AxisPosition& to, double feed) {
+double move_time(const AxisPosition& from, const AxisPosition& to, const TimeCosts& costs) {
   double longest = 0.0;
-  for (const AxisName axis : kLinearAxes)
-    longest = std::max(longest, std::abs(to[index_of(axis)] - from[index_of(axis)]));
-  return longest / feed;
+  for (const AxisName axis : kAllAxes) {
+    const double speed = is_rotary(axis) ? costs.turn : costs.feed;
+    longest = std::max(longest, std::abs(to[index_of(axis)] - from[index_of(axis)]) / speed);
+  }
+  return longest;
 }
 
 double run_duration(const PlanRun& run, const PlanSettings& settings) {
@@ -36,7 +38,7 @@ double run_duration(const PlanRun& run, const PlanSettings& settings) {
   const std::vector<PlanReading> readings = readings_of(run);
   for (const PlanReading& reading : readings) {
     time += settings.costs.reading;
-    if (last != nullptr) time += move_time(*last, reading.position, settings.costs.feed);
+    if (last != nullptr) time += move_time(*last, reading.position, settings.costs);
     last = &reading.position;
   }
   return time;
@@ -92,8 +94,8 @@ class SetupMaker {
         readings.direction[k].push_back(reading.direction[k]);
       }
       const std::vector<double> values = instrument_.nominal_reading(
-          chain_.nominal_point_w(reading.position, settings_.machine.tools[run.tool].offset) -
-          layout_.stations_w[run.station]);
+          layout_.stations_w[run.station],
+          chain_.nominal_point_w(reading.position, settings_.machine.tools[run.tool].offset));
       readings.value.resize(values.size());
       for (std::size_t channel = 0; channel < values.size(); ++channel)
         readings.value[channel].push_back(values[channel]);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "volcal/identify/numeric/parallel.h"
@@ -17,8 +18,10 @@
 namespace volcal {
 namespace {
 
-constexpr double kSideways = 0.1;   // m
-constexpr double kSameSpot = 1e-3;  // m or so: tools that stand alike
+constexpr double kSideways = 0.1;     // m
+constexpr double kLonger = 0.1;       // m
+constexpr double kSameLength = 0.02;  // m
+constexpr double kSameSpot = 1e-3;    // m or so: tools that stand alike
 constexpr int kUsualReadings = 240;
 constexpr double kOptionJitter = 0.3;
 constexpr std::uint64_t kOptionStream = 3000000;
@@ -46,6 +49,20 @@ Tool sideways_tool(const Machine& machine, const Eigen::Vector3d& spindle_w) {
   return tool;
 }
 
+/// Where rotary axes turn, two lengths tell a tilt of a head from a displacement: a longer tool where all are
+/// alike.
+std::optional<Tool> longer_tool(const Machine& machine, const Eigen::Vector3d& spindle_w) {
+  const auto length = [&](const Tool& each) { return -each.offset.dot(spindle_w); };
+  const auto [shortest, longest] = std::ranges::minmax_element(machine.tools, {}, length);
+  if (length(*longest) - length(*shortest) > kSameLength) return std::nullopt;
+  Tool tool = *longest;
+  tool.offset -= kLonger * spindle_w;
+  tool.offset_sigma = 0.0;
+  tool.name = "longer";
+  while (machine.tool_index(tool.name)) tool.name += "_";
+  return tool;
+}
+
 /// Everything that could be added, judged one by one.
 class OptionSearch {
  public:
@@ -57,8 +74,7 @@ class OptionSearch {
     positions_ = static_cast<std::size_t>(settings_.budget.readings.value_or(kUsualReadings)) / 2;
     existing_ = *settings_.existing;
     if (!now.invisible().empty()) {
-      settings_.machine.tools.push_back(sideways_tool(settings_.machine, LineOfSight(settings_).spindle_w()));
-      ++settings_.imagined_tools;
+      imagine_tools();
       existing_.machine = settings_.machine;
     }
     settings_.existing = &existing_;
@@ -83,6 +99,19 @@ class OptionSearch {
   }
 
  private:
+  void imagine_tools() {
+    const LineOfSight sight(settings_);
+    const Eigen::Vector3d spindle_w = sight.spindle_w();
+    std::vector<Tool> imagined = {sideways_tool(settings_.machine, spindle_w)};
+    if (sight.instrument().turns_rotary_axes()) {
+      if (const auto longer = longer_tool(settings_.machine, spindle_w)) imagined.push_back(*longer);
+    }
+    for (const Tool& tool : imagined) {
+      settings_.machine.tools.push_back(tool);
+      ++settings_.imagined_tools;
+    }
+  }
+
   struct Judged {
     PlanOption option;
     PlanLayout layout;
@@ -114,10 +143,13 @@ class OptionSearch {
   void add_even_run(std::size_t tool, const LineOfSight& sight, PlanLayout& layout) const {
     PlanRun run{0, tool, {}};
     for (std::size_t asked = positions_; asked <= 4 * positions_ + 64; asked += 1 + asked / 8) {
-      run.positions = grid_over_travel(settings_.machine, even_grid(settings_.machine, asked), kOptionJitter,
-                                       settings_.seed, kOptionStream + tool);
-      std::erase_if(run.positions, [&](const PlanPosition& each) {
-        return !sight.sees(layout.stations_w.front(), each.position, tool);
+      run.positions = sight
+                          .candidate_runs(layout.stations_w.front(), 0, tool,
+                                          {asked, kOptionJitter, kOptionStream + tool})
+                          .front()
+                          .positions;
+      std::ranges::sort(run.positions, {}, [](const PlanPosition& each) {
+        return std::tuple(each.cell[2], each.cell[1], each.cell[0]);
       });
       if (run.positions.size() < positions_) continue;
       std::vector<PlanPosition> even;
@@ -146,7 +178,8 @@ class OptionSearch {
 
   bool is_measured(const std::string& station, std::size_t tool) const {
     return std::ranges::any_of(existing_.setups, [&](const Setup& setup) {
-      return setup.options.text("station").value_or(setup.name) == station &&
+      const auto place = place_of(setup);
+      return place && place->name == station &&
              (settings_.machine.tools[setup.tool].offset - settings_.machine.tools[tool].offset).norm() <
                  kSameSpot;
     });

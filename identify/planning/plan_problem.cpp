@@ -7,6 +7,8 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/planning/line_of_sight.h"
+#include "volcal/identify/planning/registry.h"
+#include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/identify/solve/campaign_noise.h"
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/priors/resolution.h"
@@ -14,12 +16,15 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/functions/registry.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
 namespace {
 
 constexpr int kSearchIntervals = 8;
+constexpr int kSearchHarmonics = 4;
 constexpr int kVolumePerAxis = 4;
+constexpr std::size_t kProbePositions = 27;
 constexpr int kTablePositions = 11;
 constexpr double kWideNuisance = 1.0;  // m or rad
 constexpr double kApart = 1.0;         // m, of an instrument that is tried from the volume
@@ -34,6 +39,7 @@ ModelSpec with_few_knots(ModelSpec model, const Machine& machine) {
   for (const ErrorSymbol symbol : modelled_motions(machine, model)) {
     const Axis& axis = machine.axis(symbol.axis);
     FunctionSpec function = model.function(symbol);
+    if (function.automatic_degree) function.degree = kSearchHarmonics;
     const BasisKind* kind = find_basis(function.basis);
     if (uses_automatic_knots(function)) {
       function.breakpoints = uniform_breakpoints(axis, kSearchIntervals);
@@ -159,8 +165,18 @@ PlanProblem::PlanProblem(const PlanSettings& settings) : settings_(settings), mo
   if (settings.existing != nullptr) learn_existing();
 }
 
+/// With the errors of all rotary axes that readings move.
 ModelSpec PlanProblem::search_model() const {
-  ModelSpec model = with_few_knots(settings_.model, settings_.machine);
+  std::vector<AxisName> moving;
+  if (settings_.existing != nullptr) moving = moving_rotary_axes(*settings_.existing);
+  if (plan_instrument_of(settings_).turns_rotary_axes()) {
+    moving.clear();
+    for (const RotaryStretch& each : rotary_stretches(settings_.machine)) moving.push_back(each.axis);
+  }
+  ModelSpec model = settings_.model;
+  if (!moving.empty())
+    model = with_rotary_errors(settings_.machine, model, moving, independent_locations(settings_.machine));
+  model = with_few_knots(model, settings_.machine);
   for (const EffectSpec& effect : settings_.separate) model.effects.push_back(effect);
   return model;
 }
@@ -168,9 +184,11 @@ ModelSpec PlanProblem::search_model() const {
 /// What no setup changes, from a campaign of one reading a tool and station.
 void PlanProblem::learn_machine() {
   PlanLayout probe;
-  const std::vector<PlanPosition> grid =
-      grid_over_travel(settings_.machine, Eigen::Vector3i::Constant(3), 0.0, 0, 0);
   const LineOfSight sight(settings_);
+  const std::vector<PlanPosition> grid =
+      sight.instrument().turns_rotary_axes()
+          ? rotary_grid(settings_.machine, kProbePositions, 0.0, 0, 0)
+          : grid_over_travel(settings_.machine, Eigen::Vector3i::Constant(3), 0.0, 0, 0);
   for (int station = 0; station < settings_.budget.stations; ++station) {
     probe.stations_w.push_back(probe_place_w(sight));
     probe.station_names.push_back("P" + std::to_string(station + 1));
@@ -213,15 +231,30 @@ void PlanProblem::learn_existing() {
   existing_names_ = at.names_behind(machine_size_);
 }
 
+template <class Use>
+void PlanProblem::for_each_volume_pose(const Use& use) const {
+  const LineOfSight sight(settings_);
+  const std::vector<Tool> tools = own_tools(settings_);
+  std::vector<std::vector<AxisPosition>> poses;
+  std::size_t most = 0;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    poses.push_back(sight.volume(tool, kVolumePerAxis));
+    most = std::max(most, poses.back().size());
+  }
+  for (std::size_t i = 0; i < most; ++i) {
+    for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+      if (i < poses[tool].size()) use(poses[tool][i], tools[tool]);
+    }
+  }
+}
+
 /// ex, ey, ez over the volume for every tool, divided so that their mean is that of e^2.
 Eigen::MatrixXd PlanProblem::volume_functionals(const Linearised& at) const {
   std::vector<Eigen::MatrixXd> parts;
-  for (const AxisPosition& position : grid_positions(settings_.machine, kVolumePerAxis)) {
-    for (const Tool& tool : own_tools(settings_)) {
-      parts.emplace_back(at.datum.reduce_rows(
-          pose_error_rows(at.model.chain(), at.model.layout(), position, tool.offset, position).topRows(3)));
-    }
-  }
+  for_each_volume_pose([&](const AxisPosition& position, const Tool& tool) {
+    parts.emplace_back(at.datum.reduce_rows(
+        pose_error_rows(at.model.chain(), at.model.layout(), position, tool.offset, position).topRows(3)));
+  });
   Eigen::MatrixXd all(3 * static_cast<Eigen::Index>(parts.size()), at.datum.size());
   for (std::size_t i = 0; i < parts.size(); ++i)
     all.middleRows(3 * static_cast<Eigen::Index>(i), 3) = parts[i];
@@ -261,18 +294,16 @@ Eigen::MatrixXd PlanProblem::table_functionals(const Linearised& at) const {
   std::vector<JointLever> levers(chain.joint_count());
   const auto lever_of = [&](AxisName axis, Component component, bool location) {
     double squares = 0.0, count = 0.0;
-    for (const AxisPosition& position : grid_positions(settings_.machine, kVolumePerAxis)) {
-      for (const Tool& tool : own_tools(settings_)) {
-        chain.levers(position, tool.offset, levers.data());
-        for (const JointLever& lever : levers) {
-          if (lever.axis != axis) continue;
-          squares += (location ? KinematicChain::location_lever_w(lever, component)
-                               : KinematicChain::motion_lever_w(lever, component))
-                         .squaredNorm();
-          count += 1.0;
-        }
+    for_each_volume_pose([&](const AxisPosition& position, const Tool& tool) {
+      chain.levers(position, tool.offset, levers.data());
+      for (const JointLever& lever : levers) {
+        if (lever.axis != axis) continue;
+        squares += (location ? KinematicChain::location_lever_w(lever, component)
+                             : KinematicChain::motion_lever_w(lever, component))
+                       .squaredNorm();
+        count += 1.0;
       }
-    }
+    });
     return std::sqrt(squares / std::max(1.0, count));
   };
   std::vector<Eigen::MatrixXd> parts;

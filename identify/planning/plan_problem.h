@@ -52,6 +52,9 @@ class PlanProblem {
   ModelSpec search_model() const;
   void learn_machine();
   void learn_existing();
+  /// Calls use(position, tool) at every pose of the volume.
+  template <class Use>
+  void for_each_volume_pose(const Use& use) const;
   Eigen::MatrixXd volume_functionals(const Linearised& at) const;
   Eigen::MatrixXd table_functionals(const Linearised& at) const;
   Eigen::MatrixXd symbol_functionals(const Linearised& at, const std::string& symbol) const;

@@ -8,6 +8,8 @@
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/planning/path_choice.h"
+#include "volcal/identify/planning/registry.h"
+#include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {
@@ -50,7 +52,7 @@ class PlanSearch {
     const std::vector<Eigen::Vector3d> from_corners =
         refined(textbook.stations_w, "stations from corners", 0.3);
     const double lattice = coarse_value(from_lattice), corners = coarse_value(from_corners);
-    if (!std::isfinite(std::min(lattice, corners))) fail_unseen();
+    if (!std::isfinite(std::min(lattice, corners))) fail_unseen(sight_);
     std::vector<Eigen::Vector3d> stations = lattice <= corners ? from_lattice : from_corners;
     const double ratio = std::sqrt(std::max(lattice, corners) / std::min(lattice, corners));
     if (ratio < 1.0 + kAsGood && furthest(from_lattice, from_corners) > 0.1) {
@@ -152,7 +154,10 @@ class PlanSearch {
     }
     if (all.empty()) {
       throw InputError(
-          {}, "stations can stand nowhere: the region lies inside the box that tools and spindle sweep",
+          {},
+          sight_.instrument().turns_rotary_axes()
+              ? "spheres can stand nowhere: no tool reaches the region"
+              : "stations can stand nowhere: the region lies inside the box that tools and spindle sweep",
           "give a larger --region-mm or a smaller --clearance-mm");
     }
     return all;
@@ -426,7 +431,10 @@ std::size_t affordable_readings(const PlanSettings& settings, const PlanLayout& 
     const double left = *settings.budget.time -
                         settings.costs.station * static_cast<double>(layout.stations_w.size()) -
                         settings.costs.run * static_cast<double>(layout.runs.size());
-    const double each = settings.costs.reading + kMoveShare * travel / settings.costs.feed;
+    double move = travel / settings.costs.feed;
+    if (plan_instrument_of(settings).turns_rotary_axes())
+      move = rotary_stretches(settings.machine).front().length() / settings.costs.turn;
+    const double each = settings.costs.reading + kMoveShare * move;
     readings = std::min(readings, static_cast<std::size_t>(std::max(0.0, left / each)));
   }
   return readings / 2 * 2;

@@ -28,8 +28,8 @@ namespace volcal {
 /// station sees anything, and where the budget does not hold one run at every station.
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight);
 
-/// Throws InputError: no station sees enough.
-[[noreturn]] void fail_unseen();
+/// Throws InputError: from no place enough can be measured.
+[[noreturn]] void fail_unseen(const LineOfSight& sight);
 
 struct SearchedPlan {
   PlanLayout layout;

@@ -4,6 +4,7 @@
 
 #include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal {
 
@@ -18,6 +19,15 @@ std::vector<Tool> own_tools(const PlanSettings& settings) {
   std::vector<Tool> tools = settings.machine.tools;
   tools.resize(tools.size() - settings.imagined_tools);
   return tools;
+}
+
+ModelSpec with_known_linear_axes(ModelSpec model, const Machine& machine) {
+  for (const ErrorSymbol symbol : linear_axis_motions(machine)) {
+    model.functions[symbol] = FunctionSpec{};
+    model.functions[symbol].basis = "zero";
+  }
+  model.locations_off = squareness_errors(machine);
+  return model;
 }
 
 void check_plan_settings(const PlanSettings& settings) {

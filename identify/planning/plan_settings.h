@@ -53,6 +53,7 @@ struct TimeCosts {
   double run = 300.0;       ///< s, to change the tool and find the beam again; of a ball-bar: or the plane
   double reading = 4.0;     ///< s, the machine standing
   double feed = 0.1;        ///< m/s, from position to position
+  double turn = 0.35;       ///< rad/s, of rotary axes
 };
 
 /// Nothing is kept that is not given: readings or time must be.
@@ -81,6 +82,8 @@ struct PlanSettings {
   Machine machine;
   std::size_t imagined_tools = 0;  ///< the last of the machine's: not there yet, no part of its volume
   ModelSpec model;
+  /// Errors of linear axes count as identified by a campaign of their own (with_known_linear_axes()).
+  bool linear_axes_known = false;
   std::string instrument = usual_plan_instrument();
   PlanNoise noise;
   PlannedBar bar;
@@ -94,10 +97,16 @@ struct PlanSettings {
   std::vector<EffectSpec> separate;  ///< two effects of PlanTarget::Separate
   /// Readings that are taken already, or will be: the plan adds to them.
   const Campaign* existing = nullptr;
+  /// A campaign that this one verifies (ISO/TR 16907:2015, 11.3): nothing is measured where it was, from
+  /// other places at other positions.
+  const Campaign* apart_from = nullptr;
   std::uint64_t seed = 1;  ///< of the positions between grid points
   int threads = 0;         ///< 0 = all; results do not depend on it
   std::function<void(const std::string& stage, double done)> progress;
 };
+
+/// A model without the errors of linear axes and their squareness.
+ModelSpec with_known_linear_axes(ModelSpec model, const Machine& machine);
 
 /// Throws InputError for settings that make no plan.
 void check_plan_settings(const PlanSettings& settings);

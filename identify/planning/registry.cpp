@@ -11,7 +11,9 @@ namespace volcal {
 #define VOLCAL_PLAN_INSTRUMENTS(INSTRUMENT) \
   INSTRUMENT(planned_laser_tracer)          \
   INSTRUMENT(planned_laser_tracker)         \
-  INSTRUMENT(planned_ball_bar)
+  INSTRUMENT(planned_ball_bar)              \
+  INSTRUMENT(planned_r_test)                \
+  INSTRUMENT(planned_probed_sphere)
 
 #define VOLCAL_DECLARE_PLANNED(name) const PlanInstrument& name();
 #define VOLCAL_ADDRESS_OF_PLANNED(name) &(name)(),

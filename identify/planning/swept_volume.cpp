@@ -23,6 +23,12 @@ Eigen::Vector3d spindle_direction(const Machine& machine) {
 
 double programmed_position(double q) { return std::round(q * kProgrammedSteps) / kProgrammedSteps; }
 
+AxisPosition home_position(const Machine& machine) {
+  AxisPosition position{};
+  for (const Axis& axis : machine.axes) position[index_of(axis.name)] = axis.home;
+  return position;
+}
+
 AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share) {
   AxisPosition position{};
   for (const Axis& axis : machine.axes) {
@@ -75,10 +81,13 @@ Eigen::Vector3d SweptVolume::point_w(const AxisPosition& position, std::size_t t
 
 std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& wanted_w,
                                                      std::size_t tool) const {
-  AxisPosition position{};
-  for (const Axis& axis : settings_.machine.axes) {
-    if (is_rotary(axis.name)) position[index_of(axis.name)] = axis.home;
-  }
+  return position_at(wanted_w, tool, home_position(settings_.machine));
+}
+
+std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& wanted_w, std::size_t tool,
+                                                     const AxisPosition& rotary) const {
+  AxisPosition position = rotary;
+  for (const AxisName name : kLinearAxes) position[index_of(name)] = 0.0;
   const Eigen::Vector3d at_zero = point_w(position, tool);
   Eigen::Matrix3d directions;
   for (const AxisName name : kLinearAxes) {

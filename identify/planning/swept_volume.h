@@ -1,6 +1,6 @@
 #pragma once
-/// What tools and spindle of a machine sweep, and where its axes stand for a point. Rotary axes at home; m,
-/// workpiece coordinates.
+/// What tools and spindle of a machine sweep with the rotary axes at home, and where its axes stand for a
+/// point. m, workpiece coordinates.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -27,6 +27,10 @@ class SweptVolume {
   /// Where the linear axes stand, in whole micrometres, with the tool's functional point there; nullopt
   /// outside the travel.
   std::optional<AxisPosition> position_at(const Eigen::Vector3d& wanted_w, std::size_t tool) const;
+  /// The same with the rotary axes where `rotary` has them: the linear axes follow (tool centre point
+  /// control).
+  std::optional<AxisPosition> position_at(const Eigen::Vector3d& wanted_w, std::size_t tool,
+                                          const AxisPosition& rotary) const;
   /// Whether the straight line from a place to the tool's functional point keeps clear of the spindle: a
   /// cylinder about the tool axis, from its reference point away from the tool.
   bool passes_spindle(const Eigen::Vector3d& from_w, const AxisPosition& position, std::size_t tool) const;
@@ -44,6 +48,9 @@ double distance_from_half_line(const Eigen::Vector3d& a, const Eigen::Vector3d& 
 
 /// In whole micrometres, as in an NC program.
 double programmed_position(double q);
+
+/// All axes at home.
+AxisPosition home_position(const Machine& machine);
 
 /// All axes at home, X, Y, Z at shares of their travel.
 AxisPosition position_at_share(const Machine& machine, const Eigen::Vector3d& share);

@@ -68,7 +68,7 @@ void lay_grids(const PlanSettings& settings, const LineOfSight& sight, PlanLayou
     spread_over_runs(sight, positions, layout);
   }
   std::erase_if(layout.runs, [](const PlanRun& run) { return run.positions.empty(); });
-  if (layout.runs.empty()) fail_unseen();
+  if (layout.runs.empty()) fail_unseen(sight);
 }
 
 /// Refuses a budget that does not hold one path at every place, before anything is searched.
@@ -81,8 +81,7 @@ void require_paths(const PlanSettings& settings, const LineOfSight& sight, PlanL
     if (!runs.empty()) layout.runs.push_back(runs.front());
   }
   if (layout.runs.empty()) {
-    throw InputError({}, "nothing can be measured about the middle of the volume: no tool gets round it",
-                     "give a shorter --bar-mm, a smaller --spindle-mm or another --region-mm");
+    fail_unseen(sight);
   }
   if (!fits_budget(layout, settings)) {
     throw InputError({}, "readings or time do not suffice for one path at every place",
@@ -108,17 +107,16 @@ void lay_paths(const PlanSettings& settings, const LineOfSight& sight, PlanLayou
 
 }  // namespace
 
-void fail_unseen() {
-  throw InputError(
-      {}, "no station sees the positions: range, elevation or the spindle are in the way",
-      "give a wider --range-mm or --elevation-deg, a smaller --spindle-mm or another --region-mm");
+void fail_unseen(const LineOfSight& sight) {
+  const InstrumentWords words = sight.instrument().words();
+  throw InputError({}, words.unreached, words.unreached_remedy);
 }
 
 PlanLayout textbook_layout(const PlanSettings& settings, const LineOfSight& sight) {
   PlanLayout layout;
   layout.stations_w = sight.textbook_stations_w(settings.budget.stations);
   for (std::size_t i = 0; i < layout.stations_w.size(); ++i)
-    layout.station_names.push_back("P" + std::to_string(i + 1));
+    layout.station_names.push_back((settings.apart_from == nullptr ? "P" : "V") + std::to_string(i + 1));
   if (sight.instrument().takes_runs_whole()) {
     lay_paths(settings, sight, layout);
   } else {

@@ -171,9 +171,19 @@ struct SpherePlace {
 
 /// Where rotary axes are measured: every place with every tool, rotary axes on a grid, linear axes following.
 struct RotaryPoses {
+  /// A setup with positions of its own, as a plan has them; in place of the grid.
+  struct Run {
+    std::string name;
+    std::string sphere;
+    std::string tool;
+    std::vector<CommandedPoint> points;
+    SourcePlace place = {};
+  };
+
   std::vector<SpherePlace> spheres;
   std::vector<std::string> tools;  ///< empty = the first three of the machine
   RotaryGrid grid;
+  std::vector<Run> runs;  ///< of R-tests and centres
 };
 
 /// R-test (ISO 10791-6): displacement of the tool point against a sphere that it stays on, one setup per

@@ -62,6 +62,27 @@ std::vector<CommandedPoint> followed_between(const SetupPlan& plan, const Follow
   return unseen;
 }
 
+/// The points of a run as they are given.
+void take_points(const RotaryPoses::Run& run, const SpherePlace& sphere, const PlanContext& context,
+                 SetupPlan& plan) {
+  if (run.points.empty()) context.fail("run " + run.name + " has no points", "name a file of positions");
+  const TruthMachine nominal(context.machine);
+  const Follower follower(nominal, context.machine.tools[plan.tool].offset);
+  plan.points = run.points;
+  RandomStream elsewhere(context.seed, "unseen positions of " + plan.name);
+  plan.unseen = followed_between(
+      plan, follower, [&](CommandedPoint&) { return sphere.position_w; }, elsewhere);
+}
+
+const SpherePlace& sphere_of(const RotaryPoses::Run& run, const RotaryPoses& poses,
+                             const PlanContext& context) {
+  const auto found = std::ranges::find(poses.spheres, run.sphere, &SpherePlace::name);
+  if (found == poses.spheres.end())
+    context.fail("run " + run.name + " names sphere \"" + run.sphere + "\", which is not listed",
+                 "list it among the spheres");
+  return *found;
+}
+
 /// Directions out of the sphere in which a kind of contact touches it, in the axes of the tool. The stylus
 /// stands on the sphere's side of the spindle, along -z of the tool.
 std::vector<Eigen::Vector3d> sides_of(const std::string& kind, const PlanContext& context) {
@@ -81,6 +102,14 @@ class SpherePlanner {
     SetupPlan plan = new_plan(sphere, tool, "");
     follow_poses(
         settings_.poses.grid, [&](CommandedPoint&) { return sphere.position_w; }, context_, plan);
+    return plan;
+  }
+
+  SetupPlan given_centres(const RotaryPoses::Run& run) const {
+    const SpherePlace& sphere = sphere_of(run, settings_.poses, context_);
+    SetupPlan plan = new_plan(sphere, context_.tool(run.tool), "");
+    plan.name = context_.prefix + run.name;
+    take_points(run, sphere, context_, plan);
     return plan;
   }
 
@@ -214,23 +243,45 @@ void check_poses(const RotaryPoses& poses, const PlanContext& context) {
   }
 }
 
+namespace {
+
+SetupPlan new_r_test(const RTest& settings, const SpherePlace& sphere, std::size_t tool,
+                     const PlanContext& context) {
+  RandomStream random(context.seed, "sphere " + context.prefix + sphere.name);
+  SetupPlan plan;
+  plan.name = context.prefix + "rtest_" + sphere.name + "_" + context.machine.tools[tool].name;
+  plan.instrument = kRTest;
+  plan.tool = tool;
+  plan.noise = settings.noise;
+  plan.seconds_per_reading = settings.seconds_per_reading;
+  plan.options.set("sphere", context.prefix + sphere.name);
+  plan.options.set("frame", settings.frame);
+  plan.truth.sphere = settings.offset_spread * random.normal_vector();
+  return plan;
+}
+
+std::vector<SetupPlan> given_r_tests(const RTest& settings, const PlanContext& context) {
+  std::vector<SetupPlan> plans;
+  for (const RotaryPoses::Run& run : settings.poses.runs) {
+    const SpherePlace& sphere = sphere_of(run, settings.poses, context);
+    SetupPlan plan = new_r_test(settings, sphere, context.tool(run.tool), context);
+    plan.name = context.prefix + run.name;
+    take_points(run, sphere, context, plan);
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace
+
 std::vector<SetupPlan> plan_r_test(const RTest& settings, const PlanContext& context) {
   check_poses(settings.poses, context);
   check_frame(settings.frame, context);
+  if (!settings.poses.runs.empty()) return given_r_tests(settings, context);
   std::vector<SetupPlan> plans;
   for (const SpherePlace& sphere : settings.poses.spheres) {
-    RandomStream random(context.seed, "sphere " + context.prefix + sphere.name);
-    const Eigen::Vector3d offset = settings.offset_spread * random.normal_vector();
     for (const std::size_t tool : tools_of(settings.poses, context)) {
-      SetupPlan plan;
-      plan.name = context.prefix + "rtest_" + sphere.name + "_" + context.machine.tools[tool].name;
-      plan.instrument = kRTest;
-      plan.tool = tool;
-      plan.noise = settings.noise;
-      plan.seconds_per_reading = settings.seconds_per_reading;
-      plan.options.set("sphere", context.prefix + sphere.name);
-      plan.options.set("frame", settings.frame);
-      plan.truth.sphere = offset;
+      SetupPlan plan = new_r_test(settings, sphere, tool, context);
       follow_poses(
           settings.poses.grid, [&](CommandedPoint&) { return sphere.position_w; }, context, plan);
       plans.push_back(std::move(plan));
@@ -243,6 +294,11 @@ std::vector<SetupPlan> plan_probed_sphere(const ProbedSphere& settings, const Pl
   check_poses(settings.poses, context);
   const SpherePlanner planner(settings, context);
   std::vector<SetupPlan> plans;
+  if (!settings.poses.runs.empty() && settings.contacts)
+    context.fail("runs with their own positions are of centres",
+                 "leave the runs or record = \"contacts\" out");
+  for (const RotaryPoses::Run& run : settings.poses.runs) plans.push_back(planner.given_centres(run));
+  if (!plans.empty()) return plans;
   for (const SpherePlace& sphere : settings.poses.spheres) {
     for (const std::size_t tool : tools_of(settings.poses, context)) {
       if (!settings.contacts) plans.push_back(planner.centres(sphere, tool));

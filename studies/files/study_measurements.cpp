@@ -312,9 +312,24 @@ sim::MeasurementSettings read_point_grid(const TomlTable& table) {
   return settings;
 }
 
+/// Runs with their own positions, each on one of the spheres.
+void read_sphere_runs(const TomlTable& table, sim::RotaryPoses& poses) {
+  for (const TomlTable& run : table.tables("runs")) {
+    poses.runs.push_back({run.required_name("name"), run.required_text("sphere"), run.required_text("tool"),
+                          read_points(run), run.place()});
+  }
+  if (poses.runs.empty()) return;
+  for (const char* key : {"tools", "positions", "range_deg", "poses", "bidirectional", "jitter"}) {
+    if (!table.has(key)) continue;
+    table.fail(key, table.path() + " has runs with their own positions, and " + key + " of a grid",
+               std::string("leave ") + key + " or the runs out");
+  }
+}
+
 sim::MeasurementSettings read_r_test(const TomlTable& table) {
   sim::RTest settings;
   settings.poses = read_rotary_poses(table);
+  read_sphere_runs(table, settings.poses);
   if (const auto frame = table.choice("frame", {"workpiece", "tool", "machine"})) settings.frame = *frame;
   read(table, "offset_spread_um", settings.offset_spread);
   read(table, "reading_s", settings.seconds_per_reading);
@@ -325,6 +340,7 @@ sim::MeasurementSettings read_r_test(const TomlTable& table) {
 sim::MeasurementSettings read_probed_sphere(const TomlTable& table) {
   sim::ProbedSphere settings;
   settings.poses = read_rotary_poses(table);
+  read_sphere_runs(table, settings.poses);
   settings.contacts = table.choice("record", {"centres", "contacts"}).value_or("centres") == "contacts";
   for (const char* key : {"contacts", "radius_mm", "radius_error_um", "radius_sigma_um"}) {
     if (settings.contacts || !table.has(key)) continue;

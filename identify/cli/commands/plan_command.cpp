@@ -31,6 +31,7 @@ struct PlanArguments {
   std::string machine;
   std::string model;
   std::string with;
+  std::string verify;
   std::string output;
   std::string target = "volumetric";
   std::vector<std::string> tools;
@@ -49,6 +50,7 @@ struct PlanArguments {
   double bar_sigma_um = -1.0;  ///< negative: not given
   double reading_s = 0.0;      ///< 0: what is usual for the instrument
   double feed_mm_min = 6000.0;
+  double turn_deg_s = 20.0;
   double clearance_mm = 100.0;
   double spindle_mm = 100.0;
   bool extend = false;
@@ -142,6 +144,9 @@ PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Cam
   PlanSettings settings = arguments.settings;
   settings.machine = read_machine(arguments.machine);
   if (!arguments.model.empty()) settings.model = read_model(arguments.model, settings.machine);
+  settings.linear_axes_known =
+      arguments.model.empty() && !arguments.extend && plan_instrument_of(settings).turns_rotary_axes();
+  if (settings.linear_axes_known) settings.model = with_known_linear_axes(settings.model, settings.machine);
   read_tools(arguments, settings);
   if (arguments.readings > 0) settings.budget.readings = arguments.readings;
   if (arguments.time_h > 0.0) settings.budget.time = arguments.time_h * kSecondsPerHour;
@@ -161,10 +166,12 @@ PlanSettings settings_of(const PlanArguments& arguments, const std::optional<Cam
   const double reading_s =
       arguments.reading_s > 0.0 ? arguments.reading_s : plan_instrument_of(settings).usual_reading_time();
   settings.costs = {arguments.station_min * kSecondsPerMinute, arguments.run_min * kSecondsPerMinute,
-                    reading_s, arguments.feed_mm_min * kMetrePerMillimetre / kSecondsPerMinute};
+                    reading_s, arguments.feed_mm_min * kMetrePerMillimetre / kSecondsPerMinute,
+                    arguments.turn_deg_s * kRadianPerDegree};
   check_plan_settings(settings);
   read_target(arguments, with ? &*with : nullptr, settings);
   if (arguments.extend) settings.existing = &*with;
+  if (!arguments.verify.empty()) settings.apart_from = &*with;
   return settings;
 }
 
@@ -181,9 +188,11 @@ std::optional<Campaign> given_campaign(const PlanArguments& arguments) {
   if (arguments.extend && arguments.readings == 0) {
     refuse_plan("--extend: how many readings may be added is missing", "give --readings N");
   }
-  if (arguments.with.empty()) return std::nullopt;
-  Campaign campaign = read_campaign(arguments.with);
-  return campaign;
+  if (!arguments.verify.empty() && !arguments.with.empty())
+    refuse_plan("--verify and --with name two campaigns", "give one of them");
+  const std::string& file = arguments.verify.empty() ? arguments.with : arguments.verify;
+  if (file.empty()) return std::nullopt;
+  return read_campaign(file);
 }
 
 void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const std::string& json) {
@@ -200,7 +209,8 @@ void write_plan(const PlanArguments& arguments, const CampaignPlan& plan, const 
 int run_plan(const PlanArguments& arguments, const CLI::App& app) {
   refuse_other_options(app, arguments.settings.instrument);
   if (!arguments.output.empty()) {
-    require_output_folder(arguments.output, {arguments.machine, arguments.model, arguments.with},
+    require_output_folder(arguments.output,
+                          {arguments.machine, arguments.model, arguments.with, arguments.verify},
                           replaceable(arguments));
   }
   const std::optional<Campaign> with = given_campaign(arguments);
@@ -221,12 +231,14 @@ int run_plan(const PlanArguments& arguments, const CLI::App& app) {
       fmt::print("\nwritten: {0}\nnext: volcal simulate {0}/study.toml -o simulated\n", arguments.output);
     }
   }
-  return plan.plan.invisible().empty() ? kDone : kIncomplete;
+  const bool identifies = settings.apart_from == nullptr;  // what verifies need not see every error
+  return plan.plan.invisible().empty() || !identifies ? kDone : kIncomplete;
 }
 
 void define_budget(CLI::App& app, PlanArguments& arguments) {
-  app.add_option("--stations", arguments.settings.budget.stations,
-                 "stations, or places of a ball-bar's centre ball; with --extend: setups to be added")
+  app.add_option(
+         "--stations", arguments.settings.budget.stations,
+         "stations, or places of a ball-bar's centre ball, or spheres; with --extend: setups to be added")
       ->check(CLI::Range(1, 12))
       ->capture_default_str();
   app.add_option("--readings", arguments.readings,
@@ -246,9 +258,14 @@ void define_budget(CLI::App& app, PlanArguments& arguments) {
       ->check(not_negative())
       ->capture_default_str();
   app.add_option("--reading-s", arguments.reading_s,
-                 "seconds that the machine stands for a reading; default: 4, of a ball-bar on its way 0.1")
+                 "seconds that the machine stands for a reading; default: 4, of a ball-bar on its way 0.1, "
+                 "of an R-test "
+                 "2, of a probed sphere 30")
       ->check(positive());
   app.add_option("--feed-mm-min", arguments.feed_mm_min, "between positions")
+      ->check(positive())
+      ->capture_default_str();
+  app.add_option("--turn-deg-s", arguments.turn_deg_s, "of rotary axes between positions")
       ->check(positive())
       ->capture_default_str();
 }
@@ -281,10 +298,12 @@ void define_instrument(CLI::App& app, PlanArguments& arguments) {
       ->delimiter(',')
       ->expected(2)
       ->capture_default_str();
-  app.add_option(
-         "--region-mm", arguments.region_mm,
-         "X0,X1,Y0,Y1,Z0,Z1 where stations or centre balls may stand, workpiece coordinates; default: around "
-         "the lower half of the volume, centre balls anywhere in it")
+  app.add_option("--region-mm", arguments.region_mm,
+                 "X0,X1,Y0,Y1,Z0,Z1 where stations, centre balls or spheres may stand, workpiece "
+                 "coordinates; default: "
+                 "around the lower half of the volume, centre balls anywhere in it, spheres about the axis "
+                 "of a rotary "
+                 "table or in the lower half of the volume")
       ->delimiter(',')
       ->expected(6);
   app.add_option("--clearance-mm", arguments.clearance_mm, "of stations from what tools and spindle sweep")
@@ -299,8 +318,10 @@ void define_instrument(CLI::App& app, PlanArguments& arguments) {
 std::function<int()> define_plan(CLI::App& app) {
   auto arguments = std::make_shared<PlanArguments>();
   app.add_option("MACHINE", arguments->machine, "machine.toml")->required();
-  app.add_option("-m,--model", arguments->model,
-                 "model.toml; default: all 21 errors, cubic B-splines, automatic knots");
+  app.add_option(
+      "-m,--model", arguments->model,
+      "model.toml; default: all 21 errors, cubic B-splines, automatic knots; of an instrument that turns "
+      "rotary axes their errors alone, linear axes known");
   app.add_option("-o,--output", arguments->output,
                  "folder for plan.json, plan.txt, report.html, study.toml and campaign/ with the positions");
   app.add_option(
@@ -311,6 +332,10 @@ std::function<int()> define_plan(CLI::App& app) {
   app.add_option("--with", arguments->with, "campaign.toml to compare with");
   app.add_flag("--extend", arguments->extend,
                "keep the readings of --with and find the setups that help them most");
+  app.add_option(
+      "--verify", arguments->verify,
+      "campaign.toml that a compensation was made from: plan one that verifies it, at other places and "
+      "positions (ISO/TR 16907, 11.3)");
   define_budget(app, *arguments);
   define_instrument(app, *arguments);
   app.add_option(
@@ -345,7 +370,8 @@ const Command& plan_command() {
       "P1_short\"\n"
       "  volcal plan machine.toml --with campaign.toml --extend --stations 1 --readings 200 -o more\n"
       "  volcal plan machine.toml --instrument ball-bar --bar-mm 100 --bar-sigma-um 0.5 --stations 3 "
-      "--readings 1200 -o plan\n",
+      "--readings 1200 -o plan\n"
+      "  volcal plan five-axis/machine.toml --instrument r-test --stations 3 --readings 720 -o spheres\n",
       define_plan};
   return command;
 }

@@ -4,9 +4,12 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "volcal/identify/cli/command.h"
+#include "volcal/identify/cli/options/compensated_readings.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/errors/alignment.h"
@@ -17,6 +20,7 @@
 #include "volcal/identify/report/report.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/validation_text.h"
+#include "volcal/identify/report/values/measured_error.h"
 #include "volcal/identify/result/fitted_readings.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -31,6 +35,7 @@ namespace {
 struct ValidateArguments {
   std::string result;
   std::string campaign;
+  std::string tables;
   std::string output;
   double max_rms_um = 0.0;
   int threads = 0;
@@ -66,6 +71,28 @@ void write_validation(const ValidateArguments& arguments, const Campaign& campai
   folder.commit();
 }
 
+/// With tables that were active: the readings become what they are without; what the machine showed with
+/// them.
+std::optional<MeasuredError> verify(const ValidateArguments& arguments, Campaign& campaign) {
+  if (arguments.tables.empty()) return {};
+  MeasuredError measured = measured_error(campaign);
+  campaign = without_corrections(std::move(campaign), active_tables(arguments.tables));
+  return measured;
+}
+
+std::string compensated_text(const MeasuredError& measured) {
+  std::string text = "Measured with the tables active, off the machine without errors\n";
+  const auto add = [&](const ResidualSize& size, const char* what, const char* unit) {
+    if (size.count > 0)
+      text += fmt::format("  {} {}: RMS {:.3f}, largest {:.3f} {}\n", size.count, what, size.rms * kPerMicro,
+                          size.max * kPerMicro, unit);
+  };
+  add(measured.lengths, "lengths and vectors", "um");
+  add(measured.angles, "angles", "urad");
+  return text +
+         "Below: the same readings less what the tables corrected, so that the model predicts them\n\n";
+}
+
 int run_validate(const ValidateArguments& arguments) {
   if (!arguments.output.empty())
     require_output_folder(arguments.output, {arguments.result, arguments.campaign});
@@ -78,12 +105,18 @@ int run_validate(const ValidateArguments& arguments) {
     throw InputError({arguments.campaign, 0}, "its machine is not the one that was identified: " + difference,
                      "validate on a campaign of the same machine");
   }
+  const std::optional<MeasuredError> compensated = verify(arguments, campaign);
   std::ranges::move(missing_rotary_errors(campaign, result.identified), std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);
   auto figures = validation_json(validation.figures, fitted);
+  if (compensated) {
+    figures["compensated_rms_um"] = compensated->lengths.rms * kPerMicro;
+    figures["compensated_max_um"] = compensated->lengths.max * kPerMicro;
+  }
   add_notes(campaign.notes, figures);
   const std::string json = json_text(figures, 2) + '\n';
-  const std::string text = validation_text(validation, fitted) + findings_text(campaign.notes);
+  const std::string text = (compensated ? compensated_text(*compensated) : "") +
+                           validation_text(validation, fitted) + findings_text(campaign.notes);
   if (!arguments.output.empty())
     write_validation(arguments, campaign, result, validation, fitted, text, json);
   fmt::print("{}", arguments.json ? json : text);
@@ -107,6 +140,9 @@ std::function<int()> define_validate(CLI::App& app) {
   app.add_option("-o,--output", arguments->output,
                  "folder for report.html, residuals_before.csv, residuals_after.csv, validation.txt and "
                  "validation.json");
+  app.add_option(
+      "--tables", arguments->tables,
+      "folder of tables that were active while CAMPAIGN was measured: judges the compensated machine");
   app.add_option("--max-rms-um", arguments->max_rms_um, "exit 1 when the RMS after exceeds this")
       ->check(positive());
   app.add_option("--threads", arguments->threads, "0 = all")->check(number_of_threads());
@@ -121,6 +157,7 @@ const Command& validate_command() {
                                   "  volcal validate result other-setups/campaign.toml\n"
                                   "  volcal validate result other-setups/campaign.toml -o validation\n"
                                   "  volcal validate result truth/campaign.toml --json\n"
+                                  "  volcal validate result verification/campaign.toml --tables tables\n"
                                   "  volcal validate result acceptance/campaign.toml --max-rms-um 3\n",
                                   define_validate};
   return command;

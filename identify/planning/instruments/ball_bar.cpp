@@ -49,9 +49,14 @@ class PlannedBallBar : public PlanInstrument {
 
   InstrumentWords words() const override {
     return {
-        "place", "places", "Places of the centre ball, workpiece coordinates", "centre balls may stand",
+        "place",
+        "places",
+        "Places of the centre ball, workpiece coordinates",
+        "centre balls may stand",
         "Checked: that the arcs are within the travel, that the bar passes by the spindle; not the table, "
-        "the holder of the centre ball, the tool's shank, covers and clamped parts."};
+        "the holder of the centre ball, the tool's shank, covers and clamped parts.",
+        "nothing can be measured about the middle of the volume: no tool gets round it",
+        "give a shorter --bar-mm, a smaller --spindle-mm or another --region-mm"};
   }
 
   std::vector<std::string> own_options() const override { return {"--bar-mm", "--bar-sigma-um"}; }
@@ -125,7 +130,10 @@ class PlannedBallBar : public PlanInstrument {
     setup.repeatability = settings.noise.repeatability;
   }
 
-  std::vector<double> nominal_reading(const Eigen::Vector3d& bar) const override { return {bar.norm()}; }
+  std::vector<double> nominal_reading(const Eigen::Vector3d& place_w,
+                                      const Eigen::Vector3d& point_w) const override {
+    return {(point_w - place_w).norm()};
+  }
 
   /// Setups of a plan are called PLACE_TOOL_PLANE; others name their place themselves.
   std::optional<NamedPlace> place_of(const Setup& setup, const Machine& machine) const override {

@@ -22,9 +22,14 @@ class PlannedTracking : public PlanInstrument {
 
   InstrumentWords words() const override {
     return {
-        "station", "stations", "Stations, workpiece coordinates", "stations may stand",
+        "station",
+        "stations",
+        "Stations, workpiece coordinates",
+        "stations may stand",
         "Checked: range and elevation of the instrument, that beams pass by the spindle, that stations are "
-        "clear of what tools and spindle sweep; not columns, covers and clamped parts."};
+        "clear of what tools and spindle sweep; not columns, covers and clamped parts.",
+        "no station sees the positions: range, elevation or the spindle are in the way",
+        "give a wider --range-mm or --elevation-deg, a smaller --spindle-mm or another --region-mm"};
   }
 
   std::vector<std::string> own_options() const override {
@@ -128,7 +133,9 @@ class PlannedTracking : public PlanInstrument {
     setup.repeatability = settings.noise.repeatability;
   }
 
-  std::vector<double> nominal_reading(const Eigen::Vector3d& beam) const override {
+  std::vector<double> nominal_reading(const Eigen::Vector3d& place_w,
+                                      const Eigen::Vector3d& point_w) const override {
+    const Eigen::Vector3d beam = point_w - place_w;
     if (!angles_) return {beam.norm()};
     return {beam.norm(), std::atan2(beam.y(), beam.x()),
             std::atan2(beam.z(), std::hypot(beam.x(), beam.y()))};

@@ -7,12 +7,14 @@
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/planning/registry.h"
+#include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/words/sentences.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -71,6 +73,29 @@ std::set<std::string> places_of(const Campaign& campaign, const InstrumentWords&
   return places;
 }
 
+/// What the plan takes of the axes that its instrument does not measure.
+std::string assumed_of_axes(const CampaignPlan& plan) {
+  if (plan.settings.linear_axes_known)
+    return "linear axes: known, by a campaign of their own (with --model or --extend they are unknowns)\n";
+  const bool turns = plan_instrument_of(plan.settings).turns_rotary_axes();
+  const std::vector<RotaryStretch> rotary = rotary_stretches(plan.settings.machine);
+  if (turns || rotary.empty() || !moving_rotary_axes(plan.plan.campaign).empty()) return "";
+  std::string letters;
+  for (const RotaryStretch& each : rotary)
+    letters += (letters.empty() ? "" : ", ") + std::string(1, letter_of(each.axis));
+  return "rotary axes " + letters + " stand at home; their errors: --instrument r-test\n";
+}
+
+/// What holds for a campaign on a compensated machine (ISO/TR 16907:2015, 11.3).
+std::string verification_words(const CampaignPlan& plan) {
+  if (plan.settings.apart_from == nullptr) return "";
+  return "verifies: at other places and positions than the campaign given (ISO/TR 16907, 11.3)\n"
+         "  the control must know the offset of the tool, where L-ANG, L-VOL, R-ANG or R-VOL is active\n"
+         "  angles measured directly stay as they were: linear axes correct what rotations do, not "
+         "rotations\n"
+         "  judge it: volcal validate RESULT measured/campaign.toml --tables TABLES\n";
+}
+
 std::string plan_head(const CampaignPlan& plan) {
   const PlanSettings& settings = plan.settings;
   const PlanBudget& budget = settings.budget;
@@ -81,7 +106,7 @@ std::string plan_head(const CampaignPlan& plan) {
   if (settings.bar.length > 0.0) text += " " + bar_words(settings.bar);
   if (budget.readings) text += fmt::format(", {} readings", count_number(*budget.readings));
   if (budget.time) text += fmt::format(", {} h", hours(*budget.time));
-  text += "\n";
+  text += "\n" + assumed_of_axes(plan) + verification_words(plan);
   return text;
 }
 
@@ -230,6 +255,7 @@ std::string options_table(const CampaignPlan& plan) {
 }
 
 std::string verdict(const CampaignPlan& plan) {
+  if (plan.settings.apart_from != nullptr) return "";  // it adds to a campaign, and is no measure alone
   const double ratio = target_ratio(plan);
   const std::string other = plan.settings.existing != nullptr ? "what there is" : "the textbook layout";
   return fmt::format("Against {}: {} {:.1f} % {}\n", other, target_words(plan.settings),

@@ -12,6 +12,7 @@
 #include <map>
 #include <set>
 
+#include "tests/support/five_axis.h"
 #include "volcal/identify/planning/path_choice.h"
 #include "volcal/identify/planning/plan_search.h"
 #include "volcal/identify/planning/registry.h"
@@ -61,7 +62,8 @@ TEST(PlanInstruments, AreInstrumentsOfTheModel) {
     EXPECT_GT(each->usual_reading_time(), 0.0);
     for (const std::string& option : each->own_options()) EXPECT_TRUE(option.starts_with("--")) << option;
     const InstrumentWords words = each->words();
-    for (const std::string& word : {words.place, words.places, words.heading, words.region, words.checked})
+    for (const std::string& word : {words.place, words.places, words.heading, words.region, words.checked,
+                                    words.unreached, words.unreached_remedy})
       EXPECT_FALSE(word.empty()) << each->name();
   }
   PlanSettings settings = one_bar();
@@ -71,8 +73,9 @@ TEST(PlanInstruments, AreInstrumentsOfTheModel) {
 
 /// Every instrument says of a setup what it has written into it.
 TEST(PlanInstruments, FindTheirPlacesAgain) {
-  PlanSettings settings = one_bar();
   for (const PlanInstrument* each : plan_instruments()) {
+    PlanSettings settings = one_bar();
+    if (each->turns_rotary_axes()) settings.machine = testing_support::five_axis_machine("w C' A' b X Y Z t");
     settings.instrument = each->name();
     const PlanLayout layout = textbook_layout(settings, LineOfSight(settings));
     const Campaign campaign = campaign_of(layout, settings);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "tests/support/five_axis.h"
 #include "tests/support/scratch_folder.h"
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/planning/plan_search.h"
@@ -41,6 +42,7 @@ TEST(StudyOfAPlan, MeasuresThePlanOfEveryInstrument) {
   for (const PlanInstrument* each : plan_instruments()) {
     SCOPED_TRACE(each->name());
     settings.instrument = each->name();
+    if (each->turns_rotary_axes()) settings.machine = testing_support::five_axis_machine("w C' A' b X Y Z t");
     CampaignPlan plan;
     plan.settings = settings;
     plan.plan.campaign = campaign_of(textbook_layout(settings, LineOfSight(settings)), settings);

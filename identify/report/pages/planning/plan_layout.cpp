@@ -6,6 +6,7 @@
 
 #include "volcal/identify/planning/line_of_sight.h"
 #include "volcal/identify/planning/registry.h"
+#include "volcal/identify/planning/rotary_positions.h"
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/words/sentences.h"
@@ -24,6 +25,23 @@ Json corners_json(const Eigen::AlignedBox3d& box) {
     corners.push_back(rounded_vector(box.min() + share.cwiseProduct(box.sizes()), kPerMilli, 6));
   }
   return corners;
+}
+
+/// Positions of the rotary axes that the plan turns, deg, of the pass there.
+Json rotary_positions_json(const Setup& setup, const std::vector<RotaryStretch>& rotary, std::size_t count) {
+  Json positions = Json::array();
+  const auto moves = [&](const RotaryStretch& each) {
+    const auto [low, high] = std::ranges::minmax(setup.readings.position[index_of(each.axis)]);
+    return high > low;
+  };
+  if (setup.readings.size() == 0 || std::ranges::none_of(rotary, moves)) return positions;
+  for (std::size_t row = 0; row < count; ++row) {
+    Json at = Json::array();
+    for (const RotaryStretch& each : rotary)
+      at.push_back(rounded(setup.readings.position[index_of(each.axis)][row] / kRadianPerDegree, 5));
+    positions.push_back(std::move(at));
+  }
+  return positions;
 }
 
 /// First readings of every position: the pass there.
@@ -56,7 +74,8 @@ Json planned_setup_json(const Setup& setup, const Machine& machine, const Kinema
           {"instrument", setup.instrument},
           {"readings", readings.size()},
           {"point_mm", std::move(points)},
-          {"beam_mm", std::move(beams)}};
+          {"beam_mm", std::move(beams)},
+          {"rotary_deg", rotary_positions_json(setup, rotary_stretches(machine), std::min(count, most))}};
 }
 
 Json campaign_of_page(const ExpectedCampaign& expected, const CampaignPlan& plan) {
@@ -103,7 +122,11 @@ Json plan_layout_page(const PlanPageInput& input) {
                        {"still_invisible", option.still_invisible}});
   }
   const InstrumentWords words = sight.instrument().words();
-  return {{"place", words.place},
+  Json rotary = Json::array();
+  for (const RotaryStretch& each : rotary_stretches(plan.settings.machine))
+    rotary.push_back(std::string(1, letter_of(each.axis)));
+  return {{"rotary_axes", std::move(rotary)},
+          {"place", words.place},
           {"places", words.places},
           {"heading", words.heading},
           {"region", words.region},

@@ -1,5 +1,5 @@
 import { choice, count, el, fixed, note, significant, table } from '../dom.js';
-import { addPlot, column, commonLayout, plain, plainInScene, sceneHeight, segments } from '../plot.js';
+import { addPlot, column, commonLayout, layout2d, legendAbove, plain, plainInScene, sceneHeight, segments } from '../plot.js';
 import { color, series } from '../theme.js';
 
 const edges = (corners) => corners.flatMap((corner, a) =>
@@ -60,6 +60,23 @@ function picture(data, campaign, node) {
   };
 }
 
+const turns = (data) => data.rotary_axes.length > 0 && data.campaigns.some((campaign) => campaign.setups.some((setup) => setup.rotary_deg.length > 0));
+
+/** Positions of the rotary axes, the first over the second, one shade a tool. */
+function rotaryPicture(data, campaign) {
+  const tools = [...new Set(data.campaigns.flatMap((each) => each.setups.map((setup) => setup.tool)))];
+  const [first, second] = data.rotary_axes;
+  const traces = tools.map((tool, k) => {
+    const own = campaign.setups.filter((setup) => setup.tool === tool);
+    const at = own.flatMap((setup) => setup.rotary_deg);
+    return {
+      x: column(at, 0), y: second === undefined ? at.map(() => 0) : column(at, 1), text: own.flatMap((setup) => setup.rotary_deg.map(() => plain(setup.name))), type: 'scatter', mode: 'markers', name: `tool ${plain(tool)}`,
+      marker: { size: 6, symbol: ['circle', 'square', 'triangle-up', 'diamond'][k % 4], color: series(k) }, hovertemplate: `%{text}<br>${first} %{x:.1f}°${second === undefined ? '' : `, ${second} %{y:.1f}°`}<extra></extra>`,
+    };
+  });
+  return { paperHeight: 0.7, data: traces, layout: layout2d({ height: 360, margin: { t: 40 }, ...legendAbove(), hovermode: 'closest', x: { title: `${first} [°]` }, y: { title: second === undefined ? '' : `${second} [°]` } }) };
+}
+
 const capital = (word) => word.charAt(0).toUpperCase() + word.slice(1);
 
 function stationTable(data, campaign) {
@@ -106,18 +123,23 @@ export function renderPlanLayout(body, data) {
   body.append(figures(data.campaigns));
   const node = el('div', { class: 'plot scene' });
   const stations = el('div', {});
-  const redraw = addPlot(node, () => picture(data, view.campaign, node));
+  const redraws = [addPlot(node, () => picture(data, view.campaign, node))];
   const describe = () => stations.replaceChildren(stationTable(data, view.campaign));
   const options = data.campaigns.map((campaign, k) => [k, campaign.name]);
   const controls = choice('Show', options, (k) => {
     view.campaign = data.campaigns[k];
     describe();
-    redraw();
+    redraws.forEach((again) => again());
   });
   describe();
   body.append(
     el('div', { class: 'controls' }, controls), node, el('h3', {}, data.heading), stations,
     note(`Workpiece coordinates. Dots: functional points where readings are taken, every one from both directions; lines: some of the beams or bars. Click a name in the legend to show or hide it; drag to turn; the buttons above the picture move and zoom it. ${data.checked}`),
   );
+  if (turns(data)) {
+    const rotary = el('div', { class: 'plot' });
+    redraws.push(addPlot(rotary, () => rotaryPicture(data, view.campaign)));
+    body.append(el('h3', {}, 'Positions of the rotary axes'), rotary, note('The linear axes follow, so that the tool stays on its sphere; every position is met from both directions.'));
+  }
   if (data.options.length > 0) body.append(el('h3', {}, 'What one setup more would bring'), optionTable(data.options));
 }

@@ -1,0 +1,117 @@
+#include "volcal/identify/planning/rotary_positions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include "volcal/model/description/unknowns.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr int kFewestNodes = 3;
+
+double in_tenths_of_degrees(double angle) {
+  constexpr double kTenth = std::numbers::pi / 1800.0;
+  return std::round(angle / kTenth) * kTenth;
+}
+
+/// Uniform in -1 ... 1, the same with every standard library.
+double evenly(std::mt19937_64& random) {
+  return 2.0 * (static_cast<double>(random() >> 11U) * 0x1p-53) - 1.0;
+}
+
+std::vector<int> node_counts(const std::vector<RotaryStretch>& stretches, std::size_t positions) {
+  double product = 1.0;
+  for (const RotaryStretch& each : stretches) product *= each.length();
+  const double density =
+      std::pow(static_cast<double>(positions) / product, 1.0 / static_cast<double>(stretches.size()));
+  std::vector<int> counts;
+  for (const RotaryStretch& each : stretches)
+    counts.push_back(std::max(kFewestNodes, static_cast<int>(std::lround(density * each.length()))));
+  return counts;
+}
+
+/// Calls use(cell) for every node of a grid, the first axis fastest.
+template <class Use>
+void for_each_cell(const std::vector<int>& counts, const Use& use) {
+  std::array<int, 3> all = {1, 1, 1};
+  for (std::size_t i = 0; i < std::min(counts.size(), all.size()); ++i) all[i] = counts[i];
+  for (int k = 0; k < all[2]; ++k) {
+    for (int j = 0; j < all[1]; ++j) {
+      for (int i = 0; i < all[0]; ++i) use(std::array<int, 3>{i, j, k});
+    }
+  }
+}
+
+std::vector<Eigen::Vector3d> corners_and_middle(const Eigen::AlignedBox3d& box) {
+  std::vector<Eigen::Vector3d> points = {box.center()};
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d share(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+    points.emplace_back(box.min() + share.cwiseProduct(box.sizes()));
+  }
+  return points;
+}
+
+}  // namespace
+
+double RotaryStretch::node(double i, int count) const {
+  const double step = length() / std::max(1, whole_turn ? count : count - 1);
+  return min + step * i;
+}
+
+std::vector<RotaryStretch> rotary_stretches(const Machine& machine) {
+  std::vector<RotaryStretch> stretches;
+  for (const Axis& axis : machine.axes) {
+    if (!is_rotary(axis.name)) continue;
+    RotaryStretch stretch{axis.name, axis.travel_min, axis.travel_max, turns_fully(axis)};
+    if (axis.travel() > kTurn) {
+      stretch.min = std::clamp(axis.home - 0.5 * kTurn, axis.travel_min, axis.travel_max - kTurn);
+      stretch.max = stretch.min + kTurn;
+    }
+    stretches.push_back(stretch);
+  }
+  std::ranges::stable_sort(stretches, std::ranges::greater{}, &RotaryStretch::length);
+  return stretches;
+}
+
+std::vector<PlanPosition> rotary_grid(const Machine& machine, std::size_t positions, double jitter,
+                                      std::uint64_t seed, std::uint64_t stream) {
+  const std::vector<RotaryStretch> stretches = rotary_stretches(machine);
+  if (stretches.empty()) return {};
+  const std::vector<int> counts = node_counts(stretches, positions);
+  std::seed_seq mixed{seed, stream};
+  std::mt19937_64 random(mixed);
+  std::vector<PlanPosition> grid;
+  for_each_cell(counts, [&](const std::array<int, 3>& cell) {
+    PlanPosition each{home_position(machine), cell};
+    for (std::size_t a = 0; a < stretches.size(); ++a) {
+      const double moved = cell[a] + jitter * evenly(random);
+      const double q = in_tenths_of_degrees(stretches[a].node(moved, counts[a]));
+      each.position[index_of(stretches[a].axis)] = std::clamp(q, stretches[a].min, stretches[a].max);
+    }
+    grid.push_back(each);
+  });
+  return grid;
+}
+
+std::vector<AxisPosition> poses_in_box(const Machine& machine, const SweptVolume& swept,
+                                       const Eigen::AlignedBox3d& box_w, std::size_t tool, int per_axis) {
+  const std::vector<RotaryStretch> stretches = rotary_stretches(machine);
+  const std::vector<Eigen::Vector3d> points_w = corners_and_middle(box_w);
+  std::vector<AxisPosition> poses;
+  for_each_cell(std::vector<int>(stretches.size(), per_axis), [&](const std::array<int, 3>& cell) {
+    AxisPosition rotary = home_position(machine);
+    for (std::size_t a = 0; a < stretches.size(); ++a)
+      rotary[index_of(stretches[a].axis)] = stretches[a].node(cell[a], per_axis);
+    for (const Eigen::Vector3d& point_w : points_w) {
+      if (const auto pose = swept.position_at(point_w, tool, rotary)) poses.push_back(*pose);
+    }
+  });
+  return poses;
+}
+
+}  // namespace volcal

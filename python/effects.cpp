@@ -229,9 +229,9 @@ void check_variables(const OwnEffect& effect) {
                      "name what its driver uses: variables=[\"x\"]");
   for (const std::string& name : effect.variables) {
     if (is_recorded_variable(name)) continue;
-    throw InputError(
-        {}, effect.what() + ": " + name + " is no variable",
-        "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()));
+    throw InputError({}, effect.what() + ": " + name + " is no variable",
+                     "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
+                         listed_names(plain_variables()));
   }
 }
 
@@ -290,8 +290,8 @@ void define_readings(py::module_& module) {
       "The n readings of one setup, as the driver of an own effect sees them while it is called.")
       .def("__getitem__", &ReadingsView::values, py::arg("variable"),
            "A variable: float array of shape (n,). x y z (mm) and a b c (deg) as commanded, dir_x ... dir_c "
-           "(-1, 0 = "
-           "unknown, 1), t (s since the first reading), T_<channel> (degC), length (mm to the station), feed "
+           "(-1, 0 = unknown, 1), since_x ... since_c (mm, deg since the axis turned round), t (s since the "
+           "first reading), T_<channel> (degC), length (mm to the station), feed "
            "(mm/min), tool_length tool_x tool_y tool_z (mm). Raises KeyError for one that the effect does "
            "not name.")
       .def("__len__", [](const ReadingsView& readings) { return readings.view().rows(); })

@@ -7,6 +7,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/figures/diagnosis_figures.h"
+#include "volcal/identify/criticism/formulas/formula_search.h"
 #include "volcal/identify/criticism/proposals/confounding.h"
 #include "volcal/identify/criticism/proposals/next_measurement.h"
 #include "volcal/identify/criticism/search/ladder.h"
@@ -98,6 +99,7 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
     if (options.progress) options.progress(stage, done);
   };
   const LinearModel model(campaign, result);
+  for (const EffectSpec& surface : options.asked_laws) check_asked_surface(model, surface);
   Search search(model, heldout_lines(model, options.heldout_share), search_options(options));
   search.run();
   const ModelState& reached = search.reached();
@@ -118,6 +120,8 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
   for (std::size_t i = 0; i < reached.surfaces().size(); ++i)
     diagnosis.unknown.insert(diagnosis.unknown.begin() + static_cast<std::ptrdiff_t>(i),
                              reached.surfaces()[i].finding);
+  for (const EffectSpec& surface : options.asked_laws)
+    diagnosis.asked_laws.push_back(asked_laws(reached, surface));
   diagnosis.noise = noise_table(reached.noise_with_uncertainty());
   diagnosis.noise_instruments = reached.model().noise_groups();
   conclude(remarks(search), diagnosis);

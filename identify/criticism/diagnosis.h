@@ -27,7 +27,8 @@ struct DiagnoseOptions {
   bool figures = true;                 ///< what the report draws; a study leaves it out
   std::vector<std::string> leave_out;  ///< kinds of effects that are not looked for
   std::vector<EffectSpec> own;  ///< effects that the user thinks of, judged like those of the catalogue
-  bool compare = true;          ///< MIB, confounding matrix, next measurement
+  std::vector<EffectSpec> asked_laws;  ///< surfaces (kind `empirical`) behind which laws are looked for
+  bool compare = true;                 ///< MIB, confounding matrix, next measurement
   PlanningOptions planning;
   std::function<void(const std::string& stage, double done)> progress;
 };

@@ -11,6 +11,7 @@
 
 #include "volcal/identify/criticism/catalogue/detectable.h"
 #include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/units.h"
@@ -90,6 +91,16 @@ DetectableEffect detectable(const EffectFinding& found, const Effect& effect, co
           visible,        amplitude.mdb,         amplitude.mdb * levers.rms(effect, shape, hardest)};
 }
 
+/// What held-out readings are left with once the user's effect is in the model reached.
+MemberFinding heldout_errors_with(const ModelState& reached, bool has_it, const FamilyTest& test) {
+  if (test.score.dof == 0) return {};
+  const LadderStep step = has_it ? last_step_of(reached) : ladder_step_beside(reached, test);
+  return {.rms_heldout = step.rms_heldout,
+          .systematic = step.systematic,
+          .systematic_low = step.systematic_low,
+          .systematic_high = step.systematic_high};
+}
+
 }  // namespace
 
 EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
@@ -161,6 +172,7 @@ void list_tried(const ModelState& reached, std::span<const EffectSpec> own, Diag
         std::ranges::find(reached.added(), family, [](const AddedEffect& each) { return each.test.family; });
     const FamilyTest& test = added != reached.added().end() ? added->test : reached.tests().families[family];
     diagnosis.tried.push_back(finding(reached.setting(), test));
+    diagnosis.tried_errors.push_back(heldout_errors_with(reached, added != reached.added().end(), test));
   }
 }
 

@@ -78,8 +78,10 @@ class SurfaceSummary {
       surface_.effect->amplitudes()[k].keep(coefficients_[static_cast<Eigen::Index>(k)], out_.spec.options);
     find_size();
     const SmoothingTerm& term = state_.model().smoothing()[surface_.term];
+    out_.figure.coefficients = coefficients_;
+    out_.figure.covariance = covariance_of_coefficients();
     out_.effective_parameters =
-        term.prior->rank - term.lambda * covariance_of_coefficients().cwiseProduct(term.precision()).sum();
+        term.prior->rank - term.lambda * out_.figure.covariance.cwiseProduct(term.precision()).sum();
     out_.free = free_parts(basis_, term.surface->imitated(), out_.drivers,
                            surface_.spec.options.text("factor").has_value());
     draw();

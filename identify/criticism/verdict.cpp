@@ -189,7 +189,8 @@ bool is_alternative(const EffectName& name, const Diagnosis& diagnosis) {
 }  // namespace
 
 void conclude_tried(Diagnosis& diagnosis) {
-  for (const EffectFinding& tried : diagnosis.tried) {
+  for (std::size_t i = 0; i < diagnosis.tried.size(); ++i) {
+    const EffectFinding& tried = diagnosis.tried[i];
     Finding finding{FindingCode::DiagnosisTried,
                     {{"effect", tried.label},
                      {"added", is_added(tried.name, diagnosis)},
@@ -198,6 +199,11 @@ void conclude_tried(Diagnosis& diagnosis) {
                      {"gain", FindingNumber{tried.gain}},
                      {"log10_p", FindingNumber{tried.log10_p}},
                      {"tests", count(diagnosis.families)}}};
+    if (i < diagnosis.tried_errors.size() && !std::isnan(diagnosis.tried_errors[i].systematic)) {
+      finding.data["systematic"] = FindingNumber{diagnosis.tried_errors[i].systematic};
+      finding.data["systematic_given"] = FindingNumber{diagnosis.ladder.front().systematic};
+      finding.data["systematic_reached"] = FindingNumber{diagnosis.ladder.back().systematic};
+    }
     if (const NearestEffect nearest = nearest_to(tried.name, diagnosis.confounding); nearest.cosine > 0.0) {
       finding.data["nearest"] = nearest.label;
       finding.data["cosine"] = FindingNumber{nearest.cosine};

@@ -100,14 +100,23 @@ std::string laws(const Finding& finding) {
   return text;
 }
 
-/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310, z = -120; ..."
+/// As users write of a driver (model/effects/recorded_variable.h).
+const char* unit_of_driver(const std::string& name) {
+  if (name.size() == 1) return name == "t" ? " s" : (name < "d" ? " deg" : " mm");
+  if (name.starts_with("T_")) return " degC";
+  if (name.starts_with("dir_")) return "";
+  return name == "feed" ? " mm/min" : " mm";
+}
+
+/// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310 mm, z = -120 mm; ..."
 std::string drawn(const Finding& finding) {
   const std::vector<std::string> drivers = finding.texts("drivers");
   const std::vector<FindingNumber> at = finding.numbers("at");
   if (drivers.size() != at.size()) throw std::invalid_argument("there is not one value for each driver");
   std::string place;
   for (std::size_t i = 0; i < at.size(); ++i)
-    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : "", drivers[i], at[i].si);
+    place +=
+        fmt::format("{}{} = {:.4g}{}", i > 0 ? ", " : "", drivers[i], at[i].si, unit_of_driver(drivers[i]));
   const FindingNumber& largest = finding.number("largest");
   std::string text = fmt::format(
       "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it and the error falls.",
@@ -128,6 +137,13 @@ std::string tried(const Finding& finding) {
   std::string text =
       fmt::format("{}{} (log10 p {:.1f} with all {} tests counted, gain {:.3g})", effect, became,
                   finding.number("log10_p").si, finding.count("tests"), finding.number("gain").si);
+  if (finding.has("systematic")) {
+    const auto um = [&finding](const char* key) { return finding.number(key).si * 1e6; };
+    text += fmt::format("; held-out readings keep {:.2g} um of systematic error with it", um("systematic"));
+    text += finding.flag("added") ? fmt::format(", {:.2g} um as given", um("systematic_given"))
+                                  : fmt::format(", {:.2g} um without it, {:.2g} um as given",
+                                                um("systematic_reached"), um("systematic_given"));
+  }
   if (finding.has("nearest"))
     text += fmt::format("; nearest to it in these readings is {}, cosine {:.3f}", finding.text("nearest"),
                         finding.number("cosine").si);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <sstream>
 
 #include "volcal/model/description/units.h"
+#include "volcal/model/effects/travel_since_turning.h"
 
 namespace volcal {
 namespace {
@@ -22,6 +24,17 @@ std::optional<AxisName> axis_of(const std::string& letter) {
   return axis_from_letter(static_cast<char>(std::toupper(letter[0])));
 }
 
+constexpr const char* kDirection = "dir_";
+constexpr const char* kSinceTurning = "since_";
+
+/// Of a position, direction or travel since turning.
+std::optional<AxisName> axis_in(const std::string& name) {
+  for (const std::string prefix : {kDirection, kSinceTurning}) {
+    if (name.starts_with(prefix)) return axis_of(name.substr(prefix.size()));
+  }
+  return axis_of(name);
+}
+
 template <class Values>
 Eigen::VectorXd scaled(const Values& values, double unit) {
   Eigen::VectorXd out(static_cast<Eigen::Index>(values.size()));
@@ -29,6 +42,15 @@ Eigen::VectorXd scaled(const Values& values, double unit) {
     out[static_cast<Eigen::Index>(i)] = static_cast<double>(values[i]) / unit;
   }
   return out;
+}
+
+/// As far as ever until it first turns.
+Eigen::VectorXd since_turning(const Setup& setup, AxisName axis) {
+  std::vector<double> travelled = travel_since_turning(setup, axis);
+  double farthest = 0.0;
+  for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
+  for (double& each : travelled) each = std::min(each, farthest);
+  return scaled(travelled, position_unit(axis).si_per_unit);
 }
 
 }  // namespace
@@ -42,7 +64,7 @@ const std::vector<std::string>& plain_variables() {
 bool is_recorded_variable(const std::string& name) {
   if (name.starts_with("T_")) return name.size() > 2;
   if (std::ranges::find(plain_variables(), name) != plain_variables().end()) return true;
-  return axis_of(name.starts_with("dir_") ? name.substr(4) : name).has_value();
+  return axis_in(name).has_value();
 }
 
 std::vector<std::string> variables_in(const std::string& list) {
@@ -60,8 +82,9 @@ std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const st
     if (values == nullptr) return std::nullopt;
     return scaled(*values, 1.0);
   }
-  if (name.starts_with("dir_")) {
-    const auto& direction = readings.direction[index_of(*axis_of(name.substr(4)))];
+  if (name.starts_with(kSinceTurning)) return since_turning(view.setup, *axis_in(name));
+  if (name.starts_with(kDirection)) {
+    const auto& direction = readings.direction[index_of(*axis_in(name))];
     if (direction.empty()) return std::nullopt;
     return scaled(direction, 1.0);
   }
@@ -84,7 +107,7 @@ std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const st
 bool has_variable(const Setup& setup, const std::string& name) {
   const Readings& readings = setup.readings;
   if (name.starts_with("T_")) return temperature(readings, name) != nullptr;
-  if (name.starts_with("dir_")) return !readings.direction[index_of(*axis_of(name.substr(4)))].empty();
+  if (name.starts_with(kDirection)) return !readings.direction[index_of(*axis_in(name))].empty();
   if (name == "t") return !readings.time.empty();
   if (name == "feed") return !readings.feed.empty();
   return true;
@@ -100,8 +123,7 @@ std::string column_of_variable(const std::string& variable) {
 void check_variable(const Campaign& campaign, const std::string& name,
                     const std::function<bool(const Setup&)>& acts_on, const std::string& what,
                     const std::string& user, const SourcePlace& place) {
-  const auto axis = axis_of(name.starts_with("dir_") ? name.substr(4) : name);
-  if (axis) check_axis(campaign, *axis, what, place);
+  if (const auto axis = axis_in(name)) check_axis(campaign, *axis, what, place);
   for (const Setup& setup : campaign.setups) {
     if (acts_on(setup) && has_variable(setup, name)) return;
   }

@@ -1,6 +1,7 @@
 #pragma once
 /// What is recorded with readings, by the names and in the units in which users write of it: x y z (mm) and a
-/// b c (deg) as commanded, dir_x ... dir_c (-1, 0, 1), t (s since the first reading), T_<channel> (degC),
+/// b c (deg) as commanded, dir_x ... dir_c (-1, 0, 1), since_x ... since_c (mm, deg: travel since the axis
+/// turned round, until it first does as far as ever), t (s since the first reading), T_<channel> (degC),
 /// length (mm to the station), feed (mm/min), tool_length tool_x tool_y tool_z (mm).
 
 #include <Eigen/Core>

@@ -7,18 +7,16 @@
 #include <memory>
 #include <set>
 
-#include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
-#include "volcal/identify/criticism/projection/linear_model.h"
-#include "volcal/identify/numeric/dense.h"
-#include "volcal/identify/solve/fit.h"
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/observation/channels.h"
 #include "volcal/studies/criticism/criticism_names.h"
 #include "volcal/studies/criticism/criticism_plan.h"
+#include "volcal/studies/criticism/yardstick.h"
 
 namespace volcal::cli {
 namespace {
@@ -31,127 +29,6 @@ constexpr int kMostAttempts = 60;
 constexpr double kLargestShared = 0.75;  // of a squared signal, by the columns of what is hidden beside it
 constexpr double kRemainderOfTheSame = 0.02;  // share of a signal; below, no reading tells two effects apart
 constexpr std::size_t kKeptOfRanking = 5;
-
-FitResult fitted(const Campaign& campaign, const ModelSpec& model) {
-  FitOptions options;
-  options.threads = 1;
-  options.outliers = OutlierPolicy::Remove;
-  options.noise = NoisePolicy::White;  // as `volcal diagnose`
-  return fit(campaign, model, options);
-}
-
-/// Readings of `b` less those of `a`, in the order of observations.
-Eigen::VectorXd difference(const Campaign& a, const Campaign& b) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < a.setups.size(); ++i) {
-    const Readings& before = a.setups[i].readings;
-    const Readings& after = b.setups[i].readings;
-    for (std::size_t row = 0; row < before.size(); ++row) {
-      for (std::size_t channel = 0; channel < before.channels(); ++channel) {
-        values.push_back(after.value[channel][row] - before.value[channel][row]);
-      }
-    }
-  }
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-double square_um(const Eigen::VectorXd& metres) {
-  return (kPerMicro * metres).squaredNorm() / static_cast<double>(metres.size());
-}
-
-sim::Study hiding(sim::Study study, const std::vector<sim::HiddenEffect>& effects) {
-  study.hidden = effects;
-  return study;
-}
-
-/// The campaign without what is hidden, and how the model would see what is: the noise is the true one.
-class Yardstick {
- public:
-  explicit Yardstick(const sim::Study& study)
-      : simulated_(sim::simulate(study)),
-        result_(fitted(simulated_.campaign, {})),
-        model_(simulated_.campaign, result_),
-        smooth_(model_.problem(), model_.problem().data, true_noise(), 1),
-        free_(model_.with_smoothing({}).problem(), model_.problem().data, true_noise(), 1) {}
-
-  /// Change of the readings by an effect that has an amplitude or an rms.
-  Eigen::VectorXd change(const sim::Study& study, const sim::HiddenEffect& effect, double* amplitude) const {
-    const sim::SimulatedCampaign with = sim::simulate(hiding(study, {effect}));
-    *amplitude = with.hidden.front().amplitude;
-    return difference(simulated_.campaign, with.campaign);
-  }
-
-  /// What the functions could not take up had they any shape that their knots allow.
-  struct Visible {
-    double signal = 0.0;
-    double fraction = 0.0;
-  };
-  Visible visible(const Eigen::VectorXd& change) const {
-    const ProjectedColumns projected = free_.project(change);
-    const double signal = std::sqrt(std::max(0.0, projected.gram(0, 1)(0, 0)));
-    return {signal, projected.norm[0] > 0.0 ? signal / projected.norm[0] : 0.0};
-  }
-
-  /// Least squares of a change on columns, after projection off functions as smooth as those of the machine.
-  struct Explained {
-    double share = 0.0;  ///< of the squared signal
-    Eigen::VectorXd amplitude;
-  };
-  Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
-    return explained(change, columns, smooth_);
-  }
-  /// The same as `visible` sees it.
-  double share_taken(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns) const {
-    return explained(change, columns, free_).share;
-  }
-  /// Columns of a finding at its shape; none for more resolution.
-  Eigen::MatrixXd columns(const EffectFinding& finding) const {
-    if (finding.resolution) return {static_cast<Eigen::Index>(model_.size()), 0};
-    return columns(finding.spec);
-  }
-  Eigen::MatrixXd columns(const EffectSpec& spec) const {
-    std::unique_ptr<Effect> effect = find_effect(spec.kind)->make(spec, {});
-    const Eigen::VectorXd shape = effect->shape_values();
-    return family_columns(model_, Family{spec, std::move(effect), std::nullopt, {shape}}, shape);
-  }
-
-  const Campaign& campaign() const { return simulated_.campaign; }
-
- private:
-  static Explained explained(const Eigen::VectorXd& change, const Eigen::MatrixXd& columns,
-                             const Projector& projector) {
-    const Eigen::Index count = columns.cols();
-    if (count == 0) return {};
-    Eigen::MatrixXd all(columns.rows(), count + 1);
-    all << columns, change;
-    const Eigen::MatrixXd gram = projector.project(all).gram(0, count + 1);
-    const Eigen::MatrixXd own = gram.topLeftCorner(count, count);
-    const Eigen::VectorXd mixed = gram.topRightCorner(count, 1);
-    const Eigen::VectorXd scale = own.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    Explained out;
-    out.amplitude = scale.cwiseProduct(
-        least_squares(scale.asDiagonal() * own * scale.asDiagonal(), scale.cwiseProduct(mixed), 1e-9)
-            .solution);
-    out.share = gram(count, count) > 0.0 ? mixed.dot(out.amplitude) / gram(count, count) : 0.0;
-    return out;
-  }
-
-  std::vector<NoiseParameters> true_noise() const {
-    std::vector<NoiseParameters> noise;
-    for (const std::string& group : model_.noise_groups()) {
-      const auto plan =
-          std::ranges::find(simulated_.plans, instrument_of_noise_group(group), &sim::SetupPlan::instrument);
-      noise.push_back({.drift = plan->noise.drift, .tau = plan->noise.drift_time, .line = plan->noise.line});
-    }
-    return noise;
-  }
-
-  sim::SimulatedCampaign simulated_;
-  FitResult result_;
-  LinearModel model_;
-  Projector smooth_;
-  Projector free_;
-};
 
 /// An effect that shows at second order alone needs an amplitude that no machine has.
 bool plausible(const sim::HiddenEffect& effect, double amplitude, double rms) {
@@ -309,8 +186,40 @@ class CampaignRun {
             "{} {} {:.3g} {}", diagnosis.noise_instruments[row.instrument], row.term, row.value, row.unit));
       }
     }
+    judge_drawn(diagnosis);
     record_.named_explain = explained_by_all(diagnosis.effects);
     record_.told_explain = explained_by_all(with_first_of_sets(diagnosis));
+  }
+
+  /// What is hidden and neither named nor in a set.
+  Eigen::VectorXd without_name() const {
+    std::set<int> told;
+    for (const AnswerRecord& answer : record_.named) told.insert(answer.hidden);
+    for (const auto& set : record_.sets) {
+      for (const AnswerRecord& answer : set) told.insert(answer.hidden);
+    }
+    Eigen::VectorXd change;
+    for (std::size_t i = 0; i < hidden_.changes.size(); ++i) {
+      if (told.contains(static_cast<int>(i))) continue;
+      change = change.size() == 0 ? hidden_.changes[i] : Eigen::VectorXd(change + hidden_.changes[i]);
+    }
+    return change;
+  }
+
+  void judge_drawn(const Diagnosis& diagnosis) {
+    const Eigen::VectorXd change = without_name();
+    if (change.size() == 0 || diagnosis.surfaces.empty()) return;
+    const double signal = yardstick_->signal(change);
+    for (const SurfaceFinding& surface : diagnosis.surfaces) {
+      for (const FormulaFinding& law : surface.formulas) {
+        const double share = yardstick_->explained(change, yardstick_->columns(law.spec)).share;
+        record_.laws.push_back({law.label, share, signal * std::sqrt(std::max(0.0, 1.0 - share))});
+      }
+    }
+    if (!record_.named.empty() || !record_.sets.empty() || diagnosis.surfaces.size() > 1) return;
+    const Yardstick::Covered covered = yardstick_->covered(change, diagnosis.surfaces.front());
+    record_.band_inside = covered.count;
+    record_.band_of = covered.of;
   }
 
   static std::vector<EffectFinding> with_first_of_sets(const Diagnosis& diagnosis) {
@@ -369,11 +278,6 @@ class CampaignRun {
     return answer;
   }
 
-  /// Prediction error at unseen positions: the setups, stations and dead paths are those of the campaign.
-  static double unseen_square(const sim::SimulatedCampaign& simulated, const FitResult& result) {
-    return square_um(LinearModel(simulated.unseen, result).problem().residual);
-  }
-
   void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
     record_.recovery = true;
     record_.ms_given = unseen_square(simulated, given);
@@ -388,13 +292,13 @@ class CampaignRun {
       if (!finding.resolution) with_sets.effects.push_back(finding.spec);
     }
     if (!record_.sets.empty())
-      record_.ms_told = record_.ms_offered = unseen_square(simulated, fitted(simulated.campaign, with_sets));
-    if (diagnosis.surfaces.empty()) return;
-    for (const SurfaceFinding& surface : diagnosis.surfaces) {
-      with_sets.effects.push_back(surface.accepted_spec());
+      record_.ms_told = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+    if (record_.sets.empty() && diagnosis.surfaces.empty()) return;
+    for (const SurfaceFinding& surface : diagnosis.surfaces)
       record_.drawn.push_back(surface.accepted_label());
-    }
-    record_.ms_offered = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+    record_.ms_offered = unseen_square(
+        simulated,
+        fitted(simulated.campaign, extended_model({}, simulated.campaign, accepted_effects(diagnosis))));
   }
 
   /// With the hidden effects in the model where the catalogue has them, else with nothing hidden.

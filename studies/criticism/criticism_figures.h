@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,6 +40,8 @@ double remainder_of(const CampaignRecord& record);
 struct Share {
   int count = 0;
   int of = 0;
+  /// In place of Wilson's, where what is counted comes in campaigns and is alike in each.
+  std::optional<std::pair<double, double>> between_campaigns = {};
 
   double value() const { return of > 0 ? static_cast<double>(count) / of : 0.0; }
   std::pair<double, double> interval() const;

@@ -175,9 +175,15 @@ class Planner {
                            "scale-expansion"}[static_cast<std::size_t>(plan_.index) % 3]};
       return;
     }
-    const auto list = is("unlisted") ? unlisted_kinds() : is("shared") ? shared_kinds() : listed_kinds();
+    const bool starts_unlisted = is("unlisted") || is("behind");
+    const auto list = starts_unlisted ? unlisted_kinds() : is("shared") ? shared_kinds() : listed_kinds();
     const auto count = static_cast<int>(list.size());
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift) % count)]);
+    if (is("behind")) {
+      const auto others = listed_kinds();
+      const auto at = static_cast<std::size_t>(7 * plan_.index + plan_.index / count + shift);
+      kinds_.push_back(others[at % others.size()]);
+    }
     if (!is("pairs")) return;
     // Another kind; all distances come in turn.
     const int distance = 1 + (plan_.index / count + plan_.index * 7 + shift) % (count - 1);
@@ -262,7 +268,7 @@ class Planner {
 
   void set_size(PlannedEffect& effect, sim::RandomStream& random) const {
     if (is("listed")) effect.signal = drawn(random, kSignals);
-    if (is("pairs") || is("shared")) effect.signal = drawn(random, kPairSignals);
+    if (is("pairs") || is("shared") || is("behind")) effect.signal = drawn(random, kPairSignals);
     if (is("unlisted") || is("left-out")) effect.signal = drawn(random, kUnlistedSignals);
     if (is("partial")) effect.rms = drawn(random, kPartialRms);
     if (is("mdb")) {
@@ -279,8 +285,8 @@ class Planner {
 }  // namespace
 
 std::span<const std::string> criticism_rows() {
-  static const std::vector<std::string> kRows = {"null",     "listed",  "unlisted", "pairs",
-                                                 "left-out", "partial", "mdb",      "shared"};
+  static const std::vector<std::string> kRows = {"null",    "listed", "unlisted", "pairs", "left-out",
+                                                 "partial", "mdb",    "shared",   "behind"};
   return kRows;
 }
 

@@ -11,6 +11,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AnswerRecord, name, hidden, by_name, resoluti
                                    log10_p, gain, amplitudes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HiddenRecord, text, right, signal, visible_fraction, rms_um, drivers,
                                    companions, directions)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LawRecord, text, explains, remainder)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(UnknownRecord, variables, direction, log10_p)
 
 namespace {
@@ -19,7 +20,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fields, row, index, seed, wanted_readings, re
                                    noise, failure, hidden, verdict, named, sets, ranking, unknown,
                                    model_changes, noise_terms, families, removed_readings, named_explain,
                                    told_explain, recovery, ms_given, ms_named, ms_told, ms_oracle, drawn,
-                                   ms_offered)
+                                   ms_offered, laws, band_inside, band_of)
 }  // namespace
 
 void to_json(nlohmann::json& json, const CampaignRecord& record) { to_json(json, Fields{record}); }

@@ -45,6 +45,13 @@ struct HiddenRecord {
   std::vector<std::string> directions;
 };
 
+/// A law that was proposed for what has no name.
+struct LawRecord {
+  std::string text;
+  double explains = 0.0;   ///< cos^2 with what is hidden and has no name, after projection
+  double remainder = 0.0;  ///< what it leaves of that, in units of the noise
+};
+
 struct UnknownRecord {
   std::vector<std::string> variables;
   std::string direction;
@@ -80,7 +87,10 @@ struct CampaignRecord {
   double ms_oracle = 0.0;  ///< with the hidden effects' kind and shape, fitted again; of what no catalogue
                            ///< holds: with nothing hidden
   std::vector<std::string> drawn;  ///< surfaces, curves and laws of the model that is offered
-  double ms_offered = 0.0;  ///< with all that is offered: names, the first of every set, what was drawn
+  double ms_offered = 0.0;  ///< with all that is offered: names, of every set the simplest, what was drawn
+  std::vector<LawRecord> laws;  ///< of all surfaces
+  int band_inside = 0;          ///< readings at which the band of what was drawn holds what is hidden
+  int band_of = 0;              ///< readings on which it acts; 0: names stand beside it, or nothing was drawn
 };
 
 void to_json(nlohmann::json& json, const CampaignRecord& record);

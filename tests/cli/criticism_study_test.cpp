@@ -117,6 +117,32 @@ TEST(CriticismStudy, WritesOneCampaign) {
   EXPECT_THAT(nowhere.errors, HasSubstr("-o FOLDER"));
 }
 
+/// A backlash that is told and falls, and a campaign with nothing hidden, which has no share.
+TEST(CriticismStudy, CountsWhatTheOfferedModelRemovesOfADataset) {
+  const std::string sealed = std::string(VOLCAL_SOURCE_DIR) + "/datasets/hidden/sealed";
+  const std::string campaigns = testing::short_or_long<std::string>("02", "02,04");
+  const auto run = run_program("study hidden " + sealed + " --json --campaign " + campaigns);
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const Json study = Json::parse(run.output);
+  const Json& nothing = study.at("campaigns").at(0);
+  EXPECT_EQ(nothing.at("verdict"), "NOTHING_ABOVE");
+  EXPECT_TRUE(nothing.at("removed").is_null());
+  EXPECT_EQ(nothing.at("signal"), 0.0);
+  EXPECT_NEAR(nothing.at("given_um").get<double>(), nothing.at("nothing_hidden_um").get<double>(), 1e-9);
+  if (testing::long_tests()) {
+    const Json& backlash = study.at("campaigns").at(1);
+    EXPECT_GT(backlash.at("removed").get<double>(), 0.9);
+    EXPECT_LT(backlash.at("offered_um").get<double>(), backlash.at("given_um").get<double>());
+  }
+  for (const auto& [arguments, part] :
+       {std::pair<std::string, std::string>{sealed + " --campaign 99", "holds no 99.toml"},
+        {std::string(VOLCAL_SOURCE_DIR) + "/docs", "holds no study files"}}) {
+    const auto refused = run_program("study hidden " + arguments);
+    EXPECT_EQ(refused.exit_code, 2) << arguments;
+    EXPECT_THAT(refused.errors, HasSubstr(part)) << arguments;
+  }
+}
+
 class CriticismStudyFolder : public ::testing::Test {
  protected:
   /// A study of five campaigns with nothing hidden, by one thread.

@@ -85,6 +85,29 @@ TEST(DiagnoseProgram, RefusesToSeparateWhatDoesNotExist) {
   EXPECT_THAT(nothing.errors, HasSubstr("names nothing that could act here"));
 }
 
+TEST(DiagnoseProgram, LooksForTheLawThatIsAskedFor) {
+  const std::string command = "diagnose " + kData + "/small/campaign.toml ";
+  const auto run = run_program(command + "--json --formula \"EXX: dir_x T_air\" --formula \"EYY: y x\"");
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const auto asked = nlohmann::json::parse(run.output).at("asked_laws");
+  ASSERT_EQ(asked.size(), 2U);
+  EXPECT_THAT(asked[0].at("label").get<std::string>(), HasSubstr("dir_x T_air"));
+  for (const auto& laws : asked) {
+    EXPECT_GT(laws.at("tried").get<int>(), 10);
+    EXPECT_LE(laws.at("laws").size(), 10U);
+  }
+  const auto wrong = [&](const std::string& formula, const std::string& part) {
+    const auto refused = run_program(command + "--formula " + formula);
+    EXPECT_EQ(refused.exit_code, 2) << formula;
+    EXPECT_THAT(refused.errors, HasSubstr(part)) << formula;
+  };
+  wrong("\"x y\"", "names no target");
+  wrong("\"EXX: w\"", "\"w\" is no variable");
+  wrong("\"EXX: x y z t\"", "4 drivers");
+  wrong("\"EXX: T_oil\"", "T_oil_degC is missing");
+  wrong("model", "has no effect of kind \"empirical\"");
+}
+
 class ExtendProgram : public ::testing::Test {
  protected:
   auto extend(const std::vector<std::string>& effects) {

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/kinds/open/custom.h"
+#include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -114,6 +117,28 @@ WrittenEffectError::WrittenEffectError(const std::string& option, const std::str
     : InputError({}, fmt::format("{} \"{}\", column {}: {}", option, text, column, problem), remedy),
       column_(column),
       told_(problem) {}
+
+EffectSpec written_surface(const std::string& option, const std::string& text) {
+  const std::string form = "write \"TARGET: DRIVERS\", one to three drivers, as in \"EZX: x y\"";
+  const std::size_t colon = text.find(':');
+  const Piece target = trimmed_piece(text, 0, std::min(colon, text.size()));
+  if (colon == std::string::npos || target.text.empty())
+    throw InputError({}, fmt::format("{} \"{}\": it names no target", option, text), form);
+  std::string drivers, factor;
+  for (const std::string& name : variables_in(text.substr(colon + 1))) {
+    std::string& list = name.starts_with("dir_") ? factor : drivers;
+    list += (list.empty() ? "" : " ") + name;
+  }
+  EffectSpec spec = effect_spec("empirical", {{"target", target.text}, {"drivers", drivers}});
+  if (!factor.empty()) spec.options.set("factor", factor);
+  try {
+    find_effect(spec.kind)->make(spec, {});
+  } catch (const InputError& error) {
+    throw InputError({}, fmt::format("{} \"{}\": {}", option, text, error.problem()),
+                     error.remedy() + "; " + form);
+  }
+  return spec;
+}
 
 WrittenEffect written_effect(const std::string& option, const std::string& text,
                              const std::vector<std::string>& parameters) {

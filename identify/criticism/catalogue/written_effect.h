@@ -31,6 +31,10 @@ class WrittenEffectError : public InputError {
   std::string told_;
 };
 
+/// "EZX: x y" or "EXX: dir_x T_column" as an effect of kind empirical, directions as its factors. Throws
+/// InputError that names `option`.
+EffectSpec written_surface(const std::string& option, const std::string& text);
+
 /// "EZX: abs(x) / 400 * dir_x" or "EXX += dir_x * (T_column - 20)" as an effect of kind custom; `parameters`:
 /// "p=250" (held) or "p=250+-50" (estimated). Throws InputError that names `option`, WrittenEffectError where
 /// the text is wrong.

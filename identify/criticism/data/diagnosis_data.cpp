@@ -48,6 +48,11 @@ std::string UnknownFinding::action() const {
   return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * kPerMilli) : direction;
 }
 
+std::size_t AskedLaws::sufficient() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      laws, [this](const FormulaFinding& law) { return law.log_evidence >= surface_evidence; }));
+}
+
 std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis) {
   const std::size_t drawn = std::min(diagnosis.surfaces.size(), diagnosis.unknown.size());
   return std::span(diagnosis.unknown).subspan(drawn);

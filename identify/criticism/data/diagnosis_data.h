@@ -75,6 +75,8 @@ struct SurfaceFigure {
   Eigen::VectorXd u;
   std::vector<std::vector<double>> dots;  ///< where readings stand, per driver; a part of them
   double third = std::numeric_limits<double>::quiet_NaN();  ///< value of a third driver
+  Eigen::VectorXd coefficients;                             ///< of its splines, SI
+  Eigen::MatrixXd covariance;
 };
 
 /// A law that explains what a surface was drawn for, an effect of the kind `custom`.
@@ -87,6 +89,19 @@ struct FormulaFinding {
   double si_per_unit = 1.0;
   std::string shape_text;  ///< "p = 120.3"; empty without parameters of its shape
   double log_evidence = -std::numeric_limits<double>::infinity();  ///< natural, over the model without it
+  double gain = 0.0;                                               ///< LM less its price, as of effects
+  double log10_p = 0.0;                                            ///< all laws that were tried counted
+};
+
+/// Laws of a target and drivers that the user asked for, beside the model reached.
+struct AskedLaws {
+  std::string label;                 ///< of the surface of this target and these drivers
+  double surface_evidence = 0.0;     ///< natural, over the model without it
+  std::size_t tried = 0;             ///< laws
+  std::vector<FormulaFinding> laws;  ///< best first; at most ten
+
+  /// That explain as much as the surface does.
+  std::size_t sufficient() const;
 };
 
 /// A function without a formula that was drawn for what has no name, an effect of the kind `empirical`.
@@ -208,7 +223,9 @@ struct Diagnosis {
   std::vector<UnknownFinding> unknown;   ///< what surfaces were drawn for, in their order; then leading first
   std::vector<SurfaceFinding> surfaces;  ///< drawn for what has no name
   std::vector<EffectFinding> ranking;    ///< families by gain, at the model reached; at most 40
-  std::vector<EffectFinding> tried;      ///< that the user thought of, at the model reached, as given
+  std::vector<AskedLaws> asked_laws;     ///< in the order in which they were asked for
+  std::vector<MemberFinding> tried_errors;   ///< of `tried`, held-out readings with each in the model reached
+  std::vector<EffectFinding> tried;          ///< that the user thought of, at the model reached, as given
   std::vector<EffectFinding> not_visible;    ///< families of which less than 2 % shows
   std::vector<DetectableEffect> detectable;  ///< all effects, at the given model, in the catalogue's order
   std::vector<EffectFinding> model_changes;

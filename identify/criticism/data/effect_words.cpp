@@ -58,6 +58,7 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"elevation", "elevation of a tracker"},
     {"tool", "which tool is carried: the one that the target names"},
     {"tool TOOL", "whether this tool is carried"},
+    {"tool_length", "length of the tool that is carried"},
     {"setup", "whether the reading belongs to the setup that the target names"},
     {"run RUN", "whether the reading belongs to this run"},
     {"INSTRUMENT", "whether an instrument of this sort reads"},

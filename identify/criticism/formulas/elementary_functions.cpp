@@ -26,13 +26,6 @@ std::vector<Shape> places(const DriverRange& driver) {
   return all;
 }
 
-ElementaryFunction power(const std::string& variable, double zero, int exponent) {
-  const std::string base = from_zero(variable, zero);
-  return {[=](const Names&) { return exponent == 1 ? base : fmt::format("{}^{}", base, exponent); },
-          [=](double value, const Shape&) { return std::pow(value - zero, exponent); },
-          {{}}};
-}
-
 ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
   return {[=, variable = driver.variable](const Names& names) {
             const std::string base = fmt::format("({} - {})", variable, names[0]);
@@ -93,9 +86,20 @@ ElementaryFunction approach(const DriverRange& driver) {
 
 }  // namespace
 
+ElementaryFunction unity() {
+  return {[](const Names&) { return std::string(); }, [](double, const Shape&) { return 1.0; }, {{}}};
+}
+
+ElementaryFunction power_of(const std::string& variable, double zero, int exponent) {
+  const std::string base = from_zero(variable, zero);
+  return {[=](const Names&) { return exponent == 1 ? base : fmt::format("{}^{}", base, exponent); },
+          [=](double value, const Shape&) { return std::pow(value - zero, exponent); },
+          {{}}};
+}
+
 std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, double zero) {
   std::vector<ElementaryFunction> functions;
-  for (const int exponent : {1, 2, 3}) functions.push_back(power(driver.variable, zero, exponent));
+  for (const int exponent : {1, 2, 3}) functions.push_back(power_of(driver.variable, zero, exponent));
   for (const int exponent : {1, 2}) functions.push_back(shifted_power(driver, exponent));
   functions.push_back(kink(driver, "abs({} - {})", [](double beyond) { return std::abs(beyond); }));
   functions.push_back(kink(driver, "max(0, {} - {})", [](double beyond) { return std::max(0.0, beyond); }));
@@ -104,7 +108,7 @@ std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, 
   functions.push_back(step(driver));
   functions.push_back(saturation(driver));
   functions.push_back(wave(driver));
-  if (driver.variable == "t") functions.push_back(approach(driver));
+  if (driver.variable == "t" || driver.variable.starts_with("since_")) functions.push_back(approach(driver));
   return functions;
 }
 

@@ -29,6 +29,10 @@ struct ElementaryFunction {
   std::size_t shapes() const { return starts.front().size(); }
 };
 
+/// 1, whatever the variable: a law without it.
+ElementaryFunction unity();
+ElementaryFunction power_of(const std::string& variable, double zero, int exponent);
+
 /// `zero`: from where the variable counts in a law: home, 20 degC, 0.
 std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, double zero);
 

@@ -9,226 +9,255 @@
 #include <utility>
 
 #include "volcal/identify/criticism/data/thresholds.h"
-#include "volcal/identify/criticism/formulas/elementary_functions.h"
+#include "volcal/identify/criticism/formulas/further_factors.h"
+#include "volcal/identify/criticism/formulas/law.h"
 #include "volcal/identify/criticism/projection/score_statistics.h"
+#include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/surface_search.h"
-#include "volcal/model/description/units.h"
-#include "volcal/model/effects/effect_keys.h"
+#include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/recorded_variable.h"
 #include "volcal/model/effects/registry.h"
-#include "volcal/model/functions/tensor_basis.h"
 
 namespace volcal {
 namespace {
 
-constexpr std::size_t kMostShapes = 2;  // p and q
-constexpr std::size_t kTested = 12;     // laws by their own columns
-constexpr int kRefinements = 60;        // evaluations of one law's shape
-constexpr double kFirstStep = 0.03;     // of the driver's range
-constexpr double kLastStep = 3e-4;
-const std::vector<std::string> kNames = {"p", "q"};
-
-/// From where a variable counts in a law.
-double zero_of(const Machine& machine, const std::string& variable) {
-  if (variable.starts_with("T_")) return kReferenceTemperature_degC;
-  if (variable.size() != 1) return 0.0;
-  for (const Axis& axis : machine.axes) {
-    if (lower_letter_of(axis.name) == variable[0]) return axis.home / position_unit(axis.name).si_per_unit;
-  }
-  return 0.0;
-}
-
-/// A product of one function of each driver.
-struct Law {
-  std::vector<const ElementaryFunction*> functions;
-  std::vector<double> shape;  ///< of all functions, one after the other
-  double lm = 0.0;
-
-  std::size_t shapes() const { return shape.size(); }
-};
-
-/// What the readings say of a surface's coefficients, the model without it having been allowed to explain all
-/// it can.
-struct CoefficientScores {
-  Eigen::MatrixXd gram;
-  Eigen::VectorXd score;
-
-  double lm(const Eigen::VectorXd& coefficients) const {
-    const double squares = coefficients.dot(gram * coefficients);
-    const double along = coefficients.dot(score);
-    return squares > 0.0 ? along * along / squares : 0.0;
-  }
-};
+constexpr std::size_t kTested = 12;      // laws by their own columns
+constexpr std::size_t kExtended = 2;     // laws that further variables are tried with
+constexpr std::size_t kTested3 = 6;      // of these, with a further variable
+constexpr std::size_t kToldToUser = 10;  // laws that were asked for
+constexpr std::size_t kBeam = 24;
+constexpr int kSweeps = 2;
 
 class FormulaSearch {
  public:
-  FormulaSearch(const ModelState& state, const AddedSurface& surface)
-      : model_(state.model()),
+  FormulaSearch(const LinearModel& model, const EffectSpec& surface, const Effect& effect,
+                const Projector& projector)
+      : model_(model),
         surface_(surface),
-        basis_(*surface.effect->surface()),
-        projector_(state.projector_without_surface(surface)),
-        log_count_(std::log(static_cast<double>(projector_->observations()))) {
-    const std::vector<std::string> drivers = variables_in(*surface.spec.options.text("drivers"));
+        projector_(projector),
+        measure_(*effect.surface(), projected_effect(model, projector, effect)),
+        surface_evidence_(surface_evidence(model, projector, effect)),
+        log_count_(std::log(static_cast<double>(projector.observations()))) {
+    const std::vector<std::string> drivers = variables_in(*surface.options.text("drivers"));
+    ranges_.reserve(drivers.size());
     for (std::size_t i = 0; i < drivers.size(); ++i) {
-      const DriverRange range{drivers[i], basis_.sides()[i].from, basis_.sides()[i].to};
-      functions_.push_back(elementary_functions(range, zero_of(model_.campaign().machine, drivers[i])));
-      const Eigen::MatrixXd samples = basis_.samples(i);
-      to_coefficients_.push_back((samples.transpose() * samples).ldlt().solve(samples.transpose()));
+      const TensorBasis::Side& side = effect.surface()->sides()[i];
+      ranges_.push_back({drivers[i], side.from, side.to});
+      functions_.push_back(
+          elementary_functions(ranges_.back(), zero_of(model.campaign().machine, drivers[i])));
+      if (drivers.size() > 2 || !factors().empty()) functions_.back().push_back(unity());
     }
   }
 
+  /// Best first, all that were tested by their own columns.
   std::vector<FormulaFinding> run() {
-    score_surface();
-    const double of_surface = surface_evidence(model_, *projector_, *surface_.effect);
-    std::vector<Law> laws = ranked_laws();
+    std::vector<Law> laws = ranges_.size() > 2 ? laws_of_beam() : all_laws();
+    log_tried_ = std::log(static_cast<double>(std::max<std::size_t>(count_laws(), 1)));
+    rank(laws);
+    laws.resize(std::min(laws.size(), kTested));
+    for (Law& law : laws) climb_shape(law, [this](const Law& each) { return measure_.lm(each); });
     std::vector<FormulaFinding> findings;
-    for (std::size_t i = 0; i < std::min(laws.size(), kTested); ++i) {
-      FormulaFinding finding = tested(laws[i]);
-      if (finding.log_evidence >= of_surface) findings.push_back(std::move(finding));
-    }
-    std::ranges::sort(findings, std::greater{}, &FormulaFinding::log_evidence);
-    const auto is_worse = [&](const FormulaFinding& each) {
-      return each.log_evidence < findings.front().log_evidence - 0.5 * kThresholds.indistinguishable_gain;
-    };
-    if (!findings.empty()) findings.erase(std::ranges::find_if(findings, is_worse), findings.end());
+    for (const Law& law : laws) findings.push_back(finding(law));
+    if (ranges_.size() < kMostFactors) add_extended(laws, findings);
+    std::ranges::stable_sort(findings, std::greater{}, &FormulaFinding::log_evidence);
     return findings;
   }
 
+  double evidence_of_surface() const { return surface_evidence_; }
+  std::size_t tried() const { return static_cast<std::size_t>(std::lround(std::exp(log_tried_))); }
+
  private:
-  void score_surface() {
-    const ProjectedColumns projected = projected_effect(model_, *projector_, *surface_.effect);
-    scores_ = {projected.gram(0, projected.count()), projected.score};
+  std::vector<std::string> factors() const {
+    return variables_in(surface_.options.text("factor").value_or(""));
   }
 
-  /// Of the spline that follows a function of one driver best.
-  Eigen::VectorXd coefficients(std::size_t driver, const ElementaryFunction& function,
-                               const std::vector<double>& shape) const {
-    const auto& side = basis_.sides()[driver];
-    Eigen::VectorXd values(to_coefficients_[driver].cols());
-    for (Eigen::Index i = 0; i < values.size(); ++i) {
-      const double share = static_cast<double>(i) / static_cast<double>(values.size() - 1);
-      values[i] = function.at(side.from + share * (side.to - side.from), shape);
+  bool is_law(const Law& law) const { return law.depends() || !factors().empty(); }
+
+  /// How many products the grammar has.
+  std::size_t count_laws() const {
+    std::vector<std::size_t> by_shapes(kMostLawShapes + 1, 0);
+    by_shapes[0] = 1;
+    for (const auto& functions : functions_) {
+      std::vector<std::size_t> next(kMostLawShapes + 1, 0);
+      for (std::size_t used = 0; used < by_shapes.size(); ++used) {
+        for (const ElementaryFunction& function : functions) {
+          if (used + function.shapes() <= kMostLawShapes) next[used + function.shapes()] += by_shapes[used];
+        }
+      }
+      by_shapes = std::move(next);
     }
-    return to_coefficients_[driver] * values;
+    std::size_t count = 0;
+    for (const std::size_t each : by_shapes) count += each;
+    return count;
   }
 
-  Eigen::VectorXd coefficients(const Law& law) const {
-    Eigen::VectorXd product = Eigen::VectorXd::Ones(1);
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < law.functions.size(); ++i) {
-      const std::size_t count = law.functions[i]->shapes();
-      const std::vector<double> own(law.shape.begin() + static_cast<std::ptrdiff_t>(at),
-                                    law.shape.begin() + static_cast<std::ptrdiff_t>(at + count));
-      at += count;
-      const Eigen::VectorXd along = coefficients(i, *law.functions[i], own);
-      Eigen::VectorXd next(product.size() * along.size());
-      for (Eigen::Index k = 0; k < product.size(); ++k)
-        next.segment(k * along.size(), along.size()) = product[k] * along;
-      product = std::move(next);
-    }
-    return product;
+  /// By LM less the price of the shape.
+  double worth(const Law& law) const { return law.lm - static_cast<double>(law.shapes()) * log_count_; }
+  void rank(std::vector<Law>& laws) const {
+    std::ranges::stable_sort(laws, std::greater{}, [this](const Law& law) { return worth(law); });
   }
 
-  /// Every combination of functions at its best start, best first by LM less the price of its shape.
-  std::vector<Law> ranked_laws() {
+  /// Every combination of functions at its best start.
+  std::vector<Law> all_laws() const {
     std::vector<Law> laws;
-    std::vector<const ElementaryFunction*> chosen;
-    const std::function<void()> choose = [&] {
+    std::vector<LawFactor> chosen;
+    const std::function<void(std::size_t)> choose = [&](std::size_t shapes) {
       if (chosen.size() == functions_.size()) {
-        std::size_t shapes = 0;
-        for (const ElementaryFunction* each : chosen) shapes += each->shapes();
-        if (shapes <= kMostShapes) laws.push_back(best_start(chosen));
+        laws.push_back(best_start(chosen));
         return;
       }
       for (const ElementaryFunction& function : functions_[chosen.size()]) {
-        chosen.push_back(&function);
-        choose();
+        if (shapes + function.shapes() > kMostLawShapes) continue;
+        chosen.push_back({&function, &ranges_[chosen.size()]});
+        choose(shapes + function.shapes());
         chosen.pop_back();
       }
     };
-    choose();
-    log_tried_ = std::log(static_cast<double>(std::max<std::size_t>(laws.size(), 1)));
-    std::ranges::sort(laws, std::greater{}, [&](const Law& law) {
-      return law.lm - static_cast<double>(law.shapes()) * log_count_;
-    });
+    choose(0);
     return laws;
   }
 
-  Law best_start(const std::vector<const ElementaryFunction*>& chosen) const {
+  Law best_start(const std::vector<LawFactor>& chosen) const {
     Law best{chosen, {}, -1.0};
-    std::vector<double> shape;
+    Law law{chosen, {}, 0.0};
     const std::function<void(std::size_t)> go_on = [&](std::size_t i) {
       if (i == chosen.size()) {
-        Law law{chosen, shape, 0.0};
-        law.lm = scores_.lm(coefficients(law));
+        law.lm = measure_.lm(law);
         if (law.lm > best.lm) best = law;
         return;
       }
-      for (const std::vector<double>& start : chosen[i]->starts) {
-        shape.insert(shape.end(), start.begin(), start.end());
+      for (const std::vector<double>& start : chosen[i].function->starts) {
+        law.shape.insert(law.shape.end(), start.begin(), start.end());
         go_on(i + 1);
-        shape.resize(shape.size() - start.size());
+        law.shape.resize(law.shape.size() - start.size());
       }
     };
     go_on(0);
     return best;
   }
 
-  /// By compass search in the splines' measure (Kolda, Lewis and Torczon 2003, SIAM Review 45, 385), then by
-  /// its own column.
-  FormulaFinding tested(Law law) const {
-    std::vector<double> step;
-    for (std::size_t i = 0; i < law.functions.size(); ++i) {
-      const auto& side = basis_.sides()[i];
-      step.insert(step.end(), law.functions[i]->shapes(), kFirstStep * (side.to - side.from));
-    }
-    double share = 1.0;
-    for (int used = 0; used < kRefinements && !step.empty() && share * kFirstStep > kLastStep;) {
-      bool better = false;
-      for (std::size_t k = 0; k < step.size() && !better; ++k) {
-        for (const double sign : {-1.0, 1.0}) {
-          Law moved = law;
-          moved.shape[k] += sign * share * step[k];
-          moved.lm = scores_.lm(coefficients(moved));
-          ++used;
-          if (!(moved.lm > law.lm)) continue;
-          law = std::move(moved);
-          better = true;
-          break;
-        }
+  /// From products of functions without a shape, one driver's function after another exchanged for every
+  /// other; the best go on.
+  std::vector<Law> laws_of_beam() const {
+    std::vector<Law> beam;
+    std::vector<LawFactor> chosen;
+    const std::function<void()> choose = [&] {
+      if (chosen.size() == functions_.size()) {
+        Law law{chosen, {}, 0.0};
+        law.lm = measure_.lm(law);
+        if (is_law(law)) beam.push_back(std::move(law));
+        return;
       }
-      if (!better) share *= 0.5;
+      for (const ElementaryFunction& function : functions_[chosen.size()]) {
+        if (function.shapes() > 0) continue;
+        chosen.push_back({&function, &ranges_[chosen.size()]});
+        choose();
+        chosen.pop_back();
+      }
+    };
+    choose();
+    keep_best(beam);
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      for (std::size_t driver = 0; driver < functions_.size(); ++driver) {
+        std::vector<Law> next = beam;
+        for (const Law& law : beam) append_exchanged(law, driver, next);
+        keep_best(next);
+        beam = std::move(next);
+      }
     }
-    return finding(law);
+    return beam;
   }
 
-  std::string expression(const Law& law) const {
-    std::vector<std::string> parts = variables_in(surface_.spec.options.text("factor").value_or(""));
+  void append_exchanged(const Law& law, std::size_t driver, std::vector<Law>& next) const {
+    const LawMeasure::OfDriver of_driver(measure_, law, driver);
+    const std::size_t others = law.shapes() - law.factors[driver].function->shapes();
     std::size_t at = 0;
-    for (const ElementaryFunction* function : law.functions) {
-      const std::size_t count = function->shapes();
-      parts.push_back(function->text({kNames.begin() + static_cast<std::ptrdiff_t>(at), kNames.end()}));
-      at += count;
+    for (std::size_t i = 0; i < driver; ++i) at += law.factors[i].function->shapes();
+    for (const ElementaryFunction& function : functions_[driver]) {
+      if (others + function.shapes() > kMostLawShapes) continue;
+      const std::vector<double>* best = nullptr;
+      double best_lm = -1.0;
+      for (const std::vector<double>& start : function.starts) {
+        const double lm = of_driver.lm(function, start);
+        if (lm <= best_lm) continue;
+        best_lm = lm;
+        best = &start;
+      }
+      Law other = law;
+      const auto begin = other.shape.begin() + static_cast<std::ptrdiff_t>(at);
+      other.shape.erase(begin, begin + static_cast<std::ptrdiff_t>(law.factors[driver].function->shapes()));
+      other.shape.insert(other.shape.begin() + static_cast<std::ptrdiff_t>(at), best->begin(), best->end());
+      other.factors[driver].function = &function;
+      other.lm = best_lm;
+      if (is_law(other)) next.push_back(std::move(other));
     }
-    return fmt::format("{}", fmt::join(parts, " * "));
+  }
+
+  /// Of laws of the same functions the best.
+  void keep_best(std::vector<Law>& laws) const {
+    rank(laws);
+    std::vector<Law> kept;
+    for (Law& law : laws) {
+      const auto same = [&](const Law& other) {
+        for (std::size_t i = 0; i < law.factors.size(); ++i) {
+          if (law.factors[i].function != other.factors[i].function) return false;
+        }
+        return true;
+      };
+      if (kept.size() < kBeam && std::ranges::none_of(kept, same)) kept.push_back(std::move(law));
+    }
+    laws = std::move(kept);
+  }
+
+  void add_extended(const std::vector<Law>& laws, std::vector<FormulaFinding>& findings) {
+    FurtherFactors further(model_, projector_, surface_);
+    if (further.tried() == 0) return;
+    std::vector<std::size_t> order(findings.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return findings[i].log_evidence; });
+    const double before = log_tried_;
+    log_tried_ = std::log(std::exp(before) + static_cast<double>(kExtended * further.tried()));
+    std::vector<Law> extended;
+    for (std::size_t i = 0; i < std::min(order.size(), kExtended); ++i) {
+      const Law& law = laws[order[i]];
+      const std::unique_ptr<Effect> own = effect_of(law);
+      for (Law& longer : further.times(law, *own)) extended.push_back(std::move(longer));
+    }
+    rank(extended);
+    extended.resize(std::min(extended.size(), kTested3));
+    for (const Law& law : extended) findings.push_back(finding(law));
+    log_tried_ = before;
+  }
+
+  EffectSpec spec_of(const Law& law) const {
+    std::vector<std::string> parts = factors();
+    if (const std::string product = law.expression(); !product.empty()) parts.push_back(product);
+    EffectSpec spec = effect_spec("custom", {{"target", *surface_.options.text("target")},
+                                             {"expression", fmt::format("{}", fmt::join(parts, " * "))}});
+    static const std::vector<std::string> kNames = {"p", "q"};
+    std::size_t at = 0;
+    for (const LawFactor& factor : law.factors) {
+      for (std::size_t k = 0; k < factor.function->shapes(); ++k, ++at) {
+        spec.options.set(kNames[at], law.shape[at]);
+        if (law.smooth_in_shape())
+          spec.options.set(kNames[at] + "_sigma", factor.range->to - factor.range->from);
+      }
+    }
+    return spec;
+  }
+
+  std::unique_ptr<Effect> effect_of(const Law& law) const {
+    return find_effect("custom")->make(spec_of(law), {});
   }
 
   FormulaFinding finding(const Law& law) const {
     FormulaFinding finding;
-    finding.spec = effect_spec(
-        "custom", {{"target", *surface_.spec.options.text("target")}, {"expression", expression(law)}});
-    const bool smooth = std::ranges::all_of(law.functions, &ElementaryFunction::smooth_in_shape);
-    std::size_t at = 0;
-    for (std::size_t i = 0; i < law.functions.size(); ++i) {
-      const auto& side = basis_.sides()[i];
-      for (std::size_t k = 0; k < law.functions[i]->shapes(); ++k, ++at) {
-        finding.spec.options.set(kNames[at], law.shape[at]);
-        if (smooth) finding.spec.options.set(kNames[at] + "_sigma", side.to - side.from);
-        finding.shape_text += fmt::format("{}{} = {:.4g}", at > 0 ? ", " : "", kNames[at], law.shape[at]);
-      }
-    }
-    const std::unique_ptr<Effect> effect = find_effect("custom")->make(finding.spec, {});
-    const ScoreTest score = score_test(projected_effect(model_, *projector_, *effect), 0, 1);
+    finding.spec = spec_of(law);
+    const char* name = "p";
+    for (std::size_t k = 0; k < law.shapes(); ++k, name = "q")
+      finding.shape_text += fmt::format("{}{} = {:.4g}", k > 0 ? ", " : "", name, law.shape[k]);
+    const std::unique_ptr<Effect> effect = effect_of(law);
+    const ScoreTest score = score_test(projected_effect(model_, projector_, *effect), 0, 1);
     const EffectAmplitude& amplitude = effect->amplitudes().front();
     finding.label = amplitude.label;
     finding.unit = amplitude.unit();
@@ -237,28 +266,75 @@ class FormulaSearch {
     finding.amplitude = score.amplitude[0];
     finding.u = std::sqrt(std::max(0.0, score.covariance(0, 0)));
     finding.spec.options.set("amplitude", finding.amplitude);
-    finding.log_evidence =
-        0.5 * score.lm - 0.5 * static_cast<double>(1 + law.shapes()) * log_count_ - log_tried_;
+    finding.gain = score.lm - static_cast<double>(1 + law.shapes()) * log_count_;
+    finding.log_evidence = 0.5 * finding.gain - log_tried_;
+    finding.log10_p =
+        std::min(0.0, log10_chi_squared_exceedance(score.lm, static_cast<double>(1 + law.shapes())) +
+                          log_tried_ / std::log(10.0));
     return finding;
   }
 
   const LinearModel& model_;
-  const AddedSurface& surface_;
-  const TensorBasis& basis_;
-  std::unique_ptr<Projector> projector_;
+  const EffectSpec& surface_;
+  const Projector& projector_;
+  LawMeasure measure_;
+  double surface_evidence_;
   double log_count_;
   double log_tried_ = 0.0;
+  std::vector<DriverRange> ranges_;                         ///< per driver
   std::vector<std::vector<ElementaryFunction>> functions_;  ///< per driver
-  std::vector<Eigen::MatrixXd> to_coefficients_;            ///< per driver: of values at its samples
-  CoefficientScores scores_;
 };
+
+bool acts_in_part(const EffectSpec& surface) { return surface.options.has("only"); }
 
 }  // namespace
 
 std::vector<FormulaFinding> formulas_for(const ModelState& state, std::size_t surface) {
   const AddedSurface& own = state.surfaces()[surface];
-  if (own.effect->surface()->sides().size() > 2 || own.spec.options.has("only")) return {};
-  return FormulaSearch(state, own).run();
+  if (acts_in_part(own.spec)) return {};
+  const std::unique_ptr<Projector> projector = state.projector_without_surface(own);
+  FormulaSearch search(state.model(), own.spec, *own.effect, *projector);
+  std::vector<FormulaFinding> findings = search.run();
+  std::erase_if(findings, [&](const FormulaFinding& each) {
+    return !(each.log_evidence >= search.evidence_of_surface());
+  });
+  const auto is_worse = [&](const FormulaFinding& each) {
+    return each.log_evidence < findings.front().log_evidence - 0.5 * kThresholds.indistinguishable_gain;
+  };
+  if (!findings.empty()) findings.erase(std::ranges::find_if(findings, is_worse), findings.end());
+  return findings;
+}
+
+void check_asked_surface(const LinearModel& model, const EffectSpec& surface) {
+  if (acts_in_part(surface)) {
+    throw InputError({}, "laws cannot be looked for where an effect acts in a part of the campaign alone",
+                     "leave out only = ...");
+  }
+  const EffectKind& kind = *find_effect("empirical");
+  kind.make(surface, {})->check(model.campaign(), {});
+  kind.resolved(surface, model.views(), {});
+}
+
+AskedLaws asked_laws(const ModelState& state, const EffectSpec& surface) {
+  const EffectKind& kind = *find_effect("empirical");
+  EffectSpec spec = kind.resolved(surface, state.model().views(), {});
+  std::shared_ptr<const Effect> effect = kind.make(spec, {});
+  std::shared_ptr<const Projector> projector;
+  for (const AddedSurface& drawn : state.surfaces()) {
+    if (drawn.effect->name() != effect->name()) continue;
+    projector = state.projector_without_surface(drawn);
+    spec = drawn.spec;
+    effect = drawn.effect;
+  }
+  if (!projector) projector = std::make_shared<Projector>(state.projector());
+  FormulaSearch search(state.model(), spec, *effect, *projector);
+  AskedLaws asked;
+  asked.laws = search.run();
+  asked.label = effect_label(*effect);
+  asked.surface_evidence = search.evidence_of_surface();
+  asked.tried = search.tried();
+  asked.laws.resize(std::min(asked.laws.size(), kToldToUser));
+  return asked;
 }
 
 }  // namespace volcal

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -226,17 +227,31 @@ LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParamete
   return last_step(state, noise, projector);
 }
 
-LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {
+namespace {
+
+/// With `effect`, and of the added ones all but some.
+LadderStep step_with(const ModelState& state, const std::set<std::size_t>& left_out,
+                     const FamilyTest& effect) {
   const SearchSetting& setting = state.setting();
   const LinearModel& model = state.model();
-  Projector projector = *state.projector_without({added});
+  Projector projector = *state.projector_without(left_out);
   Eigen::MatrixXd effects(static_cast<Eigen::Index>(model.size()), 0);
   for (std::size_t i = 0; i < state.added().size(); ++i) {
-    if (i != added) append_columns(state.added()[i].columns, effects);
+    if (!left_out.contains(i)) append_columns(state.added()[i].columns, effects);
   }
-  append_columns(accept(model, setting.families[instead.family], instead, projector), effects);
+  append_columns(accept(model, setting.families[effect.family], effect, projector), effects);
   std::optional<double> no_step_before;
   return ladder_step(model, setting.heldout, state.noise(), projector, effects, no_step_before);
+}
+
+}  // namespace
+
+LadderStep ladder_step_beside(const ModelState& state, const FamilyTest& effect) {
+  return step_with(state, {}, effect);
+}
+
+LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead) {
+  return step_with(state, {added}, instead);
 }
 
 }  // namespace volcal

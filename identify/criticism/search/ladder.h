@@ -34,6 +34,9 @@ LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParamete
 LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise,
                         const Projector& projector);
 
+/// The last step with a further effect, at the same noise and smoothing.
+LadderStep ladder_step_beside(const ModelState& state, const FamilyTest& effect);
+
 /// The last step with another effect in the place of an added one, at the same noise and smoothing.
 LadderStep ladder_step_with(const ModelState& state, std::size_t added, const FamilyTest& instead);
 

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
+#include "volcal/identify/criticism/search/one_cause.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/finding_codes.h"
@@ -66,8 +67,9 @@ Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions optio
 void Search::run() {
   start();
   explain();
+  while (may_draw() && draw_one_cause()) explain();
   names_before_surfaces_ = state_->added().size();
-  while (static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces && draw_surface()) explain();
+  while (may_draw() && draw_surface()) explain();
   replace_surfaces();
   if (!options_.climb) keep_one_step();
   recall_rejected();
@@ -99,11 +101,34 @@ bool Search::draw_surface() {
   report("a surface for what has no name", 0.9);
   const std::optional<SurfaceTest> surface = best_surface(*state_, findings);
   if (!surface) return false;
-  const std::vector<FamilyTest> kept = added_tests(state_->added());
-  base_ = base_->with_surface(*surface, state_->added());
+  draw(*surface, added_tests(state_->added()));
+  return true;
+}
+
+bool Search::may_draw() const {
+  return static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces;
+}
+
+/// Where two names stand for one cause whose shape no name has. False: none does.
+bool Search::draw_one_cause() {
+  if (state_->added().size() < 2) return false;
+  report("one cause in the place of two", 0.9);
+  const std::optional<OneCause> cause = one_cause_of_two(*state_);
+  if (!cause) return false;
+  std::vector<FamilyTest> kept;
+  for (std::size_t i = 0; i < state_->added().size(); ++i) {
+    if (!cause->replaces.contains(i)) kept.push_back(state_->added()[i].test);
+  }
+  in_place_of_names_.insert(cause->surface.effect->name());
+  draw(cause->surface, kept);
+  return true;
+}
+
+void Search::draw(const SurfaceTest& surface, const std::vector<FamilyTest>& kept) {
+  restart_with(kept);
+  base_ = base_->with_surface(surface, state_->added());
   restart_with(kept);
   begin_anew();
-  return true;
 }
 
 /// With other surfaces and names in the model, names may explain what a surface was drawn for.
@@ -111,6 +136,10 @@ void Search::replace_surfaces() {
   for (std::size_t i = 0; i < base_->surfaces().size();) {
     const std::vector<AddedSurface>& all = base_->surfaces();
     if (all.size() == 1 && state_->added().size() == names_before_surfaces_) return;
+    if (in_place_of_names_.contains(all[i].effect->name())) {
+      ++i;
+      continue;
+    }
     report("names in the place of " + effect_label(*all[i].effect), 0.9);
     const ModelState base = *base_, state = *state_;
     const Reasons rejected = rejected_;

@@ -11,7 +11,9 @@
 ///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
 ///   leave,
 ///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
-///   4. while a scan exceeds, a surface or curve is drawn for it (surface_search.h), and the climb goes on
+///   4. where a curve of one name's drivers explains as much as that name and another together, the curve
+///   takes their place (one_cause.h),
+///   5. while a scan exceeds, a surface or curve is drawn for it (surface_search.h), and the climb goes on
 ///   with
 ///      it in the model; in the end, where other surfaces or names came in, names are tried in its place.
 ///
@@ -64,7 +66,10 @@ class Search {
   void report(const std::string& stage, double done) const;
   void start();
   void explain();
+  bool may_draw() const;
+  bool draw_one_cause();
   bool draw_surface();
+  void draw(const SurfaceTest& surface, const std::vector<FamilyTest>& kept);
   void replace_surfaces();
   void begin_anew();
   void recall_rejected();
@@ -100,6 +105,7 @@ class Search {
   std::set<std::size_t> dropped_;                   ///< not significant beside the others
   std::set<std::set<std::size_t>> tried_together_;  ///< added when several more were tried in vain
   std::size_t names_before_surfaces_ = 0;
+  std::set<EffectName> in_place_of_names_;  ///< surfaces that explain more than names did
   bool more_is_known_ = false;
 };
 

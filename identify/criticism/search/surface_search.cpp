@@ -50,8 +50,10 @@ struct Table {
       case Variable::Kind::Elevation:
       case Variable::Kind::Run:
       case Variable::Kind::Instrument:
-      case Variable::Kind::TravelSinceTurning:
         complete = false;
+        return;
+      case Variable::Kind::TravelSinceTurning:
+        drivers.push_back(std::string("since_") + lower_letter_of(variable.axis));
     }
   }
 };
@@ -114,6 +116,10 @@ std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFind
       sets.push_back(finding.variables);
       sets.back().push_back(other);
     }
+  }
+  for (const std::string& variable : finding.variables) {
+    // What a direction drives may follow the travel since the axis turned, which no scan goes through.
+    if (variable.starts_with("dir_")) sets.push_back({variable, "travel since " + variable});
   }
   std::vector<EffectSpec> specs;
   for (const auto& variables : sets) {

@@ -23,7 +23,8 @@ struct SurfaceTest {
   double log_evidence = 0.0;  ///< over the state's model
 };
 
-/// Effects that might explain a finding: by all of its variables, and by each alone.
+/// Effects that might explain a finding: by all of its variables, and by each alone; by a direction also with
+/// the travel since the axis turned.
 std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFinding& finding);
 
 /// Columns of an effect off the model of a projector, one group.

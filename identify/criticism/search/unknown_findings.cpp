@@ -14,20 +14,6 @@ namespace {
 
 constexpr std::size_t kMostUnknown = 10;
 
-/// The direction of the scan whose share in the readings is most like that of a change.
-std::string direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved) {
-  std::size_t nearest = 0;
-  double best = -1.0;
-  for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
-    const Eigen::VectorXd along = model.direction(static_cast<int>(k));
-    const double likeness = moved.cwiseAbs().dot(along.cwiseAbs()) / std::max(1e-300, along.norm());
-    if (likeness <= best) continue;
-    best = likeness;
-    nearest = k;
-  }
-  return kScanDirections[nearest];
-}
-
 /// Of those that stand out nearly as much as the most improbable one, the first of the simplest.
 void put_simplest_first(std::vector<const GenericTest*>& order) {
   if (order.empty()) return;
@@ -61,6 +47,19 @@ std::vector<UnknownFinding> rejected_findings(const ModelState& reached, const R
 }
 
 }  // namespace
+
+std::string direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved) {
+  std::size_t nearest = 0;
+  double best = -1.0;
+  for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
+    const Eigen::VectorXd along = model.direction(static_cast<int>(k));
+    const double likeness = moved.cwiseAbs().dot(along.cwiseAbs()) / std::max(1e-300, along.norm());
+    if (likeness <= best) continue;
+    best = likeness;
+    nearest = k;
+  }
+  return kScanDirections[nearest];
+}
 
 void report_what_is_certain(std::vector<UnknownFinding>& unknown) {
   if (unknown.empty()) return;

@@ -6,6 +6,8 @@
 /// nearly alike the simplest stands first, and a second variable is only reported where no other does as well
 /// (margins: thresholds.h). Valid for what is recorded with the readings.
 
+#include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
@@ -14,6 +16,9 @@
 namespace volcal {
 
 std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Reasons& rejected);
+
+/// Of kScanDirections, the one whose share in the readings is most like that of a change.
+std::string direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved);
 
 /// Where another variable beside the same one explains nearly as much as the second of the leading finding,
 /// the first alone is certain, and the others are one of several.

@@ -116,8 +116,27 @@ Json formula_json(const FormulaFinding& formula) {
           {"unit", formula.unit},
           {"shape_value", formula.shape_text},
           {"log_evidence", finite_or_null(formula.log_evidence)},
+          {"gain", finite_or_null(formula.gain)},
+          {"log10_p", finite_or_null(formula.log10_p)},
           {"model_toml", effect_toml(formula.spec)},
           {"spec", json_parts::effect(formula.spec)}};
+}
+
+Json asked_json(const AskedLaws& asked) {
+  Json laws = Json::array();
+  for (const FormulaFinding& law : asked.laws) laws.push_back(formula_json(law));
+  return {{"label", asked.label},
+          {"surface_evidence", finite_or_null(asked.surface_evidence)},
+          {"tried", asked.tried},
+          {"laws", std::move(laws)}};
+}
+
+/// What held-out readings are left with.
+Json heldout_json(const MemberFinding& member) {
+  return {{"rms_heldout_um", micro(member.rms_heldout)},
+          {"systematic_um", micro(member.systematic)},
+          {"systematic_low_um", micro(member.systematic_low)},
+          {"systematic_high_um", micro(member.systematic_high)}};
 }
 
 Json surface_json(const SurfaceFinding& surface) {
@@ -195,13 +214,10 @@ Json set_json(const SetFinding& set, std::size_t place) {
   json["farthest"] = set.farthest ? Json(*set.farthest) : Json(nullptr);
   for (std::size_t i = 0; i < set.members.size(); ++i) {
     const MemberFinding& member = set.members[i];
-    json["members"].push_back({{"rms_heldout_um", micro(member.rms_heldout)},
-                               {"systematic_um", micro(member.systematic)},
-                               {"systematic_low_um", micro(member.systematic_low)},
-                               {"systematic_high_um", micro(member.systematic_high)},
-                               {"difference_um", micro(member.difference)},
-                               {"difference_u_um", micro(member.difference_u)},
-                               {"at_mm", Json::array()}});
+    json["members"].push_back(heldout_json(member));
+    json["members"].back()["difference_um"] = micro(member.difference);
+    json["members"].back()["difference_u_um"] = micro(member.difference_u);
+    json["members"].back()["at_mm"] = Json::array();
     for (const double at : member.at) json["members"].back()["at_mm"].push_back(at * kPerMilli);
     if (set.chosen && i != *set.chosen && !std::isnan(member.difference))
       json["members"].back()["model"] = alternative_model_file(place, i);
@@ -242,7 +258,16 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   for (const UnknownFinding& unknown : diagnosis.unknown) json["unknown"].push_back(unknown_json(unknown));
   json["surfaces"] = Json::array();
   for (const SurfaceFinding& surface : diagnosis.surfaces) json["surfaces"].push_back(surface_json(surface));
-  if (!diagnosis.tried.empty()) json["tried"] = list_json(diagnosis.tried);
+  if (!diagnosis.tried.empty()) {
+    json["tried"] = list_json(diagnosis.tried);
+    json["tried_errors"] = Json::array();
+    for (const MemberFinding& member : diagnosis.tried_errors)
+      json["tried_errors"].push_back(heldout_json(member));
+  }
+  if (!diagnosis.asked_laws.empty()) {
+    json["asked_laws"] = Json::array();
+    for (const AskedLaws& asked : diagnosis.asked_laws) json["asked_laws"].push_back(asked_json(asked));
+  }
   json["not_visible"] = list_json(diagnosis.not_visible);
   json["next_measurement"] = Json::array();
   for (const MeasurementProposal& proposal : diagnosis.proposals) {

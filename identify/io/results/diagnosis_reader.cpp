@@ -82,8 +82,26 @@ FormulaFinding formula_from(const Json& json) {
   formula.u = number_or_nan(json, "u") * formula.si_per_unit;
   formula.shape_text = text(json, "shape_value");
   formula.log_evidence = number_or_nan(json, "log_evidence");
+  if (json.contains("gain")) formula.gain = number_or_nan(json, "gain");
+  if (json.contains("log10_p")) formula.log10_p = number_or_nan(json, "log10_p");
   formula.spec = json_parts::effect_from(json.at("spec"));
   return formula;
+}
+
+AskedLaws asked_from(const Json& json) {
+  AskedLaws asked;
+  asked.label = text(json, "label");
+  asked.surface_evidence = number_or_nan(json, "surface_evidence");
+  asked.tried = json.at("tried").get<std::size_t>();
+  for (const Json& each : json.at("laws")) asked.laws.push_back(formula_from(each));
+  return asked;
+}
+
+void read_heldout(const Json& json, MemberFinding& member) {
+  member.rms_heldout = metres_of(json, "rms_heldout_um");
+  member.systematic = metres_of(json, "systematic_um");
+  member.systematic_low = metres_of(json, "systematic_low_um");
+  member.systematic_high = metres_of(json, "systematic_high_um");
 }
 
 SurfaceFinding surface_from(const Json& json) {
@@ -116,10 +134,7 @@ SetFinding set_from(const Json& json) {
   set.matters = json.at("matters").get<bool>();
   for (const Json& each : json.at("members")) {
     MemberFinding& member = set.members.emplace_back();
-    member.rms_heldout = metres_of(each, "rms_heldout_um");
-    member.systematic = metres_of(each, "systematic_um");
-    member.systematic_low = metres_of(each, "systematic_low_um");
-    member.systematic_high = metres_of(each, "systematic_high_um");
+    read_heldout(each, member);
     member.difference = metres_of(each, "difference_um");
     member.difference_u = metres_of(each, "difference_u_um");
     for (const Json& at : each.at("at_mm")) member.at.push_back(at.get<double>() * kMetrePerMillimetre);
@@ -273,6 +288,10 @@ Diagnosis diagnosis_from(const Json& json) {
                                  wave_period(each)});
   }
   diagnosis.tried = list_from(json.value("tried", Json::array()));
+  for (const Json& each : json.value("tried_errors", Json::array()))
+    read_heldout(each, diagnosis.tried_errors.emplace_back());
+  for (const Json& each : json.value("asked_laws", Json::array()))
+    diagnosis.asked_laws.push_back(asked_from(each));
   diagnosis.not_visible = list_from(json.at("not_visible"));
   for (const Json& each : json.at("next_measurement")) {
     diagnosis.proposals.push_back(proposal_from(each));

@@ -323,8 +323,9 @@ const std::vector<WordedFinding>& examples() {
          {"law_amplitudes", std::vector<FindingNumber>{{1.234e-6, "urad", 1e-6}, {2e-6, "urad", 1e-6}}},
          {"law_U", std::vector<FindingNumber>{{0.12e-6, "urad", 1e-6}, {0.3e-6, "urad", 1e-6}}},
          {"left_open", Texts{"what is straight in y: the rest of the model holds it"}}}},
-       "Drawn for it: EAY by y z, up to 12.3 +- 0.82 urad at y = 310, z = -120; extend the model with it and "
-       "the error falls. A law that explains as much: EAY by y * z^2 with p = 120, 1.23 +- 0.12 urad. Or: "
+       "Drawn for it: EAY by y z, up to 12.3 +- 0.82 urad at y = 310 mm, z = -120 mm; extend the model with "
+       "it and the error falls. A law that explains as much: EAY by y * z^2 with p = 120, 1.23 +- 0.12 urad. "
+       "Or: "
        "EAY by "
        "y * z, 2 +- 0.3 urad. These readings leave open what is straight in y: the rest of the model holds "
        "it."},
@@ -341,6 +342,29 @@ const std::vector<WordedFinding>& examples() {
        "Your own, a: it is what was missing (log10 p -12.3 with all 400 tests counted, gain 45.6); nearest "
        "to "
        "it in these readings is b, cosine 0.912."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"added", true},
+         {"visible", true},
+         {"gain", FindingNumber{45.6}},
+         {"log10_p", FindingNumber{-12.3}},
+         {"systematic", FindingNumber{0.11e-6}},
+         {"systematic_given", FindingNumber{0.72e-6}},
+         {"systematic_reached", FindingNumber{0.11e-6}},
+         {"tests", std::int64_t{400}}}},
+       "Your own, a: it is what was missing (log10 p -12.3 with all 400 tests counted, gain 45.6); held-out "
+       "readings keep 0.11 um of systematic error with it, 0.72 um as given."},
+      {{FindingCode::DiagnosisTried,
+        {{"effect", "a"},
+         {"visible", true},
+         {"gain", FindingNumber{-5.0}},
+         {"log10_p", FindingNumber{0.0}},
+         {"systematic", FindingNumber{0.4e-6}},
+         {"systematic_given", FindingNumber{0.72e-6}},
+         {"systematic_reached", FindingNumber{0.41e-6}},
+         {"tests", std::int64_t{400}}}},
+       "Your own, a: the readings do not ask for it (log10 p 0.0 with all 400 tests counted, gain -5); "
+       "held-out readings keep 0.4 um of systematic error with it, 0.41 um without it, 0.72 um as given."},
       {{FindingCode::DiagnosisTried,
         {{"effect", "a"},
          {"visible", true},

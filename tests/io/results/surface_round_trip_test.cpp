@@ -47,8 +47,14 @@ Diagnosis with_a_drawn_surface() {
   law.unit = "urad";
   law.si_per_unit = 1e-6;
   law.log_evidence = 90.0;
+  law.gain = 189.5;
+  law.log10_p = -41.25;
   surface.formulas = {law};
   diagnosis.surfaces = {surface};
+  diagnosis.asked_laws = {{surface.label, 88.5, 121, {law, law}}};
+  diagnosis.asked_laws.front().laws.back().log_evidence = 80.0;
+  diagnosis.tried = {diagnosis.effects.front()};
+  diagnosis.tried_errors = {{.rms_heldout = 0.7e-6, .systematic = 0.25e-6}};
   diagnosis.unknown.insert(diagnosis.unknown.begin(), {{"y", "z"}, {}, "Z", "EAY", 0.4e-6, -60.0});
   return diagnosis;
 }
@@ -64,6 +70,21 @@ TEST(SurfaceJson, HoldsEveryKeyInEdgeUnits) {
               ::testing::HasSubstr("coefficients_urad = [2.5, 2.5"));
   EXPECT_THAT(json.at("formulas").at(0).at("model_toml").get<std::string>(),
               ::testing::HasSubstr("expression = \"y * z^2\""));
+}
+
+TEST(SurfaceJson, HoldsLawsThatWereAskedForAndWhatIsLeftWithAGuess) {
+  const Diagnosis diagnosis = with_a_drawn_surface();
+  const auto json = nlohmann::json::parse(diagnosis_json(diagnosis));
+  const auto& asked = json.at("asked_laws").at(0);
+  EXPECT_EQ(asked.at("tried"), 121);
+  EXPECT_EQ(asked.at("laws").at(0).at("gain"), 189.5);
+  EXPECT_EQ(asked.at("laws").at(0).at("log10_p"), -41.25);
+  EXPECT_DOUBLE_EQ(json.at("tried_errors").at(0).at("systematic_um").get<double>(), 0.25);
+  EXPECT_TRUE(json.at("tried_errors").at(0).at("systematic_low_um").is_null());
+  EXPECT_EQ(diagnosis.asked_laws.front().sufficient(), 1u);
+  EXPECT_THAT(diagnosis_text(diagnosis),
+              ::testing::HasSubstr("Laws of the surface EAY by y z: 121 were tried, 1 explain as much as it "
+                                   "does (log evidence 88.5)"));
 }
 
 TEST(SurfaceJson, ComesBack) {

@@ -230,6 +230,23 @@ TEST_F(Custom, SaysWhichParameterIsMissingOrUnused) {
   EXPECT_THAT(refusal(unused), HasSubstr("does not use q"));
 }
 
+/// X goes to 20 mm in steps of 10 and turns: back by 5 mm, by 10, then by 1 mm from reading to reading.
+TEST_F(Custom, TheTravelSinceTurningCountsFromTheReadingBefore) {
+  volcal::Readings& readings = campaign_.setups[0].readings;
+  const std::vector<double> first = {0.0, 10.0, 20.0, 15.0, 5.0};
+  for (std::size_t row = 0; row < readings.size(); ++row) {
+    const double x_mm = row < first.size() ? first[row] : 5.0 - static_cast<double>(row - 4);
+    readings.position[index_of(AxisName::X)][row] = 1e-3 * x_mm;
+    readings.direction[index_of(AxisName::X)][row] = row < 3 ? 1 : -1;
+  }
+  const EffectSpec since = custom("EXX", "since_x");
+  EXPECT_NEAR(driver(since, "S1", 3), 5.0, 1e-9);
+  EXPECT_NEAR(driver(since, "S1", 4), 15.0, 1e-9);
+  EXPECT_NEAR(driver(since, "S1", 23), 34.0, 1e-9);
+  EXPECT_NEAR(driver(since, "S1", 1), 34.0, 1e-9) << "as far as ever until it first turns";
+  EXPECT_THAT(refusal(custom("EXX", "since_w")), HasSubstr("since_x"));
+}
+
 /// Names of channels that are no names of variables.
 TEST_F(Custom, AChannelIsWrittenWithUnderscores) {
   for (volcal::Setup& setup : campaign_.setups) {

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
@@ -41,6 +43,7 @@ struct DiagnoseArguments {
   bool verbose = false;
   std::vector<std::string> separate;
   std::vector<std::string> tried;
+  std::vector<std::string> laws;
   std::vector<std::string> parameters;
   std::size_t readings = PlanningOptions{}.readings;
 };
@@ -86,6 +89,20 @@ void write_diagnosis(const DiagnoseArguments& arguments, const Campaign& campaig
                          arguments.output, more);
 }
 
+constexpr const char* kOfModel = "model";
+
+/// A target with its drivers; or all surfaces of the model, which is then criticised without them.
+void add_asked_laws(const std::string& text, ModelSpec& model, DiagnoseOptions& options) {
+  if (text != kOfModel) return options.asked_laws.push_back(written_surface("--formula", text));
+  const auto is_surface = [](const EffectSpec& effect) { return effect.kind == "empirical"; };
+  const std::size_t before = options.asked_laws.size();
+  std::ranges::copy_if(model.effects, std::back_inserter(options.asked_laws), is_surface);
+  std::erase_if(model.effects, is_surface);
+  if (options.asked_laws.size() > before) return;
+  throw InputError({model.file, 0}, "--formula model: the model has no effect of kind \"empirical\"",
+                   "give a model that has one with --model, or write --formula \"TARGET: DRIVERS\"");
+}
+
 int run_diagnose(const DiagnoseArguments& arguments) {
   if (arguments.list) return print_list(arguments);
   if (!arguments.shown.empty()) return show(arguments);
@@ -108,12 +125,14 @@ int run_diagnose(const DiagnoseArguments& arguments) {
   }
   for (const std::string& text : arguments.tried)
     options.own.push_back(written_effect("--try", text, arguments.parameters).spec);
+  ModelSpec criticised = model;
+  for (const std::string& text : arguments.laws) add_asked_laws(text, criticised, options);
   ProgressBar bar("diagnose");
   options.progress = [&bar](const std::string& stage, double done) { bar.update(stage, done); };
-  const DiagnosedModel diagnosed = diagnose_model(campaign, model, options);
+  const DiagnosedModel diagnosed = diagnose_model(campaign, criticised, options);
   const Diagnosis& diagnosis = diagnosed.diagnosis;
   bar.finish();
-  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, model, diagnosed);
+  if (!arguments.output.empty()) write_diagnosis(arguments, campaign, criticised, diagnosed);
   if (!arguments.picture.empty())
     write_picture("--picture", diagnosis_picture(diagnosis, campaign, report_options()), arguments.picture);
   if (arguments.json) {
@@ -144,6 +163,11 @@ std::function<int()> define_diagnose(CLI::App& app) {
       "\"TARGET: expression\" or \"TARGET += expression\": an effect of your own, judged like those "
       "of the catalogue; may be given several times");
   add_parameter_option(app, arguments->parameters);
+  app.add_option(
+      "--formula", arguments->laws,
+      "\"TARGET: DRIVERS\": which law of one to three recorded variables the target follows, beside "
+      "what is found; \"model\": laws behind the surfaces of the model, which is criticised without "
+      "them; may be given several times");
   app.add_option("--separate", arguments->separate,
                  "KIND:TARGET,KIND:TARGET: which measurement would separate these effects, or show them")
       ->delimiter(',');
@@ -176,6 +200,7 @@ const Command& diagnose_command() {
                                   "dir_x * (T_air - 20)\" -o diagnosis\n"
                                   "  volcal diagnose campaign.toml --separate station-drift:\"station "
                                   "P1\",dead-path:\"readings of P1_short\"\n"
+                                  "  volcal diagnose campaign.toml --auto --formula \"EZX: x y\"\n"
                                   "  volcal diagnose --show diagnosis\n"
                                   "  volcal diagnose --list\n"
                                   "  volcal diagnose campaign.toml --list\n",

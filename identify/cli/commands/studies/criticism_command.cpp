@@ -125,8 +125,7 @@ std::function<int()> define_criticism_study(CLI::App& app) {
   auto arguments = std::make_shared<CriticismArguments>();
   CriticismOptions& options = arguments->options;
   const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
-  app.add_option("--rows", options.rows,
-                 "null, listed, unlisted, pairs, left-out, partial, mdb; default: all")
+  app.add_option("--rows", options.rows, fmt::format("{}; default: all", fmt::join(rows, ", ")))
       ->delimiter(',')
       ->check(CLI::IsMember(rows));
   app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")

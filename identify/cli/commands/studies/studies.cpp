@@ -12,6 +12,7 @@ namespace volcal::cli {
   STUDY(criticism_study)            \
   STUDY(effect_tables_command)      \
   STUDY(five_axis_study_command)    \
+  STUDY(hidden_study)               \
   STUDY(planning_study_command)     \
   STUDY(previews_study)
 

@@ -5,6 +5,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/result/result.h"
 
 namespace volcal::report {
 namespace {
@@ -17,6 +18,25 @@ Json list(const std::vector<EffectFinding>& effects) {
   return json;
 }
 
+Json asked_laws_json(const AskedLaws& asked) {
+  Json rows = Json::array();
+  for (const FormulaFinding& law : asked.laws) {
+    rows.push_back({{"label", law.label},
+                    {"shape", law.shape_text},
+                    {"amplitude", rounded(law.amplitude / law.si_per_unit, 4)},
+                    {"U95", rounded(kCoverageFactor * law.u / law.si_per_unit, 2)},
+                    {"unit", shown_unit(law.unit)},
+                    {"gain", rounded(law.gain, 4)},
+                    {"log10_p", rounded(law.log10_p, 4)},
+                    {"log_evidence", rounded(law.log_evidence, 4)}});
+  }
+  return {{"label", asked.label},
+          {"tried", asked.tried},
+          {"sufficient", asked.sufficient()},
+          {"surface_evidence", rounded(asked.surface_evidence, 4)},
+          {"rows", std::move(rows)}};
+}
+
 }  // namespace
 
 Json evidence_page(const DiagnosisInput& input) {
@@ -25,10 +45,14 @@ Json evidence_page(const DiagnosisInput& input) {
   added.insert(added.end(), diagnosis.model_changes.begin(), diagnosis.model_changes.end());
   Json alternatives = Json::array();
   for (const auto* set : sets_of_alternatives(diagnosis)) alternatives.push_back(list(*set));
+  Json asked = Json::array();
+  for (const AskedLaws& each : diagnosis.asked_laws) asked.push_back(asked_laws_json(each));
   return {{"threshold", rounded(log10_family_risk(), 4)},
           {"families", diagnosis.families},
           {"added", list(added)},
           {"alternatives", std::move(alternatives)},
+          {"own", list(diagnosis.tried)},
+          {"laws", std::move(asked)},
           {"ranking", list(diagnosis.ranking)}};
 }
 

@@ -21,6 +21,7 @@ namespace {
 constexpr std::size_t kRanked = 12;
 constexpr std::size_t kLeadingNotes = 2;
 constexpr std::size_t kLeadingUnknown = 3;
+constexpr std::size_t kLeadingLaws = 3;
 constexpr double kNear = 0.9;               // cosine
 constexpr std::size_t kMostAmplitudes = 3;  // of an effect; functions that the model leaves out have more
 
@@ -218,6 +219,28 @@ std::string choice_table(const std::vector<EffectFinding>& effects, const SetFin
   return table.text();
 }
 
+std::string asked_laws_text(const AskedLaws& asked, std::size_t most) {
+  TextTable table(
+      {{"law", Align::Left},
+       {"amplitude"},
+       {"+- U95"},
+       {"unit", Align::Left},
+       {"shape", Align::Left},
+       {"gain"},
+       {"log10 p"},
+       {"log evidence"}},
+      fmt::format("Laws of the {}: {} were tried, {} explain as much as it does (log evidence {})",
+                  asked.label, asked.tried, asked.sufficient(), fixed_number(asked.surface_evidence, 1)));
+  for (std::size_t i = 0; i < std::min(most, asked.laws.size()); ++i) {
+    const FormulaFinding& law = asked.laws[i];
+    table.add_row({law.label, edge(law.amplitude, law.si_per_unit),
+                   edge(kCoverageFactor * law.u, law.si_per_unit, 2), law.unit, law.shape_text,
+                   fixed_number(law.gain, 1), fixed_number(law.log10_p, 1),
+                   fixed_number(law.log_evidence, 1)});
+  }
+  return table.text();
+}
+
 std::string alternatives_text(const Diagnosis& diagnosis, const std::vector<EffectFinding>& ranked) {
   std::string text;
   const auto sets = sets_of_alternatives(diagnosis);
@@ -249,6 +272,7 @@ std::string diagnosis_summary_text(const Diagnosis& diagnosis) {
   for (const std::string& words : sentences(diagnosis.findings)) text += words + "\n";
   if (diagnosis.ladder.size() > 1) text += ladder_table(diagnosis);
   for (const EffectFinding& effect : diagnosis.effects) text += effect_line(effect);
+  for (const AskedLaws& asked : diagnosis.asked_laws) text += asked_laws_text(asked, kLeadingLaws);
   if (!remaining_unknown(diagnosis).empty()) text += unknown_table(diagnosis, kLeadingUnknown);
   if (!diagnosis.proposals.empty()) text += "next: " + sentence(diagnosis.proposals.front().finding) + "\n";
   const std::size_t shown = std::min(kLeadingNotes, diagnosis.notes.size());
@@ -269,6 +293,8 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
   text += alternatives_text(diagnosis, ranked);
   if (!diagnosis.tried.empty())
     text += "\n" + evidence_table(diagnosis.tried, ranked, "Your own", diagnosis.tried.size());
+  for (const AskedLaws& asked : diagnosis.asked_laws)
+    text += "\n" + asked_laws_text(asked, asked.laws.size());
   if (!remaining_unknown(diagnosis).empty())
     text += "\n" + unknown_table(diagnosis, diagnosis.unknown.size());
   text += "\n" + evidence_table(diagnosis.ranking, ranked, "Ranked evidence at the model reached", kRanked);

@@ -195,8 +195,9 @@ Expression custom_expression(const std::string& formula) {
 }
 
 std::string custom_expression_names() {
-  return "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()) +
-         ", p, q; functions are " + listed_names(Expression::function_names());
+  return "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
+         listed_names(plain_variables()) + ", p, q; functions are " +
+         listed_names(Expression::function_names());
 }
 
 const EffectKind& custom_effect() {
@@ -207,10 +208,12 @@ const EffectKind& custom_effect() {
        .source = "the user; expressions by muParser (beltoforion.de/en/muparser)",
        .keys = joined(
            {{written_target_key(),
-             text_key("expression",
-                      "in x y z (mm) a b c (deg) as commanded, dir_x ... (-1, 0, 1), t (s since the first "
-                      "reading), T_<channel> (degC), length (mm to the station), feed (mm/min), tool_length "
-                      "tool_x tool_y tool_z (mm), p, q; 1 - exp(-t / p) or z / 1000 * (T_column - 20)"),
+             text_key(
+                 "expression",
+                 "in x y z (mm) a b c (deg) as commanded, dir_x ... (-1, 0, 1), since_x ... (mm since it "
+                 "turned round), t (s since the first reading), T_<channel> (degC), length (mm to the "
+                 "station), feed (mm/min), tool_length "
+                 "tool_x tool_y tool_z (mm), p, q; 1 - exp(-t / p) or z / 1000 * (T_column - 20)"),
              {.key = "p", .help = "value of p in the expression", .plausible_max = 1e9},
              {.key = "p_sigma",
               .help = "standard uncertainty of p before the fit; absent = held",

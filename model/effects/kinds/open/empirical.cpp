@@ -114,7 +114,8 @@ struct Statement {
   static void check_name(const EffectTable& table, const std::string& name, const std::string& key) {
     if (is_recorded_variable(name)) return;
     table.fail(key + ": \"" + name + "\" is no variable",
-               "variables are x y z a b c, dir_x ... dir_c, T_<channel>, " + listed_names(plain_variables()));
+               "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
+                   listed_names(plain_variables()));
   }
 
   /// One number per driver.

@@ -1,4 +1,9 @@
 // Behaviour that is not rigid: an error motion that depends on two other axes, or on the tool it carries.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -48,7 +53,23 @@ std::vector<EffectSpec> product_couplings(const Campaign& campaign) {
   return specs;
 }
 
+/// One cause for all tools: what carries them yields the more, the longer they are.
+std::unique_ptr<FormulaEffect> make_load_by_length(const EffectTable& table) {
+  const ErrorSymbol symbol = table.symbol();
+  const std::string label = symbol.name() + " by the tool's length";
+  return std::make_unique<FormulaEffect>(
+      EffectName{"tool-load", symbol.name(), "tool_length", "linear"},
+      std::vector{motion_amplitude(table, label, symbol, "per_m")},
+      [](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
+        return constant(view, view.campaign.machine.tools[view.setup.tool].offset.norm());
+      },
+      [symbol, label](const Campaign& campaign, const SourcePlace& place) {
+        check_axis(campaign, symbol.axis, label, place);
+      });
+}
+
 std::unique_ptr<FormulaEffect> make_tool_load(const EffectTable& table) {
+  if (!table.spec.options.has("tool")) return make_load_by_length(table);
   const ErrorSymbol symbol = table.symbol();
   const std::string tool = table.text("tool", "add tool = \"NAME\"");
   const std::string label = symbol.name() + " by tool " + tool;
@@ -65,7 +86,17 @@ std::unique_ptr<FormulaEffect> make_tool_load(const EffectTable& table) {
       });
 }
 
-/// Rotations only: what a tool's weight displaces is an error of its offset.
+bool differ_in_length(const Campaign& campaign, const std::vector<std::string>& tools) {
+  std::set<long long> lengths;
+  for (const Tool& tool : campaign.machine.tools) {
+    if (std::ranges::find(tools, tool.name) != tools.end())
+      lengths.insert(std::llround(tool.offset.norm() / kMetrePerMillimetre));
+  }
+  return lengths.size() == tools.size();
+}
+
+/// Rotations only: what a tool's weight displaces is an error of its offset. Between two tools any load is
+/// one by length; it is offered for three or more.
 std::vector<EffectSpec> tool_loads(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
   const auto tools = tools_in_use(campaign);
@@ -75,6 +106,8 @@ std::vector<EffectSpec> tool_loads(const Campaign& campaign) {
     for (const std::string& tool : tools) {
       specs.push_back(effect_spec("tool-load", {{"symbol", symbol.name()}, {"tool", tool}}));
     }
+    if (tools.size() > 2 && differ_in_length(campaign, tools))
+      specs.push_back(effect_spec("tool-load", {{"symbol", symbol.name()}}));
   }
   return specs;
 }
@@ -98,11 +131,13 @@ const EffectKind& tool_load_effect() {
   static const FormulaKind kind(
       {.kind = "tool-load",
        .summary =
-           "the weight of a tool tilts what carries it: an error motion is larger by this with the tool",
+           "the weight of a tool tilts what carries it: an error motion is larger by this with the tool, or "
+           "with every tool in proportion to its length",
        .source = "ISO/TR 16907:2015, 8.6 (workpiece and tool mass)",
-       .keys =
-           joined({{symbol_key("error motion that changes: EAZ ..."), text_key("tool", "name of the tool")},
-                   motion_amplitude_keys({""}, "change with the tool")})},
+       .keys = joined(
+           {{symbol_key("error motion that changes: EAZ ..."),
+             text_key("tool", "name of the tool; absent = all, by their length", false)},
+            motion_amplitude_keys({"", "per_m"}, "change with the tool, or per metre of its length")})},
       make_tool_load, tool_loads);
   return kind;
 }

@@ -20,6 +20,17 @@ const columns = [
   { name: 'log10 p', cell: (row) => (row.first ? fixed(row.effect.log10_p, 1) : '') },
 ];
 
+const lawColumns = [
+  { name: 'Law', align: 'left', cell: (law) => law.label },
+  { name: 'Shape', align: 'left', cell: (law) => law.shape },
+  { name: 'Amplitude', cell: (law) => significant(law.amplitude) },
+  { name: '± U95', cell: (law) => significant(law.U95, 2) },
+  { name: 'Unit', align: 'left', cell: (law) => law.unit },
+  { name: 'Gain', cell: (law) => fixed(law.gain, 1) },
+  { name: 'log10 p', cell: (law) => fixed(law.log10_p, 1) },
+  { name: 'Log evidence', cell: (law) => fixed(law.log_evidence, 1) },
+];
+
 /** Large ratios stay on the page, small ones stay apart: asinh is linear about zero and logarithmic far out. */
 const place = Math.asinh;
 const kTicks = [0, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
@@ -86,5 +97,10 @@ export function renderEvidence(body, data) {
   addPlot(node, () => evidencePlot(data, [...first, ...others]));
   if (data.added.length > 0) body.append(el('h3', {}, 'Added'), table(columns, rows(data.added)));
   for (const set of data.alternatives) body.append(el('h3', {}, 'The readings cannot separate'), table(columns, rows(set)));
+  if (data.own.length > 0) body.append(el('h3', {}, 'Your own'), table(columns, rows(data.own)));
+  for (const asked of data.laws) {
+    const enough = `${asked.sufficient} explain${asked.sufficient === 1 ? 's' : ''} as much as the ${asked.label}, whose log evidence is ${fixed(asked.surface_evidence, 1)}`;
+    body.append(el('h3', {}, `Laws of the ${asked.label}`), note(`${asked.tried} products of elementary functions were tried, which p and the evidence count; of the best ${enough}.`), table(lawColumns, asked.rows));
+  }
   body.append(el('h3', {}, 'Not added, strongest first'), longTable(columns, rows(others)));
 }

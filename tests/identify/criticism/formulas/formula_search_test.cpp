@@ -50,7 +50,8 @@ const ModelState& state_of_growing_tilt() {
 /// Variables of its expression.
 std::vector<std::string> variables_of(const FormulaFinding& law) {
   std::vector<std::string> names;
-  for (const std::string& name : custom_expression(*law.spec.options.text("expression")).variables()) {
+  const auto expression = custom_expression(*law.spec.options.text("expression"));
+  for (const std::string& name : expression.variables()) {
     if (name != "p" && name != "q") names.push_back(name);
   }
   std::ranges::sort(names);

@@ -112,6 +112,16 @@ std::vector<EffectSpec> tool_loads(const Campaign& campaign) {
   return specs;
 }
 
+/// And one by length, which candidates have for three tools alone.
+std::vector<EffectSpec> tool_load_examples(const Campaign& campaign) {
+  std::vector<EffectSpec> specs = tool_loads(campaign);
+  const auto of_length = [](const EffectSpec& spec) { return !spec.options.has("tool"); };
+  if (specs.empty() || std::ranges::any_of(specs, of_length)) return specs;
+  const std::string symbol = specs.front().options.text("symbol").value();
+  specs.push_back(effect_spec("tool-load", {{"symbol", symbol}}));
+  return specs;
+}
+
 }  // namespace
 
 const EffectKind& product_coupling_effect() {
@@ -138,7 +148,7 @@ const EffectKind& tool_load_effect() {
            {{symbol_key("error motion that changes: EAZ ..."),
              text_key("tool", "name of the tool; absent = all, by their length", false)},
             motion_amplitude_keys({"", "per_m"}, "change with the tool, or per metre of its length")})},
-      make_tool_load, tool_loads);
+      make_tool_load, tool_loads, tool_load_examples);
   return kind;
 }
 

@@ -25,7 +25,7 @@ constexpr std::size_t kTested = 12;      // laws by their own columns
 constexpr std::size_t kExtended = 2;     // laws that further variables are tried with
 constexpr std::size_t kTested3 = 6;      // of these, with a further variable
 constexpr std::size_t kToldToUser = 10;  // laws that were asked for
-constexpr std::size_t kBeam = 24;
+constexpr std::size_t kLawsKept = 24;
 constexpr int kSweeps = 2;
 
 class FormulaSearch {
@@ -204,7 +204,7 @@ class FormulaSearch {
         }
         return true;
       };
-      if (kept.size() < kBeam && std::ranges::none_of(kept, same)) kept.push_back(std::move(law));
+      if (kept.size() < kLawsKept && std::ranges::none_of(kept, same)) kept.push_back(std::move(law));
     }
     laws = std::move(kept);
   }

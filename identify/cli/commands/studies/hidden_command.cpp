@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kStrong = 12.0;   // signal to noise from which the goal holds
 constexpr double kRemoved = 0.9;   // share of the systematic error
-constexpr std::size_t kWords = 3;  // of what is offered
+constexpr std::size_t kMostWords = 3;  // of what is offered
 
 struct HiddenArguments {
   HiddenDatasetOptions options;
@@ -44,7 +44,7 @@ StrongRows count_strong(const HiddenRows& rows) {
 
 /// The first few, and how many more.
 std::string listed(const std::vector<std::string>& labels) {
-  const std::size_t shown = std::min(labels.size(), kWords);
+  const std::size_t shown = std::min(labels.size(), kMostWords);
   const std::vector<std::string> first(labels.begin(), labels.begin() + static_cast<std::ptrdiff_t>(shown));
   const std::string text = fmt::format("{}", fmt::join(first, ", "));
   return labels.size() > shown ? text + fmt::format(" and {} more", labels.size() - shown) : text;

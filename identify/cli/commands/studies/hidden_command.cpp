@@ -13,8 +13,8 @@
 namespace volcal::cli {
 namespace {
 
-constexpr double kStrong = 12.0;   // signal to noise from which the goal holds
-constexpr double kRemoved = 0.9;   // share of the systematic error
+constexpr double kStrong = 12.0;       // signal to noise from which the goal holds
+constexpr double kRemoved = 0.9;       // share of the systematic error
 constexpr std::size_t kMostWords = 3;  // of what is offered
 
 struct HiddenArguments {

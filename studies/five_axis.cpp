@@ -2,21 +2,16 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <utility>
 
 #include "volcal/identify/errors/error_field.h"
-#include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/fit.h"
-#include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/studies/files/finished_campaigns.h"
 #include "volcal/studies/five_axis_campaign.h"
 
 namespace volcal::cli {
@@ -152,7 +147,8 @@ constexpr std::array<std::pair<const char*, double FiveAxisCampaign::*>, 9> kFig
      {"locations_only", &FiveAxisCampaign::locations_only},
      {"one_sphere_singly", &FiveAxisCampaign::one_sphere_singly}}};
 
-std::string line_of(const FiveAxisStudyOptions& options, int number, const FiveAxisCampaign& campaign) {
+nlohmann::json json_of(const FiveAxisStudyOptions& options, std::size_t number,
+                       const FiveAxisCampaign& campaign) {
   nlohmann::json json = {{"number", number},
                          {"seed", campaign.seed},
                          {"grid", {options.turns, options.tilts}},
@@ -160,77 +156,25 @@ std::string line_of(const FiveAxisStudyOptions& options, int number, const FiveA
   for (const auto& [name, member] : kFigures) {
     json[name] = campaign.*member;
   }
-  return json_text(json, -1);
+  return json;
 }
 
-/// Nothing for a line that a killed run left half written.
-std::optional<std::pair<int, FiveAxisCampaign>> campaign_of_line(const std::string& line,
-                                                                 const FiveAxisStudyOptions& options,
-                                                                 const SourcePlace& place) {
-  const auto json = nlohmann::json::parse(line, nullptr, false);
-  if (!json.is_object()) return std::nullopt;
-  try {
-    const int number = json.at("number").get<int>();
-    FiveAxisCampaign campaign;
-    campaign.seed = json.at("seed").get<std::uint64_t>();
-    campaign.structure = json.at("structure").get<std::string>();
-    for (const auto& [name, member] : kFigures) {
-      campaign.*member = json.at(name).get<double>();
-    }
-    const bool same = campaign.seed == options.seed + static_cast<std::uint64_t>(number) &&
-                      json.at("grid") == nlohmann::json({options.turns, options.tilts});
-    if (same) return std::pair(number, campaign);
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(place, "the line is no campaign of this study", "choose another folder");
+std::pair<std::size_t, FiveAxisCampaign> numbered_campaign(const nlohmann::json& json,
+                                                           const FiveAxisStudyOptions& options,
+                                                           const SourcePlace& place) {
+  const auto number = json.at("number").get<std::size_t>();
+  FiveAxisCampaign campaign;
+  campaign.seed = json.at("seed").get<std::uint64_t>();
+  campaign.structure = json.at("structure").get<std::string>();
+  for (const auto& [name, member] : kFigures) {
+    campaign.*member = json.at(name).get<double>();
   }
-  throw InputError(place, "it holds campaigns of another seed or grid",
-                   "give the same, or choose another folder");
+  if (campaign.seed != options.seed + number ||
+      json.at("grid") != nlohmann::json({options.turns, options.tilts}))
+    throw InputError(place, "it holds campaigns of another seed or grid",
+                     "give the same, or choose another folder");
+  return {number, campaign};
 }
-
-class FinishedCampaigns {
- public:
-  explicit FinishedCampaigns(const FiveAxisStudyOptions& options) : options_(options) {
-    if (options.output.empty()) return;
-    path_ = std::filesystem::path(options.output) / "campaigns.jsonl";
-    std::filesystem::create_directories(options.output);
-    if (std::filesystem::exists(path_)) read();
-    file_.open(path_, std::ios::app);
-    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "choose another folder");
-  }
-
-  const FiveAxisCampaign* find(int number) const {
-    const auto found = finished_.find(number);
-    return found == finished_.end() ? nullptr : &found->second;
-  }
-
-  void append(int number, const FiveAxisCampaign& campaign) {
-    if (path_.empty()) return;
-    file_ << line_of(options_, number, campaign) << '\n' << std::flush;
-    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "make room on the disk");
-  }
-
- private:
-  void read() {
-    if (!options_.resume)
-      throw InputError({path_.string(), 0}, "it holds the campaigns of an earlier run",
-                       "add --resume to go on with it, or choose another folder");
-    std::ifstream file(path_);
-    std::string line, complete;
-    for (int number = 1; std::getline(file, line) && !file.eof(); ++number) {
-      const auto campaign = campaign_of_line(line, options_, {path_.string(), number});
-      if (!campaign) continue;
-      finished_.insert(*campaign);
-      complete += line + '\n';
-    }
-    file.close();
-    std::ofstream(path_, std::ios::trunc) << complete;
-  }
-
-  const FiveAxisStudyOptions& options_;
-  std::filesystem::path path_;
-  std::ofstream file_;
-  std::map<int, FiveAxisCampaign> finished_;
-};
 
 }  // namespace
 
@@ -241,26 +185,21 @@ const std::vector<std::string>& five_axis_structures() {
 }
 
 std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& options) {
-  FinishedCampaigns finished(options);
-  std::vector<FiveAxisCampaign> campaigns(static_cast<std::size_t>(options.campaigns));
-  std::vector<int> open;
-  for (int number = 0; number < options.campaigns; ++number) {
-    if (const FiveAxisCampaign* known = finished.find(number)) {
-      campaigns[static_cast<std::size_t>(number)] = *known;
-    } else {
-      open.push_back(number);
-    }
-  }
-  int done = options.campaigns - static_cast<int>(open.size());
-  std::mutex reporting;
-  run_parallel(open.size(), thread_count(options.threads), [&](std::size_t i) {
-    FiveAxisCampaign campaign = counted(options, open[i]);
-    const std::lock_guard lock(reporting);
-    finished.append(open[i], campaign);
-    campaigns[static_cast<std::size_t>(open[i])] = std::move(campaign);
-    if (options.progress) options.progress(++done, options.campaigns);
-  });
-  return campaigns;
+  std::map<std::size_t, FiveAxisCampaign> known;
+  FinishedCampaigns finished(options.output, "campaigns.jsonl", options.resume,
+                             [&](const nlohmann::json& json, const SourcePlace& place) {
+                               known.insert(numbered_campaign(json, options, place));
+                             });
+  return all_campaigns<FiveAxisCampaign>(
+      static_cast<std::size_t>(options.campaigns), options.threads, options.progress,
+      [&](std::size_t number) -> const FiveAxisCampaign* {
+        const auto found = known.find(number);
+        return found == known.end() ? nullptr : &found->second;
+      },
+      [&](std::size_t number) { return counted(options, static_cast<int>(number)); },
+      [&](std::size_t number, const FiveAxisCampaign& campaign) {
+        finished.append(json_of(options, number, campaign));
+      });
 }
 
 }  // namespace volcal::cli

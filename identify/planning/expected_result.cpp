@@ -133,6 +133,27 @@ FitResult without_measured_ends(FitResult result) {
   return result;
 }
 
+/// Of displacements at many poses.
+class VarianceSum {
+ public:
+  void add(double variance) {
+    sum_ += variance;
+    largest_ = std::max(largest_, variance);
+    count_ += 1.0;
+  }
+  VolumetricUncertainty uncertainty() const {
+    VolumetricUncertainty out;
+    out.rms = std::sqrt(sum_ / std::max(1.0, count_));
+    out.largest = std::sqrt(largest_);
+    return out;
+  }
+
+ private:
+  double sum_ = 0.0;
+  double largest_ = 0.0;
+  double count_ = 0.0;
+};
+
 }  // namespace
 
 FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
@@ -143,41 +164,28 @@ FitResult expected_result(const Campaign& campaign, const ModelSpec& model,
 VolumetricUncertainty volumetric_uncertainty(const FitResult& result, const std::vector<Tool>& tools,
                                              int per_axis) {
   const FitResult everywhere = without_measured_ends(result);
-  VolumetricUncertainty out;
-  double count = 0.0;
+  VarianceSum sum;
   for (const Tool& tool : tools) {
     const ErrorGrid errors(everywhere, tool, axis_grid(result.machine, per_axis));
     for (const Covariance3& covariance : errors.displacement_covariances()) {
-      const double variance = covariance.variances().sum();
-      out.rms += variance;
-      out.largest = std::max(out.largest, variance);
-      count += 1.0;
+      sum.add(covariance.variances().sum());
     }
   }
-  out.rms = std::sqrt(out.rms / std::max(1.0, count));
-  out.largest = std::sqrt(out.largest);
-  return out;
+  return sum.uncertainty();
 }
 
 VolumetricUncertainty uncertainty_at_poses(const FitResult& result, const std::vector<Tool>& tools,
                                            const std::vector<std::vector<AxisPosition>>& poses) {
   const FitResult everywhere = without_measured_ends(result);
-  VolumetricUncertainty out;
-  double count = 0.0;
+  VarianceSum sum;
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
     const ErrorField field(everywhere, tools[tool]);
     for (const AxisPosition& position : poses[tool]) {
       const Eigen::Matrix<double, 3, Eigen::Dynamic> rows = field.rows(position).topRows<3>();
-      const double variance =
-          (rows * everywhere.covariance * rows.transpose()).trace() + 3.0 * field.stated_tool_variance();
-      out.rms += variance;
-      out.largest = std::max(out.largest, variance);
-      count += 1.0;
+      sum.add((rows * everywhere.covariance * rows.transpose()).trace() + 3.0 * field.stated_tool_variance());
     }
   }
-  out.rms = std::sqrt(out.rms / std::max(1.0, count));
-  out.largest = std::sqrt(out.largest);
-  return out;
+  return sum.uncertainty();
 }
 
 }  // namespace volcal

@@ -2,8 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "volcal/identify/text/nesting.h"
-
 namespace volcal::cli {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(AmplitudeRecord, value, u, mdb, truth)
@@ -29,18 +27,6 @@ void from_json(const nlohmann::json& json, CampaignRecord& record) {
   Fields fields;
   from_json(json, fields);
   record = fields;
-}
-
-std::optional<CampaignRecord> record_of_line(const std::string& line, const SourcePlace& place) {
-  require_shallow(line, NestedText::Json, place.file);
-  const auto json = nlohmann::json::parse(line, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  try {
-    return json.get<CampaignRecord>();
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(place, "the line is no campaign of this study",
-                     "choose another folder, or delete the file to begin anew");
-  }
 }
 
 }  // namespace volcal::cli

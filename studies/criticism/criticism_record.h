@@ -4,11 +4,8 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
-
-#include "volcal/model/description/errors.h"
 
 namespace volcal::cli {
 
@@ -95,9 +92,5 @@ struct CampaignRecord {
 
 void to_json(nlohmann::json& json, const CampaignRecord& record);
 void from_json(const nlohmann::json& json, CampaignRecord& record);
-
-/// A line of the file of finished campaigns; nothing for one that is cut off. Throws InputError for another
-/// kind of line.
-std::optional<CampaignRecord> record_of_line(const std::string& line, const SourcePlace& place);
 
 }  // namespace volcal::cli

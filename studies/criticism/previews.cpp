@@ -2,23 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
-#include "volcal/identify/numeric/parallel.h"
-#include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/session/session.h"
-#include "volcal/identify/text/json_text.h"
-#include "volcal/identify/text/nesting.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/study.h"
 #include "volcal/studies/criticism/criticism_campaign.h"
+#include "volcal/studies/files/finished_campaigns.h"
 
 namespace volcal::cli {
 
@@ -101,93 +96,34 @@ PreviewedCampaign preview_campaign(const PreviewJob& job, const PreviewsOptions&
   return record;
 }
 
-/// The file of finished campaigns. A line that a killed run left half written is dropped.
-class PreviewArchive {
- public:
-  explicit PreviewArchive(const PreviewsOptions& options) : options_(options) {
-    if (options.output.empty()) return;
-    path_ = std::filesystem::path(options.output) / "previews.jsonl";
-    std::filesystem::create_directories(options.output);
-    if (std::filesystem::exists(path_)) {
-      if (!options.resume)
-        throw InputError({path_.string(), 0}, "it holds the campaigns of an earlier run",
-                         "add --resume to go on with it, or choose another folder");
-      read();
-    }
-    file_.open(path_, std::ios::app);
-    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "choose another folder");
-  }
-
-  const PreviewedCampaign* find(const std::string& name) const {
-    const auto found = records_.find(name);
-    return found == records_.end() ? nullptr : &found->second;
-  }
-
-  void append(const PreviewedCampaign& record) {
-    if (path_.empty()) return;
-    file_ << json_text(nlohmann::json(record), -1) << '\n' << std::flush;
-    if (!file_) throw InputError({path_.string(), 0}, "it cannot be written", "make room on the disk");
-  }
-
- private:
-  void read() {
-    std::ifstream file(path_);
-    std::string line, complete;
-    for (int number = 1; std::getline(file, line) && !file.eof(); ++number) {
-      require_shallow(line, NestedText::Json, path_.string());
-      const auto json = nlohmann::json::parse(line, nullptr, false);
-      if (json.is_discarded()) continue;
-      try {
-        add(json.get<PreviewedCampaign>());
-      } catch (const nlohmann::json::exception&) {
-        throw InputError({path_.string(), number}, "the line is no campaign of this study",
-                         "choose another folder, or delete the file to begin anew");
-      }
-      complete += line + '\n';
-    }
-    file.close();
-    std::ofstream(path_, std::ios::trunc) << complete;
-  }
-
-  void add(const PreviewedCampaign& record) {
-    if (record.seed != options_.seed || record.readings != options_.readings)
-      throw InputError({path_.string(), 0},
-                       "it holds campaigns of --seed " + std::to_string(record.seed) + " --readings " +
-                           std::to_string(record.readings),
-                       "give the same, or choose another folder");
-    records_[record.campaign] = record;
-  }
-
-  const PreviewsOptions& options_;
-  std::filesystem::path path_;
-  std::ofstream file_;
-  std::map<std::string, PreviewedCampaign> records_;
-};
+void require_same(const PreviewedCampaign& record, const PreviewsOptions& options, const SourcePlace& place) {
+  if (record.seed == options.seed && record.readings == options.readings) return;
+  throw InputError({place.file, 0},
+                   "it holds campaigns of --seed " + std::to_string(record.seed) + " --readings " +
+                       std::to_string(record.readings),
+                   "give the same, or choose another folder");
+}
 
 }  // namespace
 
 std::vector<PreviewedCampaign> previews(const PreviewsOptions& options) {
-  PreviewArchive archive(options);
+  std::map<std::string, PreviewedCampaign> known;
+  FinishedCampaigns finished(options.output, "previews.jsonl", options.resume,
+                             [&](const nlohmann::json& json, const SourcePlace& place) {
+                               auto record = json.get<PreviewedCampaign>();
+                               require_same(record, options, place);
+                               const std::string name = record.campaign;
+                               known[name] = std::move(record);
+                             });
   const std::vector<PreviewJob> jobs = preview_jobs(options);
-  std::vector<PreviewedCampaign> records(jobs.size());
-  std::vector<std::size_t> open;
-  for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (const PreviewedCampaign* known = archive.find(jobs[i].name)) {
-      records[i] = *known;
-    } else {
-      open.push_back(i);
-    }
-  }
-  std::size_t done = jobs.size() - open.size();
-  std::mutex reporting;
-  run_parallel(open.size(), thread_count(options.threads), [&](std::size_t at) {
-    PreviewedCampaign record = preview_campaign(jobs[open[at]], options);
-    const std::lock_guard lock(reporting);
-    archive.append(record);
-    records[open[at]] = std::move(record);
-    if (options.progress) options.progress(static_cast<int>(++done), static_cast<int>(jobs.size()));
-  });
-  return records;
+  return all_campaigns<PreviewedCampaign>(
+      jobs.size(), options.threads, options.progress,
+      [&](std::size_t i) -> const PreviewedCampaign* {
+        const auto found = known.find(jobs[i].name);
+        return found == known.end() ? nullptr : &found->second;
+      },
+      [&](std::size_t i) { return preview_campaign(jobs[i], options); },
+      [&](std::size_t, const PreviewedCampaign& record) { finished.append(record); });
 }
 
 Share previews_that_held(const std::vector<PreviewedCampaign>& campaigns) {

@@ -117,7 +117,7 @@ TEST(CriticismStudy, WritesOneCampaign) {
   EXPECT_THAT(nowhere.errors, HasSubstr("-o FOLDER"));
 }
 
-/// A backlash that is told and falls, and a campaign with nothing hidden, which has no share.
+/// A backlash that is named and falls, and a campaign with nothing hidden, which has no share.
 TEST(CriticismStudy, CountsWhatTheOfferedModelRemovesOfADataset) {
   const std::string sealed = std::string(VOLCAL_SOURCE_DIR) + "/datasets/hidden/sealed";
   const std::string campaigns = testing::short_or_long<std::string>("02", "02,04");

@@ -58,6 +58,10 @@ TEST(FiveAxisStudy, GoesOnWhereItWasInterrupted) {
   EXPECT_THAT(run_program("study five-axis -n 2 " + small).errors, HasSubstr("--resume"));
   EXPECT_THAT(run_program("study five-axis -n 2 --resume --turns 4 --tilts 4 --seed 8 -o " + folder).errors,
               HasSubstr("another seed or grid"));
+  std::ofstream(file, std::ios::app) << std::string(100000, '[') << '\n';
+  const auto nested = run_program("study five-axis -n 2 --resume " + small);
+  EXPECT_EQ(nested.exit_code, 2) << "a line of brackets exhausts no stack";
+  EXPECT_THAT(nested.errors, HasSubstr("campaigns.jsonl"));
 }
 
 }  // namespace

@@ -226,9 +226,16 @@ async function unknown(story, fault) {
   await page.locator('.surface-drawn button.primary').first().click();
   await until(page, (old) => document.querySelector('.chip.current')?.dataset.model !== old, before.current);
   await page.waitForTimeout(900);
+  // Noise that has swallowed the effect shows an error of nothing; the full fit with it tells that of the model before.
+  await until(page, () => ['fitted', 'contradicted'].includes(document.querySelector('.headline')?.dataset.standing));
   const after = await headline(page);
-  // Nothing is what noise shows that has swallowed the effect, until a full fit has it.
-  if (before.error > 0 && !(after.error < before.error)) fault(`the surface does not lower the error: ${before.error} to ${after.error}`);
+  const at = (model) => page.locator(`.chip[data-model="${model}"] .model`).click();
+  await at(before.current);
+  await until(page, (model) => document.querySelector('.chip.current')?.dataset.model === model, before.current);
+  const given = await headline(page);
+  await at(after.current);
+  await until(page, (model) => document.querySelector('.chip.current')?.dataset.model === model, after.current);
+  if (!(after.error < given.error)) fault(`the surface does not lower the error: ${given.error} to ${after.error}`);
   await ranked(page);
   return undefined;
 }

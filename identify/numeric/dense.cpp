@@ -234,6 +234,18 @@ void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
   dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
 }
 
+Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                        const Eigen::Ref<const Eigen::MatrixXd>& b) {
+  const double one = 1.0, zero = 0.0;
+  const int m = static_cast<int>(a.rows()), n = static_cast<int>(b.cols()), k = static_cast<int>(a.cols());
+  const int lda = static_cast<int>(a.outerStride()), ldb = static_cast<int>(b.outerStride());
+  if (m == 0 || n == 0 || k == 0) return Eigen::MatrixXd::Zero(m, n);
+  Eigen::MatrixXd c(m, n);
+  const BlasCall call;
+  dgemm_("N", "N", &m, &n, &k, &one, a.data(), &lda, b.data(), &ldb, &zero, c.data(), &m);
+  return c;
+}
+
 void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
                             const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c) {
   const double one = 1.0;

@@ -52,6 +52,9 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows);
 
 /// upper(C) = A A^T, A is n x k with leading dimension n.
 void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
+/// A B.
+Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                        const Eigen::Ref<const Eigen::MatrixXd>& b);
 /// C += A^T B.
 void add_transposed_product(const Eigen::Ref<const Eigen::MatrixXd>& a,
                             const Eigen::Ref<const Eigen::MatrixXd>& b, Eigen::MatrixXd& c);

@@ -46,7 +46,10 @@ double DesignCriterion::aggregated(const Eigen::VectorXd& variances) const {
 
 Eigen::VectorXd DesignCriterion::variances(const Eigen::MatrixXd& covariance) const {
   const Eigen::Index size = functionals_.cols();
-  return (functionals_ * covariance.topLeftCorner(size, size)).cwiseProduct(functionals_).rowwise().sum();
+  return product(functionals_, covariance.topLeftCorner(size, size))
+      .cwiseProduct(functionals_)
+      .rowwise()
+      .sum();
 }
 
 std::optional<double> DesignCriterion::value(const Eigen::MatrixXd& information) const {
@@ -75,7 +78,7 @@ std::optional<DesignCriterion::State> DesignCriterion::state(const Eigen::Matrix
   const Eigen::Index size = functionals_.cols();
   const auto towards = state.covariance.leftCols(size);
   if (aggregate_ == Aggregate::Mean) {
-    state.root = towards * mean_root_;
+    state.root = product(towards, mean_root_);
     state.value = (mean_root_.transpose() * state.root.topRows(size)).trace();
     return state;
   }

@@ -124,8 +124,8 @@ class Exchange {
       const Eigen::Index first = static_cast<Eigen::Index>(block) * kBlockRows;
       const Eigen::Index rows = std::min(kBlockRows, count - first);
       const auto own = pool_.rows.middleRows(first, rows);
-      gain.segment(first, rows) = (own * state_.root).rowwise().squaredNorm();
-      leverage.segment(first, rows) = (own * state_.covariance).cwiseProduct(own).rowwise().sum();
+      gain.segment(first, rows) = product(own, state_.root).rowwise().squaredNorm();
+      leverage.segment(first, rows) = product(own, state_.covariance).cwiseProduct(own).rowwise().sum();
     });
     gain_.assign(pool_.candidates(), 0.0);
     loss_.assign(pool_.candidates(), 0.0);

@@ -12,6 +12,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/studies/files/finished_campaigns.h"
+#include "volcal/studies/files/five_axis_machines.h"
 #include "volcal/studies/five_axis_campaign.h"
 
 namespace volcal::cli {
@@ -177,12 +178,6 @@ std::pair<std::size_t, FiveAxisCampaign> numbered_campaign(const nlohmann::json&
 }
 
 }  // namespace
-
-const std::vector<std::string>& five_axis_structures() {
-  static const std::vector<std::string> kStructures = {"w C' A' b X Y Z t", "w X' b Y Z C B t",
-                                                       "w C' X' b Y Z B t", "w C' B' b X Y Z t"};
-  return kStructures;
-}
 
 std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& options) {
   std::map<std::size_t, FiveAxisCampaign> known;

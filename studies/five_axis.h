@@ -21,9 +21,6 @@ struct FiveAxisStudyOptions {
   std::function<void(int done, int all)> progress;
 };
 
-/// Table, head, one on either side, and a table that tilts about Y.
-const std::vector<std::string>& five_axis_structures();
-
 /// Lengths in m: RMS of the displacement vector at fresh poses after datums.
 struct FiveAxisCampaign {
   std::string structure;

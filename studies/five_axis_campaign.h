@@ -11,6 +11,7 @@
 #include "volcal/model/description/campaign.h"
 #include "volcal/model/kinematics/chain.h"
 #include "volcal/sim/machine/truth_machine.h"
+#include "volcal/studies/files/five_axis_machines.h"
 
 namespace volcal::cli {
 
@@ -22,9 +23,6 @@ struct FiveAxisErrors {
   double linear_displacement = 0.0;  ///< of linear axes, which a fit of rotary errors alone cannot know, m
   double linear_rotation = 0.0;      ///< rad
 };
-
-/// Two rotary axes, tools of 150 and 300 mm and a mandrel 60 mm to the side; linear travel +-800 mm.
-Machine five_axis_machine(const std::string& structure);
 
 /// Errors drawn: of every rotary axis its locations and error motions of three harmonics.
 sim::TruthMachine five_axis_truth(const Machine& machine, const FiveAxisErrors& errors, std::uint64_t seed);

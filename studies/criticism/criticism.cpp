@@ -22,7 +22,8 @@ struct Job {
 std::vector<Job> jobs_of(const CriticismOptions& options) {
   std::vector<Job> jobs;
   for (const std::string& row : options.rows) {
-    const int count = options.campaigns * (row == "null" ? static_cast<int>(criticism_noises().size()) : 1);
+    const int count =
+        options.campaigns * (is_null_row(row) ? static_cast<int>(criticism_noises().size()) : 1);
     for (int index = 0; index < count; ++index) jobs.push_back({row, index});
   }
   return jobs;

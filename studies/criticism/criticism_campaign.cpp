@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
@@ -67,7 +68,7 @@ class CampaignRun {
     }
     const sim::SimulatedCampaign simulated = sim::simulate(*drawn);
     describe(simulated.campaign);
-    const FitResult given = fitted(simulated.campaign, {});
+    const FitResult given = fitted(simulated.campaign, plan_.given);
     DiagnoseOptions options;
     options.compare = false;
     options.figures = false;
@@ -76,7 +77,7 @@ class CampaignRun {
     options.leave_out = plan_.leave_out;
     const Diagnosis diagnosis = diagnose(simulated.campaign, given, options);
     judge(diagnosis);
-    if (!right_.empty() && row_ != "partial") recover(simulated, given, diagnosis);
+    if (!record_.hidden.empty() && row_ != "partial") recover(simulated, given, diagnosis);
     return std::move(record_);
   }
 
@@ -149,6 +150,11 @@ class CampaignRun {
     record_.structure = plan_.study.machine.structure.code;
     record_.layout = plan_.layout;
     record_.noise = plan_.noise;
+    if (lacks_errors()) {
+      HiddenRecord& lacking = record_.hidden.emplace_back();
+      lacking.text = "errors of rotary axes";
+      lacking.right = kLeftOut;
+    }
     for (std::size_t i = 0; i < hidden_.effects.size(); ++i) {
       RightAnswer right = right_answer(hidden_.effects[i], campaign);
       HiddenRecord& hidden = record_.hidden[i];
@@ -159,6 +165,9 @@ class CampaignRun {
       right_.push_back(std::move(right));
     }
   }
+
+  /// What is hidden is what the model lacks, and no effect.
+  bool lacks_errors() const { return !plan_.given.functions.empty(); }
 
   bool left_out(const EffectName& name) const {
     return std::ranges::find(plan_.leave_out, name.kind) != plan_.leave_out.end();
@@ -265,6 +274,10 @@ class CampaignRun {
         answer.hidden = static_cast<int>(i);
       }
     }
+    if (lacks_errors() && finding.name.kind == kLeftOut) {
+      answer.by_name = true;
+      answer.hidden = 0;
+    }
     const bool same = !finding.resolution && 1.0 - nearest.share < kRemainderOfTheSame * kRemainderOfTheSame;
     if (answer.hidden < 0 && same) answer.hidden = nearest_hidden;
     for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
@@ -281,24 +294,31 @@ class CampaignRun {
   void recover(const sim::SimulatedCampaign& simulated, const FitResult& given, const Diagnosis& diagnosis) {
     record_.recovery = true;
     record_.ms_given = unseen_square(simulated, given);
-    ModelSpec named;
-    for (const EffectFinding& finding : diagnosis.effects) named.effects.push_back(finding.spec);
     record_.ms_oracle = oracle_square(simulated);
-    record_.ms_named = named.effects.empty() ? record_.ms_given
-                                             : unseen_square(simulated, fitted(simulated.campaign, named));
+    record_.ms_named =
+        diagnosis.effects.empty()
+            ? record_.ms_given
+            : unseen_square(simulated, fitted(simulated.campaign, given_with(diagnosis.effects)));
     record_.ms_told = record_.ms_offered = record_.ms_named;
-    ModelSpec with_sets;
-    for (const EffectFinding& finding : with_first_of_sets(diagnosis)) {
-      if (!finding.resolution) with_sets.effects.push_back(finding.spec);
-    }
     if (!record_.sets.empty())
-      record_.ms_told = unseen_square(simulated, fitted(simulated.campaign, with_sets));
+      record_.ms_told =
+          unseen_square(simulated, fitted(simulated.campaign, given_with(with_first_of_sets(diagnosis))));
     if (record_.sets.empty() && diagnosis.surfaces.empty()) return;
     for (const SurfaceFinding& surface : diagnosis.surfaces)
       record_.drawn.push_back(surface.accepted_label());
     record_.ms_offered = unseen_square(
-        simulated,
-        fitted(simulated.campaign, extended_model({}, simulated.campaign, accepted_effects(diagnosis))));
+        simulated, fitted(simulated.campaign,
+                          extended_model(plan_.given, simulated.campaign, accepted_effects(diagnosis))));
+  }
+
+  /// The model that was diagnosed with what was found; more resolution is no name.
+  ModelSpec given_with(const std::vector<EffectFinding>& findings) const {
+    ModelSpec model = plan_.given;
+    for (const EffectFinding& finding : findings) {
+      if (!finding.resolution && !restore_left_out(finding.spec, plan_.study.machine, model))
+        model.effects.push_back(finding.spec);
+    }
+    return model;
   }
 
   /// With the hidden effects in the model where the catalogue has them, else with nothing hidden.

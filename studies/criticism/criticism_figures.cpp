@@ -334,6 +334,12 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
         [&](const CampaignRecord& record) { return record.row == "null" && record.noise == noise; },
         "<= 1 %");
   }
+  add("rotary axes: right name or in a set of up to 3, s >= 7", right, row("rotary", 7.0), ">= 97 %");
+  add("  a wrong name, any s", wrong, row("rotary"), "<= 1 %");
+  add("rotary axes, nothing hidden: false alarm", alarm, row("rotary-null"), "<= 1 %");
+  const auto told_missing = outcome({Outcome::Right, Outcome::RightInSet, Outcome::MoreRemains});
+  add("rotary errors missing from the model: said", told_missing, row("rotary-missing"), ">= 97 %");
+  add("  a wrong name", wrong, row("rotary-missing"), "<= 1 %");
   const auto misnamed = [](const CampaignRecord& record) {
     return outcome_of(record) == Outcome::Wrong && remainder_of(record) >= kUndetectable;
   };
@@ -402,9 +408,10 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   const auto offered = [](const CampaignRecord& record) {
     return recovered_share(record, record.ms_offered) >= kRecovered;
   };
-  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "behind"})
+  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "behind", "rotary"})
     add(fmt::format("the model offered recovers >= 0.9, s >= 12: {}", name), offered, row(name, 12.0),
         ">= 97 %");
+  add("  rotary errors missing from the model", offered, row("rotary-missing"), ">= 97 %");
   figures.push_back({"amplitude inside its 95 % interval, s >= 5", coverage(campaigns, false), "93 to 97 %"});
   figures.push_back({"  effects whose shape was scanned", coverage(campaigns, true), "93 to 97 %"});
   std::erase_if(figures, [](const Figure& figure) { return figure.share.of == 0; });

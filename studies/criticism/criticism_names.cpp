@@ -26,6 +26,9 @@ class Answerer {
     drivers();
     directions();
     answer_.companions.insert({"x", "y", "z", "feed"});
+    for (const Axis& axis : campaign_.machine.axes) {
+      if (is_rotary(axis.name)) answer_.companions.insert(std::string(1, lower_letter_of(axis.name)));
+    }
     for (const Tool& tool : campaign_.machine.tools) answer_.companions.insert("tool " + tool.name);
     either_of_two_tools();
     return std::move(answer_);
@@ -42,6 +45,11 @@ class Answerer {
     return text;
   }
   std::string own_axis() const { return lower(text("symbol").substr(2)); }
+  /// A location error of a rotary axis, "EY0C": it moves as the constant of an error motion.
+  bool is_of_rotary_axis() const {
+    const auto location = LocationSymbol::parse(text("symbol"));
+    return location && is_rotary(location->axis);
+  }
   static std::string positioning(const std::string& axis) { return "E" + axis + axis; }
 
   void set(const std::string& kind, const std::string& target, const std::string& driver,
@@ -79,6 +87,8 @@ class Answerer {
     if (is({"screw-lead"})) set("lead-error", symbol, "");
     if (is({"encoder-subdivision"})) set("encoder-subdivision", symbol, "");
     if (is({"servo-mismatch"})) set("servo-mismatch", "XY", "");
+    if (is({"worm"})) set("worm-error", symbol, "");
+    if (is({"cradle-table"})) set("cradle-coupling", symbol, lower(text("by")), "sine");
   }
 
   void name_temperature() {
@@ -88,7 +98,9 @@ class Answerer {
     if (is({"thermal-tilt"}) && !has("by")) set("thermal-drift", symbol, channel);
     if (is({"lagged-temperature"}) && !has("by")) set("lagged-temperature", symbol, channel);
     if (is({"squareness-drift"})) set("squareness-drift", symbol, "time");
-    if (is({"squareness-channel"})) set("squareness-drift", symbol, channel);
+    if (is({"squareness-channel"}) && !is_of_rotary_axis()) set("squareness-drift", symbol, channel);
+    if (is({"squareness-channel"}) && is_of_rotary_axis())
+      set("thermal-drift", symbol.substr(0, 2) + symbol.back(), channel);
   }
 
   void name_coupling() {
@@ -154,7 +166,8 @@ class Answerer {
             "direction-temperature"})) {
       drivers.insert("dir_" + own_axis());
     }
-    if (is({"screw-lead", "encoder-subdivision", "triangle-wave", "position-step", "local-bump"})) {
+    if (is({"screw-lead", "encoder-subdivision", "triangle-wave", "position-step", "local-bump", "worm",
+            "cradle-table"})) {
       drivers.insert(own_axis());
     }
     if (is({"screw-heating", "tool-growth", "tool-growth-on-off", "squareness-drift", "station-drift",

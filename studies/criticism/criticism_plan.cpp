@@ -14,6 +14,7 @@
 #include "volcal/sim/machine/random.h"
 #include "volcal/sim/machine/reference_machines.h"
 #include "volcal/studies/criticism/criticism_hidden.h"
+#include "volcal/studies/criticism/rotary_campaigns.h"
 
 namespace volcal::cli {
 namespace {
@@ -154,10 +155,12 @@ class Planner {
     const std::vector<Machine> machines = sim::reference_machines();
     const auto index = static_cast<std::size_t>(plan_.index);
     study.machine = plan_.row == "mdb" ? machines[0] : machines[(index + index / 20) % machines.size()];
+    if (has_rotary_axes()) study.machine = rotary_machine(plan_.index);
     choose_kinds();
     sim::RandomStream random(is("mdb") ? 1 : study.seed, "environment");
     study.environment = environment(random);
-    plan_.noise = plan_.row == "null" ? criticism_noises()[index % criticism_noises().size()] : "mixed";
+    plan_.noise = is_null_row(plan_.row) ? criticism_noises()[index % criticism_noises().size()] : "mixed";
+    if (is("rotary-missing")) plan_.given = without_rotary_errors(study.machine);
     study.unseen = true;
     measure();
     hide();
@@ -166,17 +169,21 @@ class Planner {
 
  private:
   bool is(const char* row) const { return plan_.row == row; }
+  bool has_rotary_axes() const { return plan_.row.starts_with("rotary"); }
 
   void choose_kinds() {
     const int shift = attempt_ / kAttemptsPerKind;
-    if (is("null")) return;
+    if (is_null_row(plan_.row) || is("rotary-missing")) return;
     if (is("mdb")) {
       kinds_ = {std::array{"reversal", "squareness-drift",
                            "scale-expansion"}[static_cast<std::size_t>(plan_.index) % 3]};
       return;
     }
     const bool starts_unlisted = is("unlisted") || is("behind");
-    const auto list = starts_unlisted ? unlisted_kinds() : is("shared") ? shared_kinds() : listed_kinds();
+    const auto list = starts_unlisted ? unlisted_kinds()
+                      : is("shared")  ? shared_kinds()
+                      : is("rotary")  ? rotary_kinds()
+                                      : listed_kinds();
     const auto count = static_cast<int>(list.size());
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift) % count)]);
     if (is("behind")) {
@@ -207,6 +214,11 @@ class Planner {
     }
     const bool tells_tools =
         is("shared") || hides({"tool-load", "tool-load by", "tool-offset", "tool-clamping"});
+    if (has_rotary_axes()) {
+      measure_rotary_axes(study, readings_, noise);
+      plan_.layout = "tracer and spheres";
+      return;
+    }
     Layout layout(study.machine, study.seed, tells_tools ? 2 : 1);
     study.measurements.push_back(layout.measurement(readings_, noise));
     plan_.layout = layout.text();
@@ -256,7 +268,9 @@ class Planner {
     sim::RandomStream random(plan_.study.seed, "hidden, attempt " + std::to_string(attempt_));
     for (const std::string& kind : kinds_) {
       PlannedEffect effect;
-      effect.effect = is("mdb") ? first_of_kind(kind, plan_.study) : random_effect(kind, plan_.study, random);
+      effect.effect = is("mdb")      ? first_of_kind(kind, plan_.study)
+                      : is("rotary") ? random_rotary_effect(kind, plan_.study, random)
+                                     : random_effect(kind, plan_.study, random);
       set_size(effect, random);
       plan_.hidden.push_back(std::move(effect));
     }
@@ -267,7 +281,7 @@ class Planner {
   }
 
   void set_size(PlannedEffect& effect, sim::RandomStream& random) const {
-    if (is("listed")) effect.signal = drawn(random, kSignals);
+    if (is("listed") || is("rotary")) effect.signal = drawn(random, kSignals);
     if (is("pairs") || is("shared") || is("behind")) effect.signal = drawn(random, kPairSignals);
     if (is("unlisted") || is("left-out")) effect.signal = drawn(random, kUnlistedSignals);
     if (is("partial")) effect.rms = drawn(random, kPartialRms);
@@ -285,10 +299,13 @@ class Planner {
 }  // namespace
 
 std::span<const std::string> criticism_rows() {
-  static const std::vector<std::string> kRows = {"null",    "listed", "unlisted", "pairs", "left-out",
-                                                 "partial", "mdb",    "shared",   "behind"};
+  static const std::vector<std::string> kRows = {"null",     "listed",  "unlisted",    "pairs",
+                                                 "left-out", "partial", "mdb",         "shared",
+                                                 "behind",   "rotary",  "rotary-null", "rotary-missing"};
   return kRows;
 }
+
+bool is_null_row(const std::string& row) { return row == "null" || row == "rotary-null"; }
 
 std::span<const std::string> criticism_noises() {
   static const std::vector<std::string> kNoises = {"white", "drift", "line", "drift+line", "mixed"};

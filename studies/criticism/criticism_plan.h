@@ -10,6 +10,9 @@
 ///   partial   one effect of the catalogue, measured with ball-bar circles or body diagonals alone
 ///   shared    one cause with one amplitude in several places
 ///   behind    one effect that is in no catalogue and one of the catalogue
+///   rotary    one effect of rotary axes that the catalogue has, on machines of four structures
+///   rotary-null     nothing is hidden in a machine with rotary axes; five kinds of noise take turns
+///   rotary-missing  nothing is hidden, and the model that is diagnosed has no errors of rotary axes
 ///   mdb       three effects at 0.7, 1 and 1.3 times the amplitude that is found with 80 % power
 
 #include <cstdint>
@@ -18,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/model/description/model_spec.h"
 #include "volcal/sim/study.h"
 #include "volcal/studies/criticism/criticism_names.h"
 
@@ -25,6 +29,8 @@ namespace volcal::cli {
 
 /// Names of the rows, in the order of the table.
 std::span<const std::string> criticism_rows();
+/// Nothing is hidden; the kinds of noise take turns.
+bool is_null_row(const std::string& row);
 /// "white", "drift", "line", "drift+line", "mixed" (correlated drift, line offsets and 0.3 % outliers).
 std::span<const std::string> criticism_noises();
 
@@ -42,6 +48,7 @@ struct PlannedCampaign {
   std::string noise;
   sim::Study study;  ///< nothing hidden yet
   std::vector<PlannedEffect> hidden;
+  ModelSpec given;                     ///< the model that is diagnosed
   std::vector<std::string> leave_out;  ///< kinds that the diagnosis does not know
 };
 

@@ -13,6 +13,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/model/description/units.h"
+#include "volcal/studies/files/five_axis_machines.h"
 #include "volcal/studies/five_axis.h"
 
 namespace volcal::cli {

@@ -102,8 +102,11 @@ std::vector<NoiseParameters> NoiseEstimate::parameters() const {
   return result;
 }
 
-NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options,
-                             const NoiseEstimate* previous) {
+namespace {
+
+/// `held`: of the model that the problem holds no columns of.
+NoiseEstimate find_noise(const NoiseProblem& problem, const NoiseOptions& options,
+                         const NoiseEstimate* previous, const NoiseEstimate* held) {
   RestrictedLikelihood likelihood(problem, options.threads);
   NoiseEstimate estimate;
   estimate.instruments.resize(likelihood.groups());
@@ -132,6 +135,7 @@ NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& op
       if (!instrument.estimated) continue;
       const InstrumentNoise before = round > 0 || previous == nullptr ? instrument : previous->instruments[g];
       NoiseSearch search(likelihood, g, of_round, shares.rest(g), solution, white[g], taken[g]);
+      if (held != nullptr) search.hold(held->instruments[g].start);
       search.run(instrument, before);
       estimate.evaluations += search.evaluations();
       shares.set(g, instrument.parameters);
@@ -141,6 +145,20 @@ NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& op
   estimate.log_likelihood = likelihood.log_likelihood(shares.total());
   estimate.coefficients = likelihood.coefficients(solution);
   return estimate;
+}
+
+}  // namespace
+
+NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options,
+                             const NoiseEstimate* previous) {
+  return find_noise(problem, options, previous, nullptr);
+}
+
+NoiseEstimate readjust_noise(const NoiseProblem& problem, const NoiseOptions& options,
+                             const NoiseEstimate& before) {
+  NoiseEstimate found = find_noise(problem, options, &before, &before);
+  found.log_likelihood = found.white_log_likelihood = kNone;
+  return found;
 }
 
 std::vector<NoiseRow> noise_table(const NoiseEstimate& estimate) {

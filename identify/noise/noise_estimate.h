@@ -81,6 +81,13 @@ struct NoiseEstimate {
 NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options = {},
                              const NoiseEstimate* previous = nullptr);
 
+/// The same in milliseconds, once little is added to the model of `before`. `problem` holds what is added
+/// alone, its columns after projection off that model, and the residuals of all. That model's own solution is
+/// held but for what it gives up to these columns, and its log information is linear from the noise of
+/// `before`; without likelihoods. The observations must be the same.
+NoiseEstimate readjust_noise(const NoiseProblem& problem, const NoiseOptions& options,
+                             const NoiseEstimate& before);
+
 /// One line of a table of the result, SI.
 struct NoiseRow {
   std::size_t instrument = 0;

@@ -158,8 +158,8 @@ void NoiseSearch::set_moments(const Eigen::VectorXd& residual) {
   correlated_ = std::clamp(1.0 - independent / (total_ * total_), 0.05, 0.95);
 }
 
-double NoiseSearch::coordinate(double deviation) const {
-  return std::log1p(std::pow(deviation / (kBendOfScale * total_), 2));
+double NoiseSearch::coordinate(double deviation, double scale) {
+  return std::log1p(std::pow(deviation / (kBendOfScale * scale), 2));
 }
 
 double NoiseSearch::deviation(double coordinate) const {
@@ -188,11 +188,50 @@ Box NoiseSearch::box(const Active& active) const {
   return limits;
 }
 
+void NoiseSearch::hold(const NoiseStart& held) {
+  if (held.at.size() > 0) held_ = held;
+}
+
+/// Of the model that is held, up to a constant.
+double NoiseSearch::held_information(const Eigen::VectorXd& at, const Active& active) const {
+  if (!held_) return 0.0;
+  const NoiseParameters noise = parameters(at, active);
+  double value = held_->slope(kWhite) * (at(kWhite) - held_->at(kWhite));
+  const auto add = [&](int term, double deviation) {
+    const Eigen::Index i = parameter_of(term);
+    if (held_->active[static_cast<std::size_t>(term)])
+      value += held_->slope(i) * (coordinate(deviation, held_->scale) - held_->at(i));
+  };
+  add(0, noise.drift);
+  add(1, noise.line);
+  add(2, noise.per_metre * mean_length_);
+  if (active[0] && held_->active[0]) value += held_->slope(kTau) * (at(kTau) - held_->at(kTau));
+  return value;
+}
+
+/// The derivative of held_information() at a point.
+Eigen::VectorXd NoiseSearch::held_slope(const Point& point) const {
+  Eigen::VectorXd slope = Eigen::VectorXd::Zero(kParameters);
+  if (!held_) return slope;
+  slope(kWhite) = held_->slope(kWhite);
+  for (int term = 0; term < kTerms; ++term) {
+    const auto place = static_cast<std::size_t>(term);
+    if (!point.active[place] || !held_->active[place]) continue;
+    const Eigen::Index i = parameter_of(term);
+    const double ratio = std::pow(total_ / held_->scale, 2);  // of the squares that the coordinates hold
+    const double here = std::expm1(point.at(i));
+    slope(i) = held_->slope(i) * ratio * (1.0 + here) / (1.0 + ratio * here);
+  }
+  if (point.active[0] && held_->active[0]) slope(kTau) = held_->slope(kTau);
+  return slope;
+}
+
 void NoiseSearch::evaluate(Point& point) {
   const auto share = likelihood_.share(group_, parameters(point.at, point.active));
   const auto solution = RestrictedLikelihood::solve(rest_ + share.gram);
   ++evaluations_;
-  point.value = share.log_determinant + solution.log_information + solution.quadratic;
+  point.value = share.log_determinant + solution.log_information + solution.quadratic +
+                held_information(point.at, point.active);
   point.log_information = solution.log_information;
   point.residual = likelihood_.residual(group_, solution.at);
 }
@@ -215,7 +254,7 @@ void NoiseSearch::find_slope(Point& point) {
 /// -2 l up to a constant, with the solution of `from` held and its log information linear.
 double NoiseSearch::surrogate(const Point& from, const Eigen::VectorXd& at, const Active& active) {
   double value = likelihood_.misfit(group_, parameters(at, active), from.residual);
-  value += from.slope(kWhite) * (at(kWhite) - from.at(kWhite));
+  value += held_information(at, active) + from.slope(kWhite) * (at(kWhite) - from.at(kWhite));
   for (int term = 0; term < kTerms; ++term) {
     const Eigen::Index i = parameter_of(term);
     if (active[static_cast<std::size_t>(term)]) value += from.slope(i) * (at(i) - from.at(i));
@@ -382,7 +421,7 @@ std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
   Point best;
   best.active = previous.start.active;
   best.at = previous.start.at;
-  best.slope = previous.start.slope;
+  best.slope = held_ ? Eigen::VectorXd::Zero(kParameters).eval() : previous.start.slope;
   evaluate(best);
   refine(best);
   for (std::size_t term = 0; term < kTerms; ++term) {
@@ -417,7 +456,7 @@ void NoiseSearch::run(InstrumentNoise& result, const InstrumentNoise& previous) 
   }
   for (std::size_t term = 0; term < kTerms; ++term) evidence[term]->on = found->active[term];
   result.parameters = parameters(found->at, found->active);
-  result.start = {found->at, found->slope, found->active, total_};
+  result.start = {found->at, found->slope + held_slope(*found), found->active, total_};
   if (options_.uncertainty) find_uncertainty(*found, result);
 }
 

@@ -17,6 +17,9 @@ class NoiseSearch {
   NoiseSearch(RestrictedLikelihood& likelihood, std::size_t group, const NoiseOptions& options,
               Eigen::MatrixXd rest, const Eigen::VectorXd& solution, double white, double taken);
 
+  /// The likelihood holds no columns of a model about which the noise was found before: its log information
+  /// is linear from there.
+  void hold(const NoiseStart& held);
   /// Parameters, evidence and uncertainties; counts its exact evaluations. `previous`: of nearly the same
   /// problem, or without a start.
   void run(InstrumentNoise& result, const InstrumentNoise& previous);
@@ -38,7 +41,8 @@ class NoiseSearch {
 
   void set_limits(double white, const Eigen::VectorXd& residual);
   void set_moments(const Eigen::VectorXd& residual);
-  double coordinate(double deviation) const;
+  static double coordinate(double deviation, double scale);
+  double coordinate(double deviation) const { return coordinate(deviation, total_); }
   double deviation(double coordinate) const;
   NoiseParameters parameters(const Eigen::VectorXd& at, const Active& active) const;
   Box box(const Active& active) const;
@@ -53,6 +57,8 @@ class NoiseSearch {
   Point with(const Point& point, int term);
   Point search(InstrumentNoise& result);
   std::optional<Point> resume(InstrumentNoise& result, const InstrumentNoise& previous);
+  double held_information(const Eigen::VectorXd& at, const Active& active) const;
+  Eigen::VectorXd held_slope(const Point& point) const;
   Eigen::VectorXd moved(const Eigen::VectorXd& at, Eigen::Index parameter, double shift) const;
   void find_uncertainty(const Point& point, InstrumentNoise& result);
 
@@ -60,6 +66,7 @@ class NoiseSearch {
   std::size_t group_;
   const NoiseOptions& options_;
   Eigen::MatrixXd rest_;
+  std::optional<NoiseStart> held_;
   Eigen::VectorXd lower_, upper_;
   Active possible_{};
   Point white_;            ///< where the search begins

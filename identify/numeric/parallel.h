@@ -12,6 +12,8 @@
 #include <thread>
 #include <vector>
 
+#include "volcal/identify/numeric/interruption.h"
+
 namespace volcal {
 
 /// Threads beside the calling one. Where the system gives fewer than asked for, there are fewer.
@@ -36,15 +38,21 @@ class Workers {
   std::vector<std::thread> threads_;
 };
 
-/// work(0) ... work(items - 1), in any order; the first exception is thrown on.
+/// work(0) ... work(items - 1), in any order; the first exception is thrown on, and that of an Interruption
+/// of the calling thread, which is asked before every item.
 template <class Work>
 void run_parallel(std::size_t items, int threads, const Work& work) {
   std::atomic<std::size_t> next{0};
   std::exception_ptr failure;
   std::mutex failing;
+  Interruption* const interruption = Interruption::current();
   const auto run = [&] {
+    const Interruption::Share share(interruption);
     try {
-      for (std::size_t item = next++; item < items; item = next++) work(item);
+      for (std::size_t item = next++; item < items; item = next++) {
+        Interruption::check();
+        work(item);
+      }
     } catch (...) {
       const std::lock_guard lock(failing);
       if (!failure) failure = std::current_exception();

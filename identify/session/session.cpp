@@ -14,6 +14,7 @@
 #include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/criticism/surface_findings.h"
+#include "volcal/identify/numeric/interruption.h"
 #include "volcal/identify/numeric/threads.h"
 #include "volcal/identify/session/proposed_measurements.h"
 #include "volcal/identify/session/session_tree.h"
@@ -32,6 +33,22 @@ void report(const SessionProgress& progress, const std::string& stage, double do
   if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
 }
 
+/// Work that is stopped wherever it is, between two items that threads take, not between its stages alone.
+SessionWork interruptible(SessionWork work) {
+  return [work = std::move(work)](const SessionProgress& progress) {
+    if (!progress) return work(progress);
+    std::string stage = "begin";
+    double share = 0.0;
+    const SessionProgress followed = [&](const std::string& now, double done) {
+      stage = now;
+      share = done;
+      return progress(now, done);
+    };
+    const Interruption guard([&] { report(progress, stage, share); });
+    return work(followed);
+  };
+}
+
 std::vector<EffectFinding> with(std::vector<EffectFinding> effects, EffectFinding more) {
   effects.push_back(std::move(more));
   return effects;
@@ -43,7 +60,8 @@ std::vector<EffectFinding> without(std::vector<EffectFinding> effects, std::size
 }
 
 /// By a full fit, which a linear preview should have foreseen; the amplitude that is off by most of its U.
-std::optional<Contradiction> contradiction_of(const EffectFinding& preview, const EffectFinding& fitted) {
+std::optional<Contradiction> contradiction_of(ModelStanding of, const EffectFinding& preview,
+                                              const EffectFinding& fitted) {
   std::optional<Contradiction> worst;
   double most = kContradiction * kCoverageFactor;
   for (std::size_t k = 0; k < std::min(preview.amplitudes.size(), fitted.amplitudes.size()); ++k) {
@@ -52,7 +70,7 @@ std::optional<Contradiction> contradiction_of(const EffectFinding& preview, cons
     const double miss = std::abs(before.value - after.value);
     if (miss <= most * after.u) continue;
     most = miss / after.u;
-    worst = {after.label, before.value, after.value, after.u, after.unit, after.si_per_unit};
+    worst = {of, after.label, before.value, after.value, after.u, after.unit, after.si_per_unit};
   }
   return worst;
 }
@@ -100,7 +118,10 @@ Session::Session(Campaign campaign, ModelSpec model, SessionOptions options)
     : options_(std::move(options)), given_(std::move(model)) {
   options_.threads = thread_count(options_.threads);
   const auto shared = std::make_shared<const Campaign>(std::move(campaign));
-  appending(0, fitting()(shared, given_, options_.progress), {}, "")(*this);
+  const SessionWork load = interruptible([this, shared](const SessionProgress& progress) {
+    return appending(0, fitting()(shared, given_, progress), {}, "");
+  });
+  load(options_.progress)(*this);
 }
 
 Session::~Session() = default;
@@ -171,7 +192,7 @@ const Eigen::VectorXd& Session::residual(std::size_t model) const {
 }
 
 Eigen::VectorXd Session::sigma(std::size_t model) const {
-  const std::vector<double>& variance = nodes_.at(model)->recipe.base->variance();
+  const std::vector<double>& variance = nodes_.at(model)->recipe.variance();
   return Eigen::Map<const Eigen::VectorXd>(variance.data(), static_cast<Eigen::Index>(variance.size()))
       .cwiseSqrt();
 }
@@ -201,7 +222,7 @@ SessionChange Session::appending(std::size_t parent, FittedModel found, std::vec
 }
 
 void Session::describe(Node& made, SessionModel& shown) const {
-  if (made.recipe.base == least_) {
+  if (made.recipe.base == least_ && !made.recipe.refit) {
     set_figures(last_step_of(made.state()), shown);
   } else {
     if (made.least != least_) {
@@ -235,8 +256,8 @@ const std::vector<FamilyTest>& Session::tests() {
 
 SessionWork Session::scan() {
   renew_setting();
-  return [recipe = node().recipe, state = node().state(), tests = node().tests,
-          number = current_](const SessionProgress& progress) -> SessionChange {
+  return interruptible([recipe = node().recipe, state = node().state(), tests = node().tests,
+                        number = current_](const SessionProgress& progress) -> SessionChange {
     report(progress, "tests of the catalogue", 0.1);
     const std::vector<FamilyTest>& families = tests->get().families;
     report(progress, "scans without a catalogue", 0.3);
@@ -251,15 +272,15 @@ SessionWork Session::scan() {
     std::vector<MeasurementProposal> proposals = proposed_measurements(scanned, recipe.base->result());
     report(progress, "done", 1.0);
     return [scanned, unknown = std::move(unknown), leads, proposals = std::move(proposals),
-            base = recipe.base, number](Session& session) {
+            base = recipe.base, refit = recipe.refit, number](Session& session) {
       Node& of = *session.nodes_[number];
-      if (of.recipe.base != base) return;  // confirmed meanwhile
+      if (of.recipe.base != base || of.recipe.refit != refit) return;  // refitted or confirmed meanwhile
       of.scanned = scanned;
       of.unknown = unknown;
       of.unknown_leads = leads;
       of.proposals = proposals;
     };
-  };
+  });
 }
 
 bool Session::is_scanned() const { return node().unknown.has_value(); }
@@ -429,7 +450,7 @@ EffectPreview Session::formula(const EffectSpec& custom) {
 
 SelectionSummary Session::summary(const std::vector<bool>& selected) const {
   const Eigen::VectorXd& left = residual();
-  const std::vector<double>& variance = node().recipe.base->variance();
+  const std::vector<double>& variance = node().recipe.variance();
   SelectionSummary out;
   double sum = 0.0, variances = 0.0, positive = 0.0;
   for (std::size_t i = 0; i < std::min(selected.size(), variance.size()); ++i) {
@@ -474,6 +495,7 @@ const SessionModel& Session::remove_preview(const EffectName& effect) {
   auto next = std::make_unique<Node>(here.recipe.base, without(here.effects, place));
   Recipe recipe = here.recipe;
   recipe.added.erase(recipe.added.begin() + static_cast<std::ptrdiff_t>(place - here.in_base()));
+  recipe.refit = nullptr;  // its noise was found with the effect
   next->becomes(std::move(recipe));
   const auto standing = next->recipe.added.empty() ? ModelStanding::Fitted : ModelStanding::Preview;
   return append(current_, std::move(next), "- " + here.effects[place].label, standing);
@@ -483,9 +505,9 @@ const SessionModel& Session::remove_preview(const EffectName& effect) {
 SessionWork Session::fit_of(const std::shared_ptr<const Campaign>& campaign,
                             const std::vector<EffectFinding>& effects, const std::string& change) const {
   const ModelSpec model = extended_model(given_, *campaign, effects);
-  return [=, fit_it = fitting(), parent = current_](const SessionProgress& progress) {
+  return interruptible([=, fit_it = fitting(), parent = current_](const SessionProgress& progress) {
     return appending(parent, fit_it(campaign, model, progress), effects, change);
-  };
+  });
 }
 
 SessionWork Session::removal(const EffectName& effect) const {
@@ -496,22 +518,43 @@ SessionWork Session::removal(const EffectName& effect) const {
 
 SessionWork Session::confirmation(std::size_t number) const {
   const auto campaign = nodes_.at(number)->recipe.base->campaign();
-  return [fit_it = fitting(), campaign, model = extended_model(given_, *campaign, models_[number].effects),
-          number](const SessionProgress& progress) -> SessionChange {
+  return interruptible([fit_it = fitting(), campaign,
+                        model = extended_model(given_, *campaign, models_[number].effects),
+                        number](const SessionProgress& progress) -> SessionChange {
     const FittedModel found = fit_it(campaign, model, progress);
     return [found, number](Session& session) {
       SessionModel& shown = session.models_[number];
       Node& here = *session.nodes_[number];
-      if (shown.standing != ModelStanding::Preview) return;
+      if (!awaits_full_fit(shown.standing)) return;
       for (std::size_t i = here.in_base(); i < here.effects.size() && !shown.contradiction; ++i)
-        shown.contradiction = contradiction_of(shown.effects[i], found.fitted->fitted(here.effects[i]));
+        shown.contradiction =
+            contradiction_of(shown.standing, shown.effects[i], found.fitted->fitted(here.effects[i]));
       session.put_in_place(found);
       here.becomes({found.fitted, found.fitted->setting(), {}});
       shown.standing = shown.contradiction ? ModelStanding::Contradicted : ModelStanding::Fitted;
       session.describe(here, shown);
       session.go(session.current_);
     };
-  };
+  });
+}
+
+SessionWork Session::refit(std::size_t number) const {
+  const Node& of = *nodes_.at(number);
+  return interruptible(
+      [recipe = of.recipe, state = of.state(), number](const SessionProgress& progress) -> SessionChange {
+        if (recipe.added.empty()) return [](Session&) {};
+        report(progress, "noise with what was added", 0.1);
+        RefittedModel found = refitted(recipe, state, progress);
+        report(progress, "done", 1.0);
+        return [found = std::move(found), base = recipe.base, number](Session& session) {
+          SessionModel& shown = session.models_[number];
+          Node& here = *session.nodes_[number];
+          if (shown.standing != ModelStanding::Preview || here.recipe.base != base) return;
+          here.becomes(found);
+          shown.standing = ModelStanding::Refitted;
+          session.describe(here, shown);
+        };
+      });
 }
 
 namespace {
@@ -530,21 +573,22 @@ std::vector<UnknownFinding> along_and_as(const UnknownFinding& finding) {
 
 SessionWork Session::drawing(std::size_t which) {
   const UnknownFinding wanted = unknown().at(which);
-  return [wanted, state = scanned(), number = current_](const SessionProgress& progress) -> SessionChange {
-    report(progress, "a surface for what has no name", 0.1);
-    const std::optional<SurfaceTest> test = best_surface(state, along_and_as(wanted));
-    if (!test) throw std::invalid_argument("no surface explains what depends on " + wanted.dependence());
-    report(progress, "noise with the surface", 0.4);
-    const ModelState with = state.with_surface(*test, state.added()).tested();
-    report(progress, "laws behind it", 0.8);
-    SurfaceFinding drawn = surface_findings(with).back();
-    report(progress, "done", 1.0);
-    return [drawn = std::move(drawn), number](Session& session) {
-      std::vector<SurfaceFinding>& known = session.nodes_[number]->drawn;
-      std::erase_if(known, [&](const SurfaceFinding& each) { return each.name == drawn.name; });
-      known.push_back(drawn);
-    };
-  };
+  return interruptible(
+      [wanted, state = scanned(), number = current_](const SessionProgress& progress) -> SessionChange {
+        report(progress, "a surface for what has no name", 0.1);
+        const std::optional<SurfaceTest> test = best_surface(state, along_and_as(wanted));
+        if (!test) throw std::invalid_argument("no surface explains what depends on " + wanted.dependence());
+        report(progress, "noise with the surface", 0.4);
+        const ModelState with = state.with_surface(*test, state.added()).tested();
+        report(progress, "laws behind it", 0.8);
+        SurfaceFinding drawn = surface_findings(with).back();
+        report(progress, "done", 1.0);
+        return [drawn = std::move(drawn), number](Session& session) {
+          std::vector<SurfaceFinding>& known = session.nodes_[number]->drawn;
+          std::erase_if(known, [&](const SurfaceFinding& each) { return each.name == drawn.name; });
+          known.push_back(drawn);
+        };
+      });
 }
 
 const std::vector<SurfaceFinding>& Session::drawn() const { return node().drawn; }
@@ -569,8 +613,9 @@ SessionWork Session::leaving_out(const std::vector<bool>& selected, const std::s
 }
 
 SessionWork Session::climb() const {
-  return [fit_it = fitting(), campaign = node().recipe.base->campaign(), given = given_, model = model(),
-          effects = current().effects, parent = current_](const SessionProgress& progress) -> SessionChange {
+  return interruptible([fit_it = fitting(), campaign = node().recipe.base->campaign(), given = given_,
+                        model = model(), effects = current().effects,
+                        parent = current_](const SessionProgress& progress) -> SessionChange {
     DiagnoseOptions options;
     options.threads = fit_it.options.threads;
     options.climb = true;
@@ -603,7 +648,7 @@ SessionWork Session::climb() const {
     return [changes = std::move(changes)](Session& session) {
       for (const SessionChange& change : changes) change(session);
     };
-  };
+  });
 }
 
 const SessionModel& Session::take(const SessionWork& work, const SessionProgress& progress) {

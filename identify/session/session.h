@@ -3,10 +3,12 @@
 ///
 /// A session holds a campaign, the model that was fitted to it, and a tree of models that came of it by
 /// adding and removing effects. A step is first a linear preview: the fitted model's derivatives, with noise
-/// and smoothing of its last full fit, in tens of milliseconds. confirm() fits the model in full and says
-/// whether the preview held. No step is lost: undo, redo and go_to() move between models, and further steps
-/// from an earlier one are another branch. Lines that judge are chosen before the first step and choose
-/// nothing; what a person tries counts as a test, like those of the catalogue.
+/// and smoothing of its last full fit, in tens of milliseconds. A refit lets the noise give back what it took
+/// for drift or offsets of lines, and takes along what is not linear; smoothing and derivatives are kept. The
+/// full fit finds all anew and says whether what stood before held. No step is lost: undo, redo and go_to()
+/// move between models, and further steps from an earlier one are another branch. Lines that judge are chosen
+/// before the first step and choose nothing; what a person tries counts as a test, like those of the
+/// catalogue.
 ///
 ///   Session session(campaign, model, {});
 ///   session.rank();                                   // effects of the catalogue, best first
@@ -60,12 +62,19 @@ using SessionWork = std::function<SessionChange(const SessionProgress&)>;
 
 enum class ModelStanding {
   Fitted,       ///< by a full fit
-  Preview,      ///< linear, at the noise of the last full fit
-  Contradicted  ///< by a full fit, which differs from the preview by more than U95/4
+  Preview,      ///< linear, at the noise of the last full fit or refit
+  Refitted,     ///< noise found again in what the effects leave, smoothing of the last full fit
+  Contradicted  ///< by a full fit, which differs from the preview or refit by more than U95/4
 };
 
-/// How far an amplitude of a preview was off.
+/// Not yet by a full fit.
+inline bool awaits_full_fit(ModelStanding standing) {
+  return standing == ModelStanding::Preview || standing == ModelStanding::Refitted;
+}
+
+/// How far an amplitude of a preview, or of the refit that followed it, was off.
 struct Contradiction {
+  ModelStanding of = ModelStanding::Preview;
   std::string label;
   double previewed = 0.0;  ///< SI
   double fitted = 0.0;
@@ -176,6 +185,11 @@ class Session {
 
   /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
   SessionWork removal(const EffectName& effect) const;
+  /// A linear preview with its noise found again, shapes of its effects moved to where readings want them,
+  /// and residuals of the exact model; in some tenths of a second. Nothing changes where it has been refitted
+  /// or fitted. Throws std::out_of_range.
+  SessionWork refit(std::size_t model) const;
+  SessionWork refit() const { return refit(current_); }
   /// A model of the tree by a full fit, noise and smoothing anew; nothing changes where it is one already.
   /// Throws std::out_of_range.
   SessionWork confirmation(std::size_t model) const;
@@ -209,11 +223,15 @@ class Session {
   class Fitted;
   class SharedTests;
   struct Recipe;
+  struct Refit;
+  struct RefittedModel;
   struct Node;
   struct Fitting;
   struct FittedModel;
 
   Fitting fitting() const;
+  static RefittedModel refitted(const Recipe& preview, const ModelState& state,
+                                const SessionProgress& progress);
   void put_in_place(const FittedModel& fitted);
   static void set_figures(LadderStep figures, SessionModel& shown);
   Node& node() const { return *nodes_[current_]; }

@@ -11,8 +11,8 @@ namespace volcal {
 namespace {
 
 const std::string kCommands =
-    "commands are add NAME, remove NAME, formula TARGET += EXPRESSION, confirm, climb, draw N, leave-out "
-    "OBSERVATIONS REASON, undo, redo, go N";
+    "commands are add NAME, remove NAME, formula TARGET += EXPRESSION, refit, confirm, climb, draw N, "
+    "leave-out OBSERVATIONS REASON, undo, redo, go N";
 
 struct VerbWord {
   SessionCommand::Verb verb;
@@ -21,6 +21,7 @@ struct VerbWord {
 constexpr VerbWord kVerbs[] = {{SessionCommand::Verb::Add, "add"},
                                {SessionCommand::Verb::Remove, "remove"},
                                {SessionCommand::Verb::Formula, "formula"},
+                               {SessionCommand::Verb::Refit, "refit"},
                                {SessionCommand::Verb::Confirm, "confirm"},
                                {SessionCommand::Verb::Climb, "climb"},
                                {SessionCommand::Verb::Draw, "draw"},
@@ -124,6 +125,7 @@ void set_rest(const std::string& rest, SessionCommand& command) {
     case Verb::Go:
       command.number = whole_number(rest, "model");
       return;
+    case Verb::Refit:
     case Verb::Confirm:
       if (!rest.empty()) command.number = whole_number(rest, "model");
       return;
@@ -154,6 +156,7 @@ std::string rest_text(const SessionCommand& command) {
     case Verb::Draw:
       return std::to_string(command.number.value_or(0) + 1);
     case Verb::Go:
+    case Verb::Refit:
     case Verb::Confirm:
       return command.number ? std::to_string(*command.number) : "";
     case Verb::Climb:
@@ -199,6 +202,9 @@ std::optional<SessionWork> begin_command(Session& session, const SessionCommand&
     case Verb::Formula:
       session.formula(written_effect("formula", command.formula, command.parameters).spec);
       return std::nullopt;
+    case Verb::Refit:
+      if (command.number) require_model(session, *command.number);
+      return session.refit(command.number.value_or(session.current().number));
     case Verb::Confirm:
       if (command.number) require_model(session, *command.number);
       return session.confirmation(command.number.value_or(session.current().number));

@@ -6,6 +6,7 @@
 ///                                     effects that cannot be previewed, a full fit
 ///   remove reversal:EYY:dir_y:step
 ///   formula EXX += dir_x * (T_column - 20) with p=250+-50
+///   refit  |  refit 2                 a preview with its noise found again, of the current model or another
 ///   confirm  |  confirm 2             a full fit of the current model, or of another one
 ///   climb                             the search of a diagnosis, to its end
 ///   draw 1                            a surface for the first of what has no name
@@ -22,12 +23,12 @@
 namespace volcal {
 
 struct SessionCommand {
-  enum class Verb { Add, Remove, Formula, Confirm, Climb, Draw, LeaveOut, Undo, Redo, Go };
+  enum class Verb { Add, Remove, Formula, Refit, Confirm, Climb, Draw, LeaveOut, Undo, Redo, Go };
   Verb verb = Verb::Undo;
   EffectName effect = {};    ///< Add, Remove
   std::string formula = {};  ///< as written, with its target
   std::vector<std::string> parameters = {};
-  std::optional<std::size_t> number = {};  ///< Confirm, Go: a model; Draw: from 0
+  std::optional<std::size_t> number = {};  ///< Refit, Confirm, Go: a model; Draw: from 0
   std::vector<std::size_t> observations = {};
   std::string reason = {};
 };

@@ -116,11 +116,25 @@ EffectFinding Session::Fitted::fitted(const EffectFinding& added) const {
   return out;
 }
 
-ModelState Session::Recipe::make() const {
+ModelState Session::Recipe::without_effects() const {
   ModelState state = base->state();
-  if (state.shared_setting() != setting) state = state.with_setting(setting);
+  if (!refit) return state.shared_setting() == setting ? state : state.with_setting(setting);
+  LinearModel model = state.model();
+  if (refit->residual.size() > 0) model = model.with_residual(refit->residual);
+  if (!refit->reinstated.empty()) model = model.with_reinstated(refit->reinstated);
+  return {std::move(model), setting, refit->noise};
+}
+
+ModelState Session::Recipe::with_effects(ModelState state) const {
   for (const FamilyTest& test : added) state = state.with_at_this_noise(test);
   return state;
+}
+
+ModelState Session::Recipe::make() const { return with_effects(without_effects()); }
+
+std::shared_ptr<const Projector> Session::Recipe::projector_without_effects() const {
+  if (!refit) return base->projector_of_all_readings();
+  return without_effects().projector_of_all_readings();
 }
 
 const CatalogueTests& Session::SharedTests::get() {
@@ -146,6 +160,12 @@ void Session::Node::becomes(Recipe other) {
   drawn.clear();
   residual.reset();
   let_go();
+}
+
+void Session::Node::becomes(RefittedModel refitted) {
+  becomes(std::move(refitted.recipe));
+  state_ = std::move(refitted.state);
+  all_readings = std::move(refitted.all_readings);
 }
 
 const ModelState& Session::Node::state() const {
@@ -185,7 +205,7 @@ Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding)
 
 std::shared_ptr<const Projector> Session::Node::of_all_readings() const {
   if (all_readings) return all_readings;
-  auto projector = recipe.base->projector_of_all_readings();
+  auto projector = recipe.projector_without_effects();
   if (recipe.added.empty()) return projector;
   auto more = std::make_shared<Projector>(*projector);
   for (const AddedEffect& added : state().added()) more->accept(added.columns);
@@ -204,13 +224,13 @@ void Session::Node::let_go() {
 
 /// Of the models before. Those that stand on one fit share its projector.
 std::vector<LadderStep> Session::Fitting::figures_at(const std::vector<NoiseParameters>& noise) const {
-  std::map<const Fitted*, std::shared_ptr<const Projector>> of_fits;
+  std::map<std::pair<const Fitted*, const Refit*>, std::shared_ptr<const Projector>> of_fits;
   std::vector<LadderStep> figures;
   for (const Recipe& recipe : before) {
     const bool was_kept = recipe.base->is_kept();
     const ModelState state = recipe.make();
-    std::shared_ptr<const Projector>& of_fit = of_fits[recipe.base.get()];
-    if (!of_fit) of_fit = recipe.base->state().projector_at(noise);
+    std::shared_ptr<const Projector>& of_fit = of_fits[{recipe.base.get(), recipe.refit.get()}];
+    if (!of_fit) of_fit = recipe.without_effects().projector_at(noise);
     Projector projector = *of_fit;
     for (const AddedEffect& added : state.added()) projector.accept(added.columns);
     figures.push_back(last_step_at(state, noise, projector));

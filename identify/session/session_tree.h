@@ -52,13 +52,35 @@ class Session::Fitted {
   mutable std::shared_ptr<const Projector> all_readings_;
 };
 
+/// What a refit has found besides amplitudes and shapes of effects.
+struct Session::Refit {
+  NoiseEstimate noise;
+  std::vector<double> variance;         ///< of every reading
+  Eigen::VectorXd residual;             ///< of the linear model; empty: as it was
+  std::vector<std::size_t> reinstated;  ///< readings that are no outliers of this model
+};
+
 /// How a model is made: of a full fit, and effects that were added since.
 struct Session::Recipe {
   std::shared_ptr<const Fitted> base;
   std::shared_ptr<const SearchSetting> setting;
   std::vector<FamilyTest> added;
+  std::shared_ptr<const Refit> refit = nullptr;  ///< none: noise of the full fit
 
   ModelState make() const;
+  ModelState without_effects() const;
+  ModelState with_effects(ModelState state) const;
+  /// From all readings, off the model without the effects that were added.
+  std::shared_ptr<const Projector> projector_without_effects() const;
+  /// Of every reading by the model's noise; infinite: left out.
+  const std::vector<double>& variance() const { return refit ? refit->variance : base->variance(); }
+};
+
+/// A refit with what was made on the way.
+struct Session::RefittedModel {
+  Recipe recipe;
+  ModelState state;
+  std::shared_ptr<const Projector> all_readings;
 };
 
 /// Tests of a model, made once by whoever asks first, in whichever thread; others wait for them.
@@ -96,6 +118,7 @@ struct Session::Node {
   Node(std::shared_ptr<const Fitted> fitted, std::vector<EffectFinding> added);
   /// With another recipe.
   void becomes(Recipe other);
+  void becomes(RefittedModel refitted);
   /// With a further effect, whose test was found here.
   Node with(const FamilyTest& test, EffectFinding finding) const;
   /// With more effects of the user's own in the catalogue.

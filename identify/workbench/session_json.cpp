@@ -54,6 +54,8 @@ std::string standing_text(ModelStanding standing) {
       return "fitted";
     case ModelStanding::Preview:
       return "preview";
+    case ModelStanding::Refitted:
+      return "refitted";
     case ModelStanding::Contradicted:
       break;
   }
@@ -63,12 +65,13 @@ std::string standing_text(ModelStanding standing) {
 Json contradiction_json(const std::optional<Contradiction>& contradiction) {
   if (!contradiction) return nullptr;
   const double edge = 1.0 / contradiction->si_per_unit;
+  const bool refit = contradiction->of == ModelStanding::Refitted;
   return fmt::format(
-      "The full fit finds {} = {:.4g} ± {:.2g} {}, the linear preview had {:.4g} {}: noise and smoothing "
-      "were "
-      "found anew with the effect in the model.",
+      "The full fit finds {} = {:.4g} ± {:.2g} {}, the {} had {:.4g} {}: {} found anew with the effect in "
+      "the model.",
       contradiction->label, contradiction->fitted * edge, kCoverageFactor * contradiction->u * edge,
-      contradiction->unit, contradiction->previewed * edge, contradiction->unit);
+      contradiction->unit, refit ? "refit" : "linear preview", contradiction->previewed * edge,
+      contradiction->unit, refit ? "smoothing was" : "noise and smoothing were");
 }
 
 Json model_json(const SessionModel& model) {

@@ -27,6 +27,8 @@ namespace {
 constexpr std::chrono::milliseconds kLook{400};  // between looks at files that are to be mended
 constexpr std::size_t kLinesShown = 5;           // on either side of a wrong line
 constexpr std::size_t kMostColumns = 64;
+const std::string kRefit = "refit";  // awaited: short, and not behind other programs
+const std::string kConfirm = "confirm";
 
 /// What cannot be done now.
 struct Refusal : std::runtime_error {
@@ -125,8 +127,8 @@ SessionCommand command_of(const std::string& request, const Json& body) {
   return session_command_from(request);
 }
 
-constexpr std::array kCommands = {"add",  "remove", "go",    "draw",   "leave-out",
-                                  "undo", "redo",   "climb", "confirm"};
+constexpr std::array kCommands = {"add",  "remove", "go",    "draw",    "leave-out",
+                                  "undo", "redo",   "climb", "confirm", "refit"};
 
 bool is_command(const std::string& request) {
   return std::ranges::find(kCommands, request) != kCommands.end();
@@ -323,15 +325,15 @@ void Workbench::start(Job job) {
   woken_.notify_all();
 }
 
-/// Behind, as long as the user does nothing else.
+/// Behind, as long as the user does nothing else: a refit of a preview, then a full fit.
 void Workbench::confirm_what_is_linear() {
-  if (!options_.confirm_behind || session_->current().standing != ModelStanding::Preview) return;
-  const std::size_t model = session_->current().number;
-  start(
-      {"confirm", "confirm " + std::to_string(model), true,
-       [this, confirm = session_->confirmation()](const SessionProgress& progress) -> std::function<void()> {
-         return [this, change = confirm(progress)] { change(*session_); };
-       }});
+  const SessionModel& current = session_->current();
+  if (!options_.confirm_behind || !awaits_full_fit(current.standing)) return;
+  const bool linear = current.standing == ModelStanding::Preview;
+  const std::string what = linear ? kRefit : kConfirm;
+  start({what, what + " " + std::to_string(current.number), true,
+         [this, work = linear ? session_->refit() : session_->confirmation()](const SessionProgress& progress)
+             -> std::function<void()> { return [this, change = work(progress)] { change(*session_); }; }});
 }
 
 /// Behind as well, once nothing else is under way; event "unknown" tells what was found.
@@ -446,7 +448,8 @@ void Workbench::run(Job& job, Lock& lock) {
   Json failed;
   std::function<void()> take;
   try {
-    take = job.behind ? behind([&] { return job.run(progress()); }) : job.run(progress());
+    const bool patient = job.behind && job.what != kRefit;
+    take = patient ? behind([&] { return job.run(progress()); }) : job.run(progress());
   } catch (const SessionStopped&) {
   } catch (const InputError& error) {
     failed = error_json(error.problem(), error.remedy());
@@ -467,7 +470,8 @@ void Workbench::run(Job& job, Lock& lock) {
     failed["what"] = job.what;
     hub_.publish("failed", json_text(failed, -1));
   }
-  if (!job.behind && !waiting_) confirm_what_is_linear();
+  const bool further = !job.behind || (job.what == kRefit && take && !stopped);
+  if (further && !waiting_) confirm_what_is_linear();
   if (job.what != "scan") look_for_unknown();
   publish_state();
 }

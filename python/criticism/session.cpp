@@ -62,6 +62,7 @@ py::dict preview_of(Session& session, const EffectName& name) {
 
 std::string standing_text(const SessionModel& model) {
   if (model.standing == ModelStanding::Preview) return "preview";
+  if (model.standing == ModelStanding::Refitted) return "refitted";
   return model.standing == ModelStanding::Contradicted ? "contradicted" : "fitted";
 }
 
@@ -74,8 +75,8 @@ void define_session_model(py::module_& module) {
           "What was done: \"+ reversal EXX\"; \"\" for the first.")
       .def_property_readonly(
           "standing", &standing_text,
-          "\"fitted\", \"preview\" (linear) or \"contradicted\": by a full fit, which is off "
-          "the preview by more than U95/4.")
+          "\"fitted\", \"preview\" (linear), \"refitted\" (its noise found again) or \"contradicted\": by a "
+          "full fit, which is off what stood before by more than U95/4.")
       .def_readonly(
           "figures", &SessionModel::figures,
           "Figures on fitted and on held-out readings, a LadderStep, against the least noise that a "
@@ -135,9 +136,10 @@ void define_session(py::module_& module) {
           },
           py::arg("line"), py::arg("progress") = py::none(),
           "Does what a line of `volcal session --do` says, and returns the current model: \"add "
-          "KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula TARGET += EXPRESSION\", \"confirm\", "
-          "\"climb\", \"draw N\", \"leave-out OBSERVATIONS REASON\", \"undo\", \"redo\", \"go N\". progress: "
-          "as for fit(). Raises InputError.")
+          "KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula TARGET += EXPRESSION\", \"refit\", "
+          "\"confirm\", \"climb\", \"draw N\", \"leave-out OBSERVATIONS REASON\", \"undo\", \"redo\", \"go "
+          "N\". "
+          "progress: as for fit(). Raises InputError.")
       .def(
           "add",
           [](Session& session, const py::object& effect) {
@@ -145,6 +147,12 @@ void define_session(py::module_& module) {
           },
           py::arg("effect"),
           "A linear preview with a further effect becomes the current model. Raises InputError.")
+      .def(
+          "refit",
+          [](Session& session, const py::object& progress) { return do_line(session, "refit", progress); },
+          py::arg("progress") = py::none(),
+          "The current linear preview with its noise found again, smoothing and derivatives kept. progress: "
+          "as for fit().")
       .def(
           "confirm",
           [](Session& session, const py::object& progress) { return do_line(session, "confirm", progress); },

@@ -17,7 +17,7 @@
 
 namespace volcal::cli {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PreviewRecord, effect, miss, said)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PreviewRecord, effect, miss, refit_miss, said)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PreviewedCampaign, campaign, seed, readings, failure, previews)
 
 namespace {
@@ -69,9 +69,10 @@ double largest_miss(const EffectFinding& preview, const EffectFinding& fitted) {
 
 PreviewRecord add_and_confirm(Session& session, const EffectName& effect) {
   const EffectFinding preview = session.add(effect).effects.back();
+  const EffectFinding refit = session.take(session.refit()).effects.back();
   const SessionModel& confirmed = session.take(session.confirmation());
   return {full_name(effect), largest_miss(preview, confirmed.effects.back()),
-          confirmed.standing == ModelStanding::Contradicted};
+          largest_miss(refit, confirmed.effects.back()), confirmed.standing == ModelStanding::Contradicted};
 }
 
 PreviewedCampaign preview_campaign(const PreviewJob& job, const PreviewsOptions& options) {
@@ -126,22 +127,34 @@ std::vector<PreviewedCampaign> previews(const PreviewsOptions& options) {
       [&](std::size_t, const PreviewedCampaign& record) { finished.append(record); });
 }
 
-Share previews_that_held(const std::vector<PreviewedCampaign>& campaigns) {
+namespace {
+
+Share that_held(const std::vector<PreviewedCampaign>& campaigns, double PreviewRecord::*miss) {
   Share share;
   for (const PreviewedCampaign& campaign : campaigns) {
     for (const PreviewRecord& preview : campaign.previews) {
       ++share.of;
-      share.count += preview.miss < kHolds ? 1 : 0;
+      share.count += preview.*miss < kHolds ? 1 : 0;
     }
   }
   return share;
+}
+
+}  // namespace
+
+Share previews_that_held(const std::vector<PreviewedCampaign>& campaigns) {
+  return that_held(campaigns, &PreviewRecord::miss);
+}
+
+Share refits_that_held(const std::vector<PreviewedCampaign>& campaigns) {
+  return that_held(campaigns, &PreviewRecord::refit_miss);
 }
 
 Share misses_said(const std::vector<PreviewedCampaign>& campaigns) {
   Share share;
   for (const PreviewedCampaign& campaign : campaigns) {
     for (const PreviewRecord& preview : campaign.previews) {
-      if (preview.miss < kHolds) continue;
+      if (preview.refit_miss < kHolds) continue;
       ++share.of;
       share.count += preview.said ? 1 : 0;
     }

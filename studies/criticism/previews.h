@@ -2,8 +2,9 @@
 /// Linear previews of a session against the full fits that confirm them, counted over campaigns; resumable:
 /// every finished campaign is a line of previews.jsonl in the output folder.
 ///
-/// In every campaign the leading effect that exceeds the noise is added and confirmed, again and again. A
-/// preview holds where each of its amplitudes is less than U95/4 from that of the full fit.
+/// In every campaign the leading effect that exceeds the noise is added, refitted and confirmed, again and
+/// again. A preview or a refit holds where each of its amplitudes is less than U95/4 from that of the full
+/// fit.
 
 #include <cstdint>
 #include <functional>
@@ -16,9 +17,10 @@ namespace volcal::cli {
 
 /// An effect that was added and confirmed.
 struct PreviewRecord {
-  std::string effect;  ///< kind:target:driver:shape
-  double miss = 0.0;   ///< of the amplitude that is off by most of its U95, over that
-  bool said = false;   ///< the session says that the preview was off
+  std::string effect;       ///< kind:target:driver:shape
+  double miss = 0.0;        ///< of the amplitude that is off by most of its U95, over that
+  double refit_miss = 0.0;  ///< the same of the refit
+  bool said = false;        ///< the session says that the refit was off
 };
 
 struct PreviewedCampaign {
@@ -48,7 +50,9 @@ std::vector<PreviewedCampaign> previews(const PreviewsOptions& options);
 
 /// Previews that held, of all.
 Share previews_that_held(const std::vector<PreviewedCampaign>& campaigns);
-/// Of those that did not hold, how many the session said so of.
+/// Refits that held, of all.
+Share refits_that_held(const std::vector<PreviewedCampaign>& campaigns);
+/// Of refits that did not hold, how many the session said so of.
 Share misses_said(const std::vector<PreviewedCampaign>& campaigns);
 
 }  // namespace volcal::cli

@@ -1,5 +1,6 @@
 #include "volcal/identify/criticism/projection/linear_model.h"
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -147,6 +148,33 @@ LinearModel LinearModel::with_imitated_left_to_the_rest(const Eigen::MatrixXd& g
   std::vector<SmoothingTerm> smoothing = smoothing_;
   leave_imitated_to_the_rest(gram.topLeftCorner(count, count), base_prior_of(count), smoothing);
   return with_smoothing(std::move(smoothing));
+}
+
+Eigen::VectorXd LinearModel::exact_residual_at(const Eigen::VectorXd& correction) const {
+  MeasurementModel exact(campaign(), model().spec());
+  const DatumSpace datum(exact.layout(), campaign().machine, exact.initial_parameters());
+  const Eigen::VectorXd parameters = datum.raw((reduced_ + correction).head(datum.size()));
+  exact.expand_effects(parameters);
+  exact.set_second_order_remainder(parameters);
+  Eigen::VectorXd residual = problem_->jacobian * correction;
+  std::array<double, kMaxChannels> predicted{};
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Observation& place = observations()[i];
+    const Readings& readings = campaign().setups[place.setup].readings;
+    if (i == 0 || place.row != observations()[i - 1].row || place.setup != observations()[i - 1].setup)
+      exact.predict(place.setup, place.row, parameters, predicted.data());
+    const auto channel = static_cast<std::size_t>(place.channel);
+    residual[static_cast<Eigen::Index>(i)] += readings.value[channel][place.row] - predicted[channel];
+  }
+  return residual;
+}
+
+LinearModel LinearModel::with_residual(Eigen::VectorXd residual) const {
+  const auto problem = std::make_shared<NoiseProblem>(*problem_);
+  problem->residual = std::move(residual);
+  LinearModel other = *this;
+  other.problem_ = problem;
+  return other;
 }
 
 void LinearModel::Fixed::find_sensitivity(const Eigen::VectorXd& parameters) {

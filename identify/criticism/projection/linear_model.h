@@ -37,6 +37,12 @@ class LinearModel {
   /// what the noise model needs. Observations that are left out have an infinite sigma.
   const NoiseProblem& problem() const { return *problem_; }
 
+  /// Residuals that take along what is not linear at a correction x of the parameters: y - f(z + x) + J x, f
+  /// by the exact transforms. With them the solution of the linear model is a step of Newton's method whose
+  /// derivatives are kept.
+  Eigen::VectorXd exact_residual_at(const Eigen::VectorXd& correction) const;
+  LinearModel with_residual(Eigen::VectorXd residual) const;
+
   /// Observations that are left out: at first those that the fit removed.
   const std::vector<std::size_t>& removed() const { return removed_; }
   /// With some of removed() in use again: a fit that lacks an effect takes what the effect moves most for

@@ -140,6 +140,45 @@ NoiseOptions ModelState::noise_options() const {
   return options;
 }
 
+NoiseEstimate ModelState::readjusted_noise(const Projector& without_effects) const {
+  const NoiseProblem& own = model_.problem();
+  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
+  for (const AddedEffect& effect : added_) append_columns(effect.columns, columns);
+  Projector with_effects = without_effects;
+  with_effects.accept(columns);
+  const Eigen::VectorXd solution = with_effects.solution();
+  NoiseProblem left;
+  left.jacobian = columns;
+  left.jacobian.noalias() -= own.jacobian * without_effects.imitation(columns).topRows(own.jacobian.cols());
+  left.residual = own.residual - own.jacobian * solution.head(own.jacobian.cols()) -
+                  columns * solution.tail(columns.cols());
+  left.data = own.data;
+  left.point = own.point;
+  NoiseOptions options = noise_options();
+  options.uncertainty = false;
+  return readjust_noise(left, options, noise_estimate_);
+}
+
+std::vector<FamilyTest> ModelState::moved_effects(const Projector& all) const {
+  const Eigen::VectorXd solution = all.solution();
+  Eigen::Index at = solution.size() - all.accepted();
+  std::vector<FamilyTest> moved;
+  for (const AddedEffect& effect : added_) {
+    FamilyTest& test = moved.emplace_back(effect.test);
+    const Family& family = family_of(effect);
+    const Eigen::Index amplitudes = family.amplitudes();
+    test.score.amplitude = solution.segment(at, amplitudes);
+    if (effect.columns.cols() > amplitudes) {
+      const double wanted = test.shape[0] + solution[at + amplitudes];
+      const auto [low, high] =
+          std::ranges::minmax(family.scan, {}, [](const Eigen::VectorXd& shape) { return shape[0]; });
+      test.shape[0] = std::clamp(wanted, low[0], high[0]);
+    }
+    at += effect.columns.cols();
+  }
+  return moved;
+}
+
 NoiseEstimate ModelState::noise_with_uncertainty() const {
   return estimate_noise(problem(), noise_options(), &noise_estimate_);
 }
@@ -231,8 +270,15 @@ bool ModelState::refine_shape_of_last() {
   return true;
 }
 
-/// Readings that are left out and no outliers of this model. False: none.
+/// False: there is none to reinstate.
 bool ModelState::reinstate_outliers() {
+  const std::vector<std::size_t> explained = explained_outliers();
+  if (explained.empty()) return false;
+  model_ = model_.with_reinstated(explained);
+  return true;
+}
+
+std::vector<std::size_t> ModelState::explained_outliers() const {
   const NoiseProblem& problem = model_.problem();
   const Eigen::VectorXd solution = projector_->solution();
   const std::vector<double> sigma = total_sigma(problem.data, model_.stated_sigma(), noise_);
@@ -250,9 +296,7 @@ bool ModelState::reinstate_outliers() {
     const double u = std::hypot(sigma[observation], std::sqrt(projector_->prediction_variance(row)[0]));
     if (std::abs(miss) < model_.outlier_critical_value() * u) explained.push_back(observation);
   }
-  if (explained.empty()) return false;
-  model_ = model_.with_reinstated(explained);
-  return true;
+  return explained;
 }
 
 }  // namespace volcal

@@ -58,6 +58,14 @@ class ModelState {
   /// With a further surface and none of the effects that were added. What `beside`, effects that are to be
   /// added again, can imitate of it is theirs.
   ModelState with_surface(const SurfaceTest& surface, const std::vector<AddedEffect>& beside) const;
+  /// The noise that the added effects leave, in the time of a few whitened columns (readjust_noise()).
+  /// `without_effects`: off the model without them at this noise, from all readings.
+  NoiseEstimate readjusted_noise(const Projector& without_effects) const;
+  /// The added effects at their amplitudes and, where the readings see a shape move, at the shape that `all`
+  /// finds: this model's projector from all readings.
+  std::vector<FamilyTest> moved_effects(const Projector& all) const;
+  /// Readings that are left out and no outliers of this model.
+  std::vector<std::size_t> explained_outliers() const;
   /// With tests().
   ModelState tested() const;
   ModelState with_tests(ModelTests tests) const;

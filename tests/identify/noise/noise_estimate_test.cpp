@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -173,6 +174,57 @@ TEST(NoiseEstimate, BeginsAtThePreviousEnd) {
   const NoiseEstimate warm = estimate_noise(problem, {}, &before);
   expect_same_noise(cold, warm);
   EXPECT_LT(warm.evaluations, 0.7 * cold.evaluations);
+}
+
+/// A step in half of the readings, line by line, is taken for offsets of lines; with it in the model they go.
+/// Held to the estimate that finds all anew.
+TEST(NoiseEstimate, ReadjustedToWhatAColumnExplains) {
+  std::mt19937_64 generator(11);
+  NoiseProblem problem = grid(generator, {1.0, 0.0, 60.0, 0.0, 0.0}, {8, 5, 4}, 3);
+  const Eigen::Index count = problem.jacobian.rows(), p = problem.jacobian.cols();
+  Eigen::MatrixXd column(count, 1);
+  for (const NoiseSequence& sequence : problem.data.sequences) {
+    for (std::size_t k = 0; k < sequence.observation.size(); ++k)
+      column(static_cast<Eigen::Index>(sequence.observation[k]), 0) =
+          sequence.line[k] % 2 == 0 ? 0.5e-6 : -0.5e-6;
+  }
+  problem.residual += 3.0 * column.col(0);
+  const NoiseEstimate before = estimate_noise(problem);
+  ASSERT_GT(before.instruments[0].parameters.line, 1e-6);
+
+  NoiseProblem all = problem;
+  all.jacobian.conservativeResize(Eigen::NoChange, p + 1);
+  all.jacobian.col(p) = column.col(0);
+  if (all.prior_precision.size() > 0)
+    all.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(p + 1, p + 1));
+  const NoiseEstimate anew = estimate_noise(all);
+
+  // Off the model and about the solution at the noise before: by dense algebra.
+  const Eigen::MatrixXd sigma = test::dense_covariance(problem.data, before.parameters());
+  const Eigen::LLT<Eigen::MatrixXd> factor(sigma);
+  const auto solved = [&](const Eigen::MatrixXd& of, const Eigen::MatrixXd& right) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd weighed = factor.solve(of);
+    return (of.transpose() * weighed).ldlt().solve(weighed.transpose() * right);
+  };
+  NoiseProblem few;
+  few.jacobian = column - problem.jacobian * solved(problem.jacobian, column);
+  few.residual = all.residual - all.jacobian * solved(all.jacobian, all.residual);
+  few.data = problem.data;
+  const NoiseEstimate found = readjust_noise(few, {}, before);
+  EXPECT_EQ(anew.instruments[0].parameters.line, 0.0);
+  EXPECT_LT(found.instruments[0].parameters.line, 0.2e-6)  // the rest of the solution is held
+      << "was " << before.instruments[0].parameters.line;
+  EXPECT_NEAR(found.instruments[0].parameters.white, anew.instruments[0].parameters.white, 0.03);
+
+  // Nothing added: nothing to give back.
+  few.residual = problem.residual - problem.jacobian * solved(problem.jacobian, problem.residual);
+  few.jacobian = test::random_matrix(generator, count, 1);
+  few.jacobian -= problem.jacobian * solved(problem.jacobian, few.jacobian);
+  const NoiseEstimate same = readjust_noise(few, {}, before);
+  EXPECT_NEAR(std::log(same.instruments[0].parameters.line / before.instruments[0].parameters.line), 0.0,
+              0.05);
+  EXPECT_NEAR(std::log(same.instruments[0].parameters.white / before.instruments[0].parameters.white), 0.0,
+              0.01);
 }
 
 /// A start that lacks a term, or has one that is not there, is given up.

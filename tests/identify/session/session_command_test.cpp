@@ -16,8 +16,9 @@ TEST(SessionCommandText, IsReadAndWrittenAlike) {
   for (const char* line :
        {"add reversal:EYY:dir_y:step", "remove thermal-drift:station P1 x:T_air:linear",
         "add custom:EXX:dir_x T_column:dir_x * (T_column > 20 ? 1 : 2)",
-        "formula EXX += dir_x * (T_column - 20)", "formula EXX += sin(x / p) with p=10+-1 q=3", "confirm",
-        "confirm 3", "climb", "draw 2", "leave-out 3,7-9,12 cable moved", "undo", "redo", "go 4"})
+        "formula EXX += dir_x * (T_column - 20)", "formula EXX += sin(x / p) with p=10+-1 q=3", "refit",
+        "refit 1", "confirm", "confirm 3", "climb", "draw 2", "leave-out 3,7-9,12 cable moved", "undo",
+        "redo", "go 4"})
     EXPECT_EQ(to_string(session_command_from(line)), line);
 }
 

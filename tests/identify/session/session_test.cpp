@@ -303,6 +303,65 @@ TEST_F(SessionOfTwo, IsConfirmedByAFullFit) {
   EXPECT_EQ(without.effects.size(), 2U);
 }
 
+/// What the noise took of an effect for offsets of lines comes back with the refit; the full fit finds the
+/// same.
+TEST_F(SessionOfTwo, ARefitComesBetweenPreviewAndFullFit) {
+  const auto own = open();
+  const double previewed = own->add(kReversal).effects[0].amplitudes[0].value;
+  const Eigen::VectorXd sigma = own->sigma(1);
+  const SessionModel refit = own->take(own->refit());
+  EXPECT_EQ(refit.standing, ModelStanding::Refitted);
+  EXPECT_EQ(refit.number, 1U);
+  EXPECT_EQ(own->models().size(), 2U);
+  const Eigen::VectorXd then = own->sigma(1);
+  EXPECT_LT(then.sum(), 0.98 * sigma.sum()) << "the noise holds nothing of the effect any more";
+  own->take(own->refit());
+  EXPECT_EQ(own->sigma(1), then) << "a refit of a refit changes nothing";
+  own->undo();
+  own->redo();
+  EXPECT_EQ(own->current().standing, ModelStanding::Refitted);
+
+  own->add(kOther);
+  EXPECT_EQ(own->current().standing, ModelStanding::Preview);
+  own->remove_preview(kOther);
+  EXPECT_EQ(own->current().standing, ModelStanding::Preview) << "at the noise of the full fit again";
+  EXPECT_EQ(own->current().effects[0].amplitudes[0].value, previewed);
+
+  own->go_to(1);
+  const SessionModel& confirmed = own->take(own->confirmation());
+  const AmplitudeFigure& full = confirmed.effects[0].amplitudes[0];
+  const double miss = std::abs(refit.effects[0].amplitudes[0].value - full.value);
+  EXPECT_LT(miss, 0.25 * kCoverageFactor * full.u);
+  EXPECT_LE(miss, std::abs(previewed - full.value) + 0.02 * full.u);
+  EXPECT_NEAR(refit.effects[0].amplitudes[0].u, full.u, 0.05 * full.u);
+  EXPECT_EQ(confirmed.standing, ModelStanding::Fitted);
+  EXPECT_NEAR(own->sigma(1).sum(), then.sum(), 0.02 * then.sum());
+}
+
+/// Asked far more often than there are stages; stopped within one, the session is as it was.
+TEST_F(SessionOfTwo, IsStoppedWithinAStage) {
+  std::map<std::string, int> asked;
+  const auto count = [&](const std::string& stage, double /*done*/) {
+    ++asked[stage];
+    return true;
+  };
+  session().take(session().scan(), count);
+  const std::string scans = "scans without a catalogue";
+  ASSERT_GT(asked[scans], 3) << "some tenths of a second, asked every 20 ms";
+  session().add(kReversal);
+  int left = 3;
+  std::string stopped_in;
+  const auto stop = [&](const std::string& stage, double /*done*/) {
+    if (stage != scans || --left > 0) return true;
+    stopped_in = stage;
+    return false;
+  };
+  EXPECT_THROW(session().take(session().scan(), stop), SessionStopped);
+  EXPECT_EQ(stopped_in, scans);
+  EXPECT_FALSE(session().is_scanned());
+  EXPECT_EQ(session().current().standing, ModelStanding::Preview);
+}
+
 TEST_F(SessionOfTwo, AFormulaIsOneMoreTest) {
   const auto own = [](const char* expression) {
     return effect_spec("custom", {{"target", std::string("EYY")}, {"expression", std::string(expression)}});

@@ -40,6 +40,7 @@ std::string interval_text(const LadderStep& figures) {
 
 std::string standing_of(const SessionModel& model) {
   if (model.standing == ModelStanding::Preview) return "linear preview";
+  if (model.standing == ModelStanding::Refitted) return "refit";
   return model.standing == ModelStanding::Contradicted ? "full fit, off the preview" : "full fit";
 }
 
@@ -108,10 +109,11 @@ std::function<int()> define_session(CLI::App& app) {
   app.add_option("CAMPAIGN", arguments->campaign, "campaign.toml")->required();
   app.add_option("-m,--model", arguments->model,
                  "model.toml, or result of volcal fit, to begin with; default: all 21 errors");
-  app.add_option("--do", arguments->lines,
-                 "what to do, one after another: \"add KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula "
-                 "TARGET += EXPRESSION\", \"confirm\", \"climb\", \"draw N\", \"leave-out OBSERVATIONS "
-                 "REASON\", \"undo\", \"redo\", \"go N\"; may be given several times")
+  app.add_option(
+         "--do", arguments->lines,
+         "what to do, one after another: \"add KIND:TARGET:DRIVER:SHAPE\", \"remove ...\", \"formula "
+         "TARGET += EXPRESSION\", \"refit\", \"confirm\", \"climb\", \"draw N\", \"leave-out OBSERVATIONS "
+         "REASON\", \"undo\", \"redo\", \"go N\"; may be given several times")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("-o,--output", arguments->output, "model file to write at the end");

@@ -22,23 +22,27 @@ struct PreviewsArguments {
 };
 
 std::string previews_text(const std::vector<PreviewedCampaign>& campaigns) {
-  TextTable table(
-      {{"campaign", Align::Left}, {"effect", Align::Left}, {"off by, of U95"}, {"said", Align::Left}},
-      "Previews that did not hold");
+  TextTable table({{"campaign", Align::Left},
+                   {"effect", Align::Left},
+                   {"preview off by, of U95"},
+                   {"refit"},
+                   {"said", Align::Left}},
+                  "Previews or refits that did not hold");
   int failed = 0;
   for (const PreviewedCampaign& campaign : campaigns) {
     failed += campaign.failure.empty() ? 0 : 1;
     for (const PreviewRecord& preview : campaign.previews) {
-      if (preview.miss >= 0.25)
-        table.add_row(
-            {campaign.campaign, preview.effect, fixed_number(preview.miss, 2), preview.said ? "yes" : "no"});
+      if (std::max(preview.miss, preview.refit_miss) >= 0.25)
+        table.add_row({campaign.campaign, preview.effect, fixed_number(preview.miss, 2),
+                       fixed_number(preview.refit_miss, 2), preview.said ? "yes" : "no"});
     }
   }
   return fmt::format(
-      "linear previews of a session against their full fits, {} campaigns ({} without any); intervals after "
-      "Wilson\n\nless than U95/4 from the full fit: {}\nof the others, said in words:      {}\n\n{}",
-      campaigns.size(), failed, previews_that_held(campaigns).text(), misses_said(campaigns).text(),
-      table.empty() ? "" : table.text());
+      "linear previews of a session and refits against their full fits, {} campaigns ({} without any); "
+      "intervals after Wilson\n\npreviews less than U95/4 from the full fit: {}\nrefits:  "
+      "                                   {}\nof the other refits, said in words:        {}\n\n{}",
+      campaigns.size(), failed, previews_that_held(campaigns).text(), refits_that_held(campaigns).text(),
+      misses_said(campaigns).text(), table.empty() ? "" : table.text());
 }
 
 nlohmann::ordered_json share_json(const Share& share) {
@@ -53,12 +57,15 @@ nlohmann::ordered_json previews_json(const PreviewsArguments& arguments,
                                  {"seed", arguments.options.seed},
                                  {"readings", arguments.options.readings},
                                  {"held", share_json(previews_that_held(campaigns))},
+                                 {"refits_held", share_json(refits_that_held(campaigns))},
                                  {"misses_said", share_json(misses_said(campaigns))}};
   for (const PreviewedCampaign& campaign : campaigns) {
     nlohmann::ordered_json entry = {{"campaign", campaign.campaign}, {"failure", campaign.failure}};
     for (const PreviewRecord& preview : campaign.previews)
-      entry["previews"].push_back(
-          {{"effect", preview.effect}, {"miss", preview.miss}, {"said", preview.said}});
+      entry["previews"].push_back({{"effect", preview.effect},
+                                   {"miss", preview.miss},
+                                   {"refit_miss", preview.refit_miss},
+                                   {"said", preview.said}});
     json["campaigns"].push_back(entry);
   }
   return json;

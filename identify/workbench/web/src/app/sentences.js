@@ -16,7 +16,7 @@ export function fallSentence(former, next) {
   if (!from || !to || (from.number === to.number && from.standing === to.standing)) return null;
   const [a, b] = [from.figures?.systematic_um, to.figures?.systematic_um];
   if (!Number.isFinite(a) || !Number.isFinite(b)) return null;
-  const about = to.standing === 'preview' ? 'about ' : '';
+  const about = to.standing === 'preview' || to.standing === 'refitted' ? 'about ' : '';
   const verb = b < a ? 'falls' : b > a ? 'rises' : 'stays';
   return `The systematic error on held-out lines ${verb} from ${significant(a)} to ${about}${significant(b)} micrometres.`;
 }

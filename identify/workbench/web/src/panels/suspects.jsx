@@ -77,7 +77,7 @@ function InModel() {
       <h3 id="in-model-title">In this model</h3>
       <ul>{effects.map((effect) => (
         <li key={effect.name} class={`is-${model.standing}`}>
-          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' ? '~' : ''} />{effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}</span>
+          <span class="body"><b>{effect.label}</b> <Amplitudes effect={effect} sign={model.standing === 'preview' || model.standing === 'refitted' ? '~' : ''} />{effect.remedy && <span class="remedy">{words(effect.remedy)}</span>}</span>
           <button type="button" disabled={!mayAct.value} aria-label={`take out: ${effect.label}`} onClick={() => act('remove', { effect: effect.name })}>take out</button>
         </li>
       ))}</ul>

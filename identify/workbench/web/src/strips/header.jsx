@@ -43,7 +43,7 @@ export function Header() {
           <Shown campaign={campaign} />
           <button type="button" disabled={!mayAct.value || !now.can_undo} onClick={undo} title="Ctrl+Z" aria-keyshortcuts="Control+Z">Undo</button>
           <button type="button" disabled={!mayAct.value || !now.can_redo} onClick={redo} title="Ctrl+Shift+Z" aria-keyshortcuts="Control+Shift+Z">Redo</button>
-          <button type="button" class={model?.standing === 'preview' ? 'primary' : ''} disabled={!mayAct.value} onClick={() => act('confirm')} title="Full fit of the current model, noise and smoothing anew">Confirm by a full fit</button>
+          <button type="button" class={['preview', 'refitted'].includes(model?.standing) ? 'primary' : ''} disabled={!mayAct.value} onClick={() => act('confirm')} title="Full fit of the current model, noise and smoothing anew">Confirm by a full fit</button>
           <button type="button" disabled={!mayAct.value} onClick={() => act('climb')} title="Adds what exceeds chance, one after the other">Search to the end</button>
           <Theme />
           <button type="button" disabled={line.value !== 'open'} onClick={() => act('quit')}>Quit</button>

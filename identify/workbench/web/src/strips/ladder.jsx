@@ -36,18 +36,21 @@ function Running({ value, show }) {
   return <>{show(at)}</>;
 }
 
+const isAwaiting = (standing) => standing === 'preview' || standing === 'refitted';
+
 /** In which state the numbers of a model are. */
 function standingOf(model) {
-  if (busy.value?.what === 'confirm' && (busy.value.model ?? state.value.current) === model.number && model.standing === 'preview') return 'confirming';
+  if (busy.value?.what === 'confirm' && (busy.value.model ?? state.value.current) === model.number && isAwaiting(model.standing)) return model.standing === 'preview' ? 'preview' : 'confirming';
   if (line.value !== 'open') return 'stale';
   return model.standing;
 }
 
 const kStandings = {
-  preview: 'linear preview, not yet confirmed by a full fit', confirming: 'being confirmed by a full fit', fitted: 'confirmed by a full fit',
-  contradicted: 'the full fit contradicts the preview', stale: 'as last heard: the program does not answer',
+  preview: 'linear preview: noise and smoothing as before the step', refitted: 'refit: noise found again, smoothing as before the step; not yet a full fit',
+  confirming: 'refit: noise found again; being confirmed by a full fit', fitted: 'confirmed by a full fit',
+  contradicted: 'the full fit contradicts what stood before', stale: 'as last heard: the program does not answer',
 };
-const about = (standing) => (standing === 'preview' || standing === 'confirming' ? '~' : '');
+const about = (standing) => (isAwaiting(standing) || standing === 'confirming' ? '~' : '');
 
 function Headline({ model, first, former }) {
   const { figures } = model;

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "volcal/identify/criticism/search/ladder.h"
+#include "volcal/identify/session/session_tree.h"
+
+namespace volcal {
+namespace {
+
+constexpr double kNotLinear = 0.01;  // of a reading's noise: less is left to the derivatives
+constexpr double kMovedShape = 1e-3;
+
+/// Largest difference of residuals, in units of the noise.
+double largest_difference(const Eigen::VectorXd& one, const Eigen::VectorXd& other,
+                          const std::vector<double>& variance) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < variance.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    largest = std::max(largest, std::abs(one[at] - other[at]) / std::sqrt(variance[i]));
+  }
+  return largest;
+}
+
+bool any_shape_moved(const std::vector<FamilyTest>& before, const std::vector<FamilyTest>& after) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if ((before[i].shape - after[i].shape).norm() > kMovedShape * before[i].shape.norm()) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+/// The noise first, about the preview's amplitudes; then, at that noise, what is not linear in the parameters
+/// and in the shapes of effects, and which readings are no outliers any more.
+Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState& state,
+                                         const SessionProgress& progress) {
+  const auto tell = [&](const std::string& stage, double done) {
+    if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
+  };
+  Recipe recipe = preview;
+  const auto make = [&recipe](Refit refit) {
+    refit.variance.clear();
+    recipe.refit = std::make_shared<const Refit>(std::move(refit));
+    const ModelState without = recipe.without_effects();
+    ModelState made = recipe.with_effects(without);
+    auto all = std::make_shared<Projector>(*without.projector_of_all_readings());
+    for (const AddedEffect& effect : made.added()) all->accept(effect.columns);
+    return RefittedModel{recipe, std::move(made), std::move(all)};
+  };
+  const auto with_variance = [](RefittedModel made) {
+    Refit refit = *made.recipe.refit;
+    refit.variance = noise_variance(made.state.model().problem().data, made.state.noise());
+    made.recipe.refit = std::make_shared<const Refit>(std::move(refit));
+    return made;
+  };
+
+  Refit refit;
+  refit.noise = state.readjusted_noise(*preview.projector_without_effects());
+  if (preview.refit) {
+    refit.residual = preview.refit->residual;
+    refit.reinstated = preview.refit->reinstated;
+  }
+  tell("the model at this noise", 0.4);
+  RefittedModel found = make(refit);
+  tell("the exact model", 0.6);
+  const LinearModel& model = found.state.model();
+  std::vector<FamilyTest> moved = found.state.moved_effects(*found.all_readings);
+  const std::vector<std::size_t> explained = found.state.explained_outliers();
+  Eigen::VectorXd exact =
+      model.exact_residual_at(found.all_readings->solution().head(model.problem().jacobian.cols()));
+  const std::vector<double> variance = noise_variance(model.problem().data, found.state.noise());
+  const bool is_linear = largest_difference(exact, model.problem().residual, variance) < kNotLinear;
+  if (is_linear && explained.empty() && !any_shape_moved(recipe.added, moved)) return with_variance(found);
+  if (!is_linear) refit.residual = std::move(exact);
+  refit.reinstated.insert(refit.reinstated.end(), explained.begin(), explained.end());
+  recipe.added = std::move(moved);
+  return with_variance(make(std::move(refit)));
+}
+
+}  // namespace volcal

@@ -233,6 +233,7 @@ bool ModelState::refine_shape_of_last() {
 
 /// Readings that are left out and no outliers of this model. False: none.
 bool ModelState::reinstate_outliers() {
+  if (!setting_->rules.follows(SearchRule::Reinstated)) return false;
   const NoiseProblem& problem = model_.problem();
   const Eigen::VectorXd solution = projector_->solution();
   const std::vector<double> sigma = total_sigma(problem.data, model_.stated_sigma(), noise_);
@@ -251,6 +252,7 @@ bool ModelState::reinstate_outliers() {
     if (std::abs(miss) < model_.outlier_critical_value() * u) explained.push_back(observation);
   }
   if (explained.empty()) return false;
+  setting_->rules.tell(SearchRule::Reinstated);
   model_ = model_.with_reinstated(explained);
   return true;
 }

@@ -28,6 +28,7 @@ SearchOptions search_options(const DiagnoseOptions& options) {
           .climb = options.climb,
           .leave_out = options.leave_out,
           .own = options.own,
+          .rules = options.rules,
           .progress = options.progress};
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/description/model_spec.h"
 
@@ -30,6 +31,7 @@ struct DiagnoseOptions {
   std::vector<EffectSpec> asked_laws;  ///< surfaces (kind `empirical`) behind which laws are looked for
   bool compare = true;                 ///< MIB, confounding matrix, next measurement
   PlanningOptions planning;
+  SearchRules rules;  ///< of the search; a study leaves some out
   std::function<void(const std::string& stage, double done)> progress;
 };
 

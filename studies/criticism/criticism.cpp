@@ -1,5 +1,7 @@
 #include "volcal/studies/criticism/criticism.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -30,10 +32,15 @@ std::vector<Job> jobs_of(const CriticismOptions& options) {
 }
 
 void require_same(const CampaignRecord& record, const CriticismOptions& options, const SourcePlace& place) {
-  if (record.seed == options.seed && record.wanted_readings == options.readings) return;
+  std::vector<std::string> without;
+  for (const SearchRule rule : options.without) without.emplace_back(name_of(rule));
+  if (record.seed == options.seed && record.wanted_readings == options.readings && record.without == without)
+    return;
+  const std::string rules =
+      record.without.empty() ? "" : fmt::format(" --without {}", fmt::join(record.without, ","));
   throw InputError({place.file, 0},
-                   "it holds campaigns of --seed " + std::to_string(record.seed) + " --readings " +
-                       std::to_string(record.wanted_readings),
+                   fmt::format("it holds campaigns of --seed {} --readings {}{}", record.seed,
+                               record.wanted_readings, rules),
                    "give the same, or choose another folder");
 }
 
@@ -56,7 +63,8 @@ std::vector<CampaignRecord> criticism(const CriticismOptions& options) {
         return found == known.end() ? nullptr : &found->second;
       },
       [&](std::size_t i) {
-        return criticise_campaign(jobs[i].row, jobs[i].index, options.seed, options.readings);
+        return criticise_campaign(jobs[i].row, jobs[i].index, options.seed, options.readings,
+                                  {.off = options.without, .decided = {}});
       },
       [&](std::size_t, const CampaignRecord& record) { finished.append(record); });
 }

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/studies/criticism/criticism_record.h"
 
 namespace volcal::cli {
@@ -16,14 +18,15 @@ struct CriticismOptions {
   int campaigns = 20;             ///< per row; null: per kind of noise
   std::uint64_t seed = 1;
   int readings = 1500;
-  int threads = 0;     ///< 0 = all; results do not depend on it
-  std::string output;  ///< folder; empty = nothing is kept
+  std::set<SearchRule> without;  ///< rules of the search that are left out
+  int threads = 0;               ///< 0 = all; results do not depend on it
+  std::string output;            ///< folder; empty = nothing is kept
   bool resume = false;
   std::function<void(int done, int all)> progress;
 };
 
 /// In the order of rows and indices. Throws InputError for an output folder that holds campaigns already
-/// (without `resume`), or campaigns of another seed or size (with it).
+/// (without `resume`), or campaigns of another seed, size or set of rules (with it).
 std::vector<CampaignRecord> criticism(const CriticismOptions& options);
 
 }  // namespace volcal::cli

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <set>
 
@@ -31,6 +32,13 @@ constexpr double kLargestShared = 0.75;  // of a squared signal, by the columns 
 constexpr double kRemainderOfTheSame = 0.02;  // share of a signal; below, no reading tells two effects apart
 constexpr std::size_t kKeptOfRanking = 5;
 
+/// Of this thread, which does all the work of its campaign.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 /// An effect that shows at second order alone needs an amplitude that no machine has.
 bool plausible(const sim::HiddenEffect& effect, double amplitude, double rms) {
   const std::string unit = sim::amplitude_unit(effect);
@@ -47,8 +55,9 @@ struct Hidden {
 
 class CampaignRun {
  public:
-  CampaignRun(const std::string& row, int index, std::uint64_t seed, int readings)
-      : row_(row), index_(index), seed_(seed), readings_(readings) {
+  CampaignRun(const std::string& row, int index, std::uint64_t seed, int readings, SearchRules rules = {})
+      : row_(row), index_(index), seed_(seed), readings_(readings), rules_(std::move(rules)) {
+    for (const SearchRule rule : rules_.off) record_.without.emplace_back(name_of(rule));
     record_.row = row;
     record_.index = index;
     record_.seed = seed;
@@ -75,7 +84,10 @@ class CampaignRun {
     options.threads = 1;
     options.climb = true;
     options.leave_out = plan_.leave_out;
+    options.rules = rules_;
+    const double start = processor_seconds();
     const Diagnosis diagnosis = diagnose(simulated.campaign, given, options);
+    record_.seconds = processor_seconds() - start;
     judge(diagnosis);
     if (!record_.hidden.empty() && row_ != "partial") recover(simulated, given, diagnosis);
     return std::move(record_);
@@ -339,6 +351,7 @@ class CampaignRun {
   int index_;
   std::uint64_t seed_;
   int readings_;
+  SearchRules rules_;
   PlannedCampaign plan_;
   std::unique_ptr<Yardstick> yardstick_;
   Hidden hidden_;
@@ -348,8 +361,9 @@ class CampaignRun {
 
 }  // namespace
 
-CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings) {
-  return CampaignRun(row, index, seed, readings).run();
+CampaignRecord criticise_campaign(const std::string& row, int index, std::uint64_t seed, int readings,
+                                  const SearchRules& rules) {
+  return CampaignRun(row, index, seed, readings, rules).run();
 }
 
 std::optional<sim::Study> study_of_campaign(const std::string& row, int index, std::uint64_t seed,

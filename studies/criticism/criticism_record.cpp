@@ -21,11 +21,15 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fields, row, index, seed, wanted_readings, re
                                    ms_offered, laws, band_inside, band_of)
 }  // namespace
 
-void to_json(nlohmann::json& json, const CampaignRecord& record) { to_json(json, Fields{record}); }
+void to_json(nlohmann::json& json, const CampaignRecord& record) {
+  to_json(json, Fields{record});
+  if (!record.without.empty()) json["without"] = record.without;
+}
 
 void from_json(const nlohmann::json& json, CampaignRecord& record) {
   Fields fields;
   from_json(json, fields);
+  if (json.contains("without")) json.at("without").get_to(fields.without);
   record = fields;
 }
 

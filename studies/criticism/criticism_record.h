@@ -56,6 +56,7 @@ struct UnknownRecord {
 };
 
 struct CampaignRecord {
+  std::vector<std::string> without;  ///< rules of the search that were left out; none as a rule
   std::string row;
   int index = 0;
   std::uint64_t seed = 0;  ///< of the study
@@ -87,6 +88,7 @@ struct CampaignRecord {
   double ms_offered = 0.0;  ///< with all that is offered: names, of every set the simplest, what was drawn
   std::vector<LawRecord> laws;  ///< of all surfaces
   int band_inside = 0;          ///< readings at which the band of what was drawn holds what is hidden
+  double seconds = 0.0;         ///< of a processor for the diagnosis; not kept with the rest
   int band_of = 0;              ///< readings on which it acts; 0: names stand beside it, or nothing was drawn
 };
 

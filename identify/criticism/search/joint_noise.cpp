@@ -171,6 +171,7 @@ ModelTests JointNoiseTest::scans() const {
     const bool known =
         tests.scan_exceeds[absorbed.scan] && tests.scans[absorbed.scan].log10_p <= test.log10_p;
     if (known || tests.family_wise_log10_p(test) > log10_scan_risk()) continue;
+    state_.setting().rules.tell(SearchRule::AbsorbedScans);
     tests.scans[absorbed.scan] = test;
     tests.scan_exceeds[absorbed.scan] = true;
   }

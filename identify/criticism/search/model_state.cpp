@@ -272,8 +272,10 @@ bool ModelState::refine_shape_of_last() {
 
 /// False: there is none to reinstate.
 bool ModelState::reinstate_outliers() {
+  if (!setting_->rules.follows(SearchRule::Reinstated)) return false;
   const std::vector<std::size_t> explained = explained_outliers();
   if (explained.empty()) return false;
+  setting_->rules.tell(SearchRule::Reinstated);
   model_ = model_.with_reinstated(explained);
   return true;
 }

@@ -32,12 +32,14 @@ std::vector<std::size_t> families_above(const SearchSetting& setting, const Mode
 }
 
 /// Scans above the noise if that were known; none where so many are that something is there beyond doubt.
-std::vector<std::size_t> doubtful_scans(const ModelTests& tests) {
+std::vector<std::size_t> doubtful_scans(const SearchRules& rules, const ModelTests& tests) {
   std::vector<std::size_t> above;
   for (std::size_t i = 0; i < tests.scans.size(); ++i) {
     if (tests.scan_exceeds[i]) above.push_back(i);
   }
-  return above.size() > kThresholds.most_doubtful_scans ? std::vector<std::size_t>{} : above;
+  const bool beyond_doubt =
+      rules.decide(SearchRule::DoubtfulScans, [&] { return above.size() > kThresholds.most_doubtful_scans; });
+  return beyond_doubt ? std::vector<std::size_t>{} : above;
 }
 
 /// Above the noise, also where the noise that a name or a scan would stand on is hardly known.
@@ -45,7 +47,12 @@ void find_exceeding(const ModelState& state, ModelTests& tests) {
   const SearchSetting& setting = state.setting();
   for (const GenericTest& scan : tests.scans)
     tests.scan_exceeds.push_back(tests.family_wise_log10_p(scan) <= log10_scan_risk());
-  const std::vector<std::size_t> names = families_above(setting, tests), scans = doubtful_scans(tests);
+  const std::vector<std::size_t> names = families_above(setting, tests);
+  if (!setting.rules.follows(SearchRule::EstimatedNoise)) {
+    tests.exceeding = names;
+    return;
+  }
+  const std::vector<std::size_t> scans = doubtful_scans(setting.rules, tests);
   if (names.empty() && scans.empty()) return;
   const auto of_names = static_cast<Eigen::Index>(names.size()),
              of_scans = static_cast<Eigen::Index>(scans.size());
@@ -63,13 +70,18 @@ void find_exceeding(const ModelState& state, ModelTests& tests) {
     const FamilyTest& test = tests.families[names[k]];
     const double log10_p = log10_exceedance_of_estimated(test.score.lm, test.score.dof, freedom[k]) +
                            std::log10(test.multiplicity);
-    if (log10_p + setting.log10_families <= log10_family_risk()) tests.exceeding.push_back(names[k]);
+    if (log10_p + setting.log10_families <= log10_family_risk()) {
+      tests.exceeding.push_back(names[k]);
+    } else {
+      setting.rules.tell(SearchRule::EstimatedNoise);
+    }
   }
   for (std::size_t k = 0; k < scans.size(); ++k) {
     const GenericTest& scan = tests.scans[scans[k]];
     const double log10_p =
         log10_exceedance_of_estimated(scan.lm, scan.dof, freedom[names.size() + k]) + scan.log10_choices;
     tests.scan_exceeds[scans[k]] = log10_p + tests.log10_scans() <= log10_scan_risk();
+    if (!tests.scan_exceeds[scans[k]]) setting.rules.tell(SearchRule::EstimatedNoise);
   }
 }
 

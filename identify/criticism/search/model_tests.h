@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/catalogue/family_products.h"
+#include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/criticism/scans/scan_variables.h"
 
@@ -35,6 +36,7 @@ struct SearchSetting {
   std::size_t own;              ///< number of effects that the user thinks of
   int threads;                  ///< at least 1
   double log10_families = 0.0;  ///< log10 of the number of families
+  SearchRules rules;            ///< all, but for a study
 
   double family_wise_log10_p(const FamilyTest& test) const;
   /// A test at its own level that is family-wise at the risk.

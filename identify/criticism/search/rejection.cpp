@@ -45,12 +45,14 @@ bool lacks_rotary_errors(const ModelState& state) {
 /// Its own driver moves what an effect leaves: it has another shape, or is another effect. A wave is one
 /// beside it.
 bool Rejection::still_moves(const std::vector<Variable>& drivers) const {
-  return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
+  const auto moves = [&](const GenericTest* scan) {
     if (scan->period > 0.0) return false;
     return std::ranges::any_of(scan->variables, [&](const Variable& variable) {
       return std::ranges::find(drivers, variable) != drivers.end();
     });
-  });
+  };
+  return rules().decide(SearchRule::DriverStillMoves,
+                        [&] { return std::ranges::any_of(state_.tests().exceeding_scans(), moves); });
 }
 
 Reasons Rejection::rejection_reasons() const {
@@ -63,7 +65,8 @@ Reasons Rejection::rejection_reasons() const {
     if (std::optional<Finding> own = rejection_reason(i)) reasons[family] = *std::move(own);
   }
   for (const auto& [key, members] : by_driver) {
-    if (members.size() < 2) continue;
+    const std::size_t powers = members.size();
+    if (!rules().decide(SearchRule::SeveralPowers, [powers] { return powers > 1; })) continue;
     for (const std::size_t family : members)
       reasons[family] = rejected(FindingCode::RejectedSeveralPowers, state_.setting().families[family]);
   }
@@ -72,8 +75,10 @@ Reasons Rejection::rejection_reasons() const {
 
 bool Rejection::leaves_more(const AddedEffect& effect) const {
   const double own = state_.setting().family_wise_log10_p(effect.test);
-  return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
-    return state_.tests().family_wise_log10_p(*scan) < own;
+  return rules().decide(SearchRule::LeavesMore, [&] {
+    return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
+      return state_.tests().family_wise_log10_p(*scan) < own;
+    });
   });
 }
 
@@ -90,13 +95,15 @@ std::optional<Finding> Rejection::rejection_reason(std::size_t added) const {
   }
   if (!family.effect) return std::nullopt;
   const ConstancyTest varies = constancy(added);
-  if (varies.log10_p <= std::log10(kThresholds.constancy_risk)) {
+  if (rules().decide(SearchRule::AmplitudeVaries,
+                     [&] { return varies.log10_p <= std::log10(kThresholds.constancy_risk); })) {
     Finding varying = rejected(FindingCode::RejectedAmplitudeVaries, family);
     varying.data["variable"] = varies.variable;
     varying.data["log10_p"] = FindingNumber{varies.log10_p};
     return varying;
   }
-  if (!lies_beyond_its_scan(added)) return std::nullopt;
+  if (!rules().decide(SearchRule::ShapeBeyondScan, [&] { return lies_beyond_its_scan(added); }))
+    return std::nullopt;
   Finding beyond = rejected(FindingCode::RejectedShapeBeyondScan, family);
   beyond.data["shape"] = shape_word(family.effect->shapes().front());
   return beyond;
@@ -137,21 +144,25 @@ double Rejection::log10_constancy_of_rival(std::size_t added, const FamilyTest& 
 
 std::vector<AddedEffect> Rejection::drop_inconsistent_rivals() const {
   std::vector<AddedEffect> all = state_.added();
+  if (!rules().follows(SearchRule::InconsistentRival)) return all;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].rivals.empty() || !state_.family_of(all[i]).effect) continue;
     if (constancy(i).log10_p < std::log10(kThresholds.plainly_constant)) continue;
-    std::erase_if(all[i].rivals, [&](const FamilyTest& rival) {
+    const auto left = std::erase_if(all[i].rivals, [&](const FamilyTest& rival) {
       return log10_constancy_of_rival(i, rival) < std::log10(kThresholds.rival_constancy_risk);
     });
+    if (left > 0) rules().tell(SearchRule::InconsistentRival);
   }
   return all;
 }
 
 const FamilyTest* Rejection::standing_rival(std::size_t added, const Reasons& rejected) const {
   for (const FamilyTest& rival : state_.added()[added].rivals) {
-    if (!rejected.contains(rival.family) &&
-        log10_constancy_of_rival(added, rival) > std::log10(kThresholds.plainly_constant))
-      return &rival;
+    const auto stands = [&] {
+      return !rejected.contains(rival.family) &&
+             log10_constancy_of_rival(added, rival) > std::log10(kThresholds.plainly_constant);
+    };
+    if (rules().decide(SearchRule::StandingRival, stands)) return &rival;
   }
   return nullptr;
 }

@@ -39,6 +39,7 @@ class Rejection {
   std::vector<AddedEffect> drop_inconsistent_rivals() const;
 
  private:
+  const SearchRules& rules() const { return state_.setting().rules; }
   bool still_moves(const std::vector<Variable>& drivers) const;
   bool lies_beyond_its_scan(std::size_t added) const;
   ConstancyTest constancy(std::size_t added) const;

@@ -18,12 +18,6 @@
 namespace volcal {
 namespace {
 
-/// More resolution follows nearly anything; for the price of its columns it is no rival.
-bool near(const FamilyTest& own, const FamilyTest& other, bool of_resolution) {
-  return own.gain - other.gain < kThresholds.indistinguishable_gain ||
-         (!of_resolution && own.score.lm - other.score.lm < kThresholds.indistinguishable_lm);
-}
-
 std::vector<FamilyTest> added_tests(const std::vector<AddedEffect>& added) {
   std::vector<FamilyTest> tests;
   std::ranges::transform(added, std::back_inserter(tests), &AddedEffect::test);
@@ -48,21 +42,36 @@ bool scan_does_better(const GenericTest& scan, double log10_p, const Evidence& n
 
 bool any_scan_does_better(const ModelState& state, const FamilyTest& name) {
   const SearchSetting& setting = state.setting();
-  const double margin = setting.families[name.family].independent_components()
-                            ? kThresholds.scan_probability_margin_of_components
-                            : kThresholds.scan_probability_margin;
-  return std::ranges::any_of(state.tests().scans, [&](const GenericTest& scan) {
-    return scan_does_better(scan, state.tests().family_wise_log10_p(scan),
-                            {name.gain, setting.family_wise_log10_p(name)}, kThresholds.scan_gain_margin,
-                            margin);
+  const auto any_beyond = [&](double margin) {
+    return std::ranges::any_of(state.tests().scans, [&](const GenericTest& scan) {
+      return scan_does_better(scan, state.tests().family_wise_log10_p(scan),
+                              {name.gain, setting.family_wise_log10_p(name)}, kThresholds.scan_gain_margin,
+                              margin);
+    });
+  };
+  if (!any_beyond(kThresholds.scan_probability_margin)) return false;
+  return !setting.rules.decide(SearchRule::ComponentMargin, [&] {
+    return setting.families[name.family].independent_components() &&
+           !any_beyond(kThresholds.scan_probability_margin_of_components);
   });
 }
+
+namespace {
+
+std::shared_ptr<const SearchSetting> setting_of(const LinearModel& model, std::vector<bool> heldout,
+                                                const SearchOptions& options) {
+  auto setting = std::make_shared<SearchSetting>(model, std::move(heldout), options.leave_out,
+                                                 options.threads, options.own);
+  setting->rules = options.rules;
+  return setting;
+}
+
+}  // namespace
 
 Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions options)
     : options_(std::move(options)),
       model_(std::move(model)),
-      setting_(std::make_shared<SearchSetting>(model_, std::move(heldout), options_.leave_out,
-                                               options_.threads, options_.own)) {}
+      setting_(setting_of(model_, std::move(heldout), options_)) {}
 
 void Search::run() {
   start();
@@ -73,7 +82,7 @@ void Search::run() {
   replace_surfaces();
   if (!options_.climb) keep_one_step();
   recall_rejected();
-  if (something_exceeds()) return;
+  if (something_exceeds() || !rules().follows(SearchRule::AbsorbedScans)) return;
   report("what noise may hold", 0.92);
   state_ = state_->with_tests(JointNoiseTest(*state_).scans());
 }
@@ -96,11 +105,13 @@ void Search::explain() {
 
 /// For what exceeds and has no name. False: nothing, or no surface explains it.
 bool Search::draw_surface() {
+  if (!rules().follows(SearchRule::Surfaces)) return false;
   const std::vector<UnknownFinding> findings = unknown_findings(*state_, rejected_);
   if (findings.empty()) return false;
   report("a surface for what has no name", 0.9);
   const std::optional<SurfaceTest> surface = best_surface(*state_, findings);
   if (!surface) return false;
+  rules().tell(SearchRule::Surfaces);
   draw(*surface, added_tests(state_->added()));
   return true;
 }
@@ -111,10 +122,11 @@ bool Search::may_draw() const {
 
 /// Where two names stand for one cause whose shape no name has. False: none does.
 bool Search::draw_one_cause() {
-  if (state_->added().size() < 2) return false;
+  if (state_->added().size() < 2 || !rules().follows(SearchRule::OneCause)) return false;
   report("one cause in the place of two", 0.9);
   const std::optional<OneCause> cause = one_cause_of_two(*state_);
   if (!cause) return false;
+  rules().tell(SearchRule::OneCause);
   std::vector<FamilyTest> kept;
   for (std::size_t i = 0; i < state_->added().size(); ++i) {
     if (!cause->replaces.contains(i)) kept.push_back(state_->added()[i].test);
@@ -133,6 +145,7 @@ void Search::draw(const SurfaceTest& surface, const std::vector<FamilyTest>& kep
 
 /// With other surfaces and names in the model, names may explain what a surface was drawn for.
 void Search::replace_surfaces() {
+  if (!rules().follows(SearchRule::ReplacedSurfaces)) return;
   for (std::size_t i = 0; i < base_->surfaces().size();) {
     const std::vector<AddedSurface>& all = base_->surfaces();
     if (all.size() == 1 && state_->added().size() == names_before_surfaces_) return;
@@ -147,6 +160,7 @@ void Search::replace_surfaces() {
     for (std::size_t k = 0; k < all.size(); ++k) {
       if (k != i) others.push_back({all[k].spec, all[k].effect, all[k].finding, all[k].log_evidence});
     }
+    rules().tell(SearchRule::ReplacedSurfaces);
     rebuild(others, added_tests(state_->added()));
     explain();
     if (!something_exceeds() && unknown_findings(*state_, rejected_).empty()) continue;
@@ -217,7 +231,9 @@ bool Search::something_exceeds() const {
 /// False when nothing exceeds, or something that is in no catalogue does better.
 bool Search::add_leading() {
   const FamilyTest* best = leading_exceeding();
-  if (best == nullptr || any_scan_does_better(*state_, *best)) return false;
+  if (best == nullptr ||
+      rules().decide(SearchRule::ScanVeto, [&] { return any_scan_does_better(*state_, *best); }))
+    return false;
   add(*best);
   return true;
 }
@@ -226,6 +242,7 @@ bool Search::add_leading() {
 /// they hide each other, and nothing but the scan exceeds. False, and nothing added, unless with a few names
 /// no scan exceeds and they explain, together, as much as the scan.
 bool Search::add_several() {
+  if (!rules().follows(SearchRule::NamesTogether)) return false;
   const std::vector<FamilyTest> kept = added_tests(state_->added());
   std::set<std::size_t> start;
   for (const FamilyTest& test : kept) start.insert(test.family);
@@ -235,6 +252,7 @@ bool Search::add_several() {
     const FamilyTest* best = leading_exceeding();
     if (best == nullptr && names == 1) best = best_by_variables_of_scan();
     if (best == nullptr) break;
+    rules().tell(SearchRule::NamesTogether);
     add(*best);
     test();
     if (!state_->tests().any_scan_exceeds() && explain_together(kept.size())) return true;
@@ -292,11 +310,14 @@ bool Search::explain_together(std::size_t first) const {
 
 /// Where nothing exceeds: what does jointly with the noise.
 bool Search::add_absorbed() {
+  if (!rules().follows(SearchRule::AbsorbedEffects)) return false;
   report("effects that noise may hold", 0.9);
   const std::optional<FamilyTest> best =
       JointNoiseTest(*state_).effect([this](const FamilyTest& test) { return may_be_added(test); });
-  if (best) add(*best);
-  return best.has_value();
+  if (!best) return false;
+  rules().tell(SearchRule::AbsorbedEffects);
+  add(*best);
+  return true;
 }
 
 /// Until every added effect stands against its rivals.
@@ -318,14 +339,18 @@ bool Search::compare_with_rivals(bool may_change) {
     const std::vector<FamilyTest> tests =
         refined_tests(*setting_, state_->model(), *state_->projector_without({i}));
     const FamilyTest& own = tests[kept[i].family];
-    if (may_change && setting_->family_wise_log10_p(own) > log10_family_risk()) {
+    const auto is_weak = [&] { return setting_->family_wise_log10_p(own) > log10_family_risk(); };
+    if (may_change && rules().decide(SearchRule::Departure, is_weak)) {
       dropped_.insert(own.family);
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
       restart_with(kept);
       return true;
     }
     const FamilyTest* best = leading(tests, own.family);
-    if (may_change && best != nullptr && best->gain > own.gain + kThresholds.indistinguishable_gain) {
+    const auto is_better = [&] {
+      return best != nullptr && best->gain > own.gain + kThresholds.indistinguishable_gain;
+    };
+    if (may_change && rules().decide(SearchRule::Exchange, is_better)) {
       kept[i] = *best;
       restart_with(kept);
       return true;
@@ -334,13 +359,21 @@ bool Search::compare_with_rivals(bool may_change) {
     added[i].rivals.clear();
     for (const FamilyTest& test : tests) {
       const bool known = state_->has(test.family) || rejected_.contains(test.family);
-      const bool of_resolution = setting_->families[test.family].resolution.has_value();
-      if (test.score.dof > 0 && !known && near(own, test, of_resolution)) added[i].rivals.push_back(test);
+      if (test.score.dof > 0 && !known && near(own, test)) added[i].rivals.push_back(test);
     }
     std::ranges::sort(added[i].rivals, std::greater{}, &FamilyTest::gain);
   }
   state_ = state_->with_comparisons(std::move(added));
   return false;
+}
+
+/// By LM alone more resolution is no rival: for the price of its columns it follows nearly anything.
+bool Search::near(const FamilyTest& own, const FamilyTest& other) const {
+  if (own.gain - other.gain < kThresholds.indistinguishable_gain) return true;
+  return rules().decide(SearchRule::NearByLm, [&] {
+    return !setting_->families[other.family].resolution &&
+           own.score.lm - other.score.lm < kThresholds.indistinguishable_lm;
+  });
 }
 
 /// Best of those that are not in the model, `but` one that is.
@@ -369,7 +402,7 @@ void Search::reject() {
       }
     }
     keep(kept);
-    recheck(stood);
+    if (rules().follows(SearchRule::Recheck)) recheck(stood);
   }
   state_ = state_->with_comparisons(Rejection(*state_).drop_inconsistent_rivals());
 }
@@ -389,7 +422,9 @@ void Search::recheck(const std::set<std::size_t>& stood) {
     if (reason) rejected_[effect.test.family] = *reason;
     if (!reason) kept.push_back(effect.test);
   }
-  if (kept.size() < state_->added().size()) keep(kept);
+  if (kept.size() == state_->added().size()) return;
+  rules().tell(SearchRule::Recheck);
+  keep(kept);
 }
 
 void Search::keep(const std::vector<FamilyTest>& effects) {

@@ -41,6 +41,7 @@ struct SearchOptions {
   bool climb = true;  ///< false: in the end one effect is kept
   std::vector<std::string> leave_out;
   std::vector<EffectSpec> own;  ///< effects that the user thinks of
+  SearchRules rules;            ///< a study leaves some out
   std::function<void(const std::string& stage, double done)> progress;
 };
 
@@ -63,6 +64,7 @@ class Search {
   const Reasons& rejected() const { return rejected_; }
 
  private:
+  const SearchRules& rules() const { return setting_->rules; }
   void report(const std::string& stage, double done) const;
   void start();
   void explain();
@@ -88,6 +90,7 @@ class Search {
   bool explain_together(std::size_t first) const;
   void settle(const std::function<void()>& after_a_change);
   bool compare_with_rivals(bool may_change);
+  bool near(const FamilyTest& own, const FamilyTest& other) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
   void reject();
   void recheck(const std::set<std::size_t>& stood);

@@ -152,9 +152,11 @@ namespace {
 
 /// The variables of every leading finding on the target of every other: a scan may see an effect best through
 /// another target than its own.
-std::vector<UnknownFinding> combinations(const std::vector<UnknownFinding>& findings) {
+std::vector<UnknownFinding> combinations(const SearchRules& rules,
+                                         const std::vector<UnknownFinding>& findings) {
   const std::span leading(findings.data(), std::min(findings.size(), kMostFindings));
   std::vector<UnknownFinding> all(leading.begin(), leading.end());
+  if (!rules.follows(SearchRule::CrossedFindings)) return all;
   for (const UnknownFinding& of_target : leading) {
     for (const UnknownFinding& of_variables : leading) {
       UnknownFinding combined = of_target;
@@ -172,7 +174,11 @@ std::optional<SurfaceTest> best_surface(const ModelState& state,
                                         const std::vector<UnknownFinding>& findings) {
   std::optional<SurfaceTest> best;
   std::vector<EffectName> tried;
-  for (const UnknownFinding& finding : combinations(findings)) {
+  const SearchRules& rules = state.setting().rules;
+  const std::vector<UnknownFinding> all = combinations(rules, findings);
+  std::size_t best_of = 0;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const UnknownFinding& finding = all[k];
     for (EffectSpec& spec : surfaces_for(state.model(), finding)) {
       std::shared_ptr<const Effect> effect = find_effect(kEmpirical)->make(spec, {});
       if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
@@ -181,8 +187,10 @@ std::optional<SurfaceTest> best_surface(const ModelState& state,
       const double evidence = surface_evidence(state.model(), state.projector(), *effect);
       if (evidence < kThresholds.surface_evidence || (best && evidence <= best->log_evidence)) continue;
       best = SurfaceTest{std::move(spec), std::move(effect), finding, evidence};
+      best_of = k;
     }
   }
+  if (best_of >= std::min(findings.size(), kMostFindings)) rules.tell(SearchRule::CrossedFindings);
   return best;
 }
 

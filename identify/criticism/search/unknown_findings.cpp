@@ -15,14 +15,16 @@ namespace {
 constexpr std::size_t kMostUnknown = 10;
 
 /// Of those that stand out nearly as much as the most improbable one, the first of the simplest.
-void put_simplest_first(std::vector<const GenericTest*>& order) {
-  if (order.empty()) return;
+void put_simplest_first(const SearchRules& rules, std::vector<const GenericTest*>& order) {
+  if (order.empty() || !rules.follows(SearchRule::SimplestFirst)) return;
   const double nearly = (1.0 - kThresholds.nearly_as_improbable) * order.front()->log10_p;
   const auto end =
       std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
   const auto simplest = std::ranges::min_element(order.begin(), end, {}, [](const GenericTest* test) {
     return complexity_rank(test->variables, test->direction);
   });
+  if (simplest == order.begin()) return;
+  rules.tell(SearchRule::SimplestFirst);
   std::rotate(order.begin(), simplest, simplest + 1);
 }
 
@@ -88,7 +90,8 @@ void report_what_is_certain(std::vector<UnknownFinding>& unknown) {
 std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Reasons& rejected) {
   std::vector<const GenericTest*> order = reached.tests().exceeding_scans();
   std::ranges::sort(order, {}, &GenericTest::log10_p);
-  put_simplest_first(order);
+  const SearchRules& rules = reached.setting().rules;
+  put_simplest_first(rules, order);
   std::set<std::vector<Variable>> seen;
   std::vector<UnknownFinding> unknown;
   for (const GenericTest* scan : order) {
@@ -102,7 +105,9 @@ std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Re
                        scan->period});
   }
   if (unknown.empty()) return rejected_findings(reached, rejected);
+  if (!rules.follows(SearchRule::CertainVariable)) return unknown;
   report_what_is_certain(unknown);
+  if (!unknown.front().with_one_of.empty()) rules.tell(SearchRule::CertainVariable);
   return unknown;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "volcal/identify/cli/commands/studies/rule_names.h"
 #include "volcal/identify/cli/commands/studies/studies.h"
 #include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
@@ -23,7 +24,8 @@ namespace {
 
 struct CriticismArguments {
   CriticismOptions options;
-  std::string one;  ///< ROW:INDEX
+  std::string one;                   ///< ROW:INDEX
+  std::vector<std::string> without;  ///< names of rules
   bool json = false;
 };
 
@@ -48,9 +50,10 @@ std::string criticism_text(const CriticismArguments& arguments, const Campaigns&
   return fmt::format(
       "model criticism, {} campaigns a row (nothing hidden: a kind of noise) of about {} readings, seeds "
       "from "
-      "{}; intervals after Wilson\n\n{}\n{}{}{}",
-      options.campaigns, count_number(options.readings), options.seed, figures.text(), detections.text(),
-      detections.empty() ? "" : "\n", confusion.text());
+      "{}{}; intervals after Wilson\n\n{}\n{}{}{}",
+      options.campaigns, count_number(options.readings), options.seed,
+      arguments.without.empty() ? "" : fmt::format("; without {}", fmt::join(arguments.without, ", ")),
+      figures.text(), detections.text(), detections.empty() ? "" : "\n", confusion.text());
 }
 
 nlohmann::ordered_json criticism_json(const CriticismArguments& arguments, const Campaigns& campaigns) {
@@ -112,6 +115,9 @@ int run_criticism_study(CriticismArguments arguments) {
   if (!arguments.one.empty()) return write_one(arguments);
   CriticismOptions& options = arguments.options;
   if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
+  for (const std::string& name : arguments.without) {
+    if (const auto rule = search_rule_of(name)) options.without.insert(*rule);
+  }
   ProgressBar bar("criticism");
   options.progress = counted_on(bar, "campaigns");
   const Campaigns campaigns = criticism(options);
@@ -140,6 +146,9 @@ std::function<int()> define_criticism_study(CLI::App& app) {
   app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
+  app.add_option("--without", arguments->without, "rules that are left out, names of volcal study rules")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names_of_rules()));
   add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_criticism_study(*arguments); };
 }

@@ -14,7 +14,8 @@ namespace volcal::cli {
   STUDY(five_axis_study_command)    \
   STUDY(hidden_study)               \
   STUDY(planning_study_command)     \
-  STUDY(previews_study)
+  STUDY(previews_study)             \
+  STUDY(rules_study)
 
 #define VOLCAL_DECLARE_STUDY(name) const Command& name();
 #define VOLCAL_ADDRESS_OF_STUDY(name) &(name)(),

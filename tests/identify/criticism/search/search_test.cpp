@@ -117,6 +117,28 @@ TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
   EXPECT_EQ(search.reached().added().size(), 2U);
 }
 
+/// The same with white noise alone, in which few rules have anything to decide: what decides it says so, what
+/// is left out decides nothing, and what decided nothing changes nothing.
+TEST(Search, TellsWhichRulesDecide) {
+  FittedStudy study(hiding({reversal("EXX", 0.7e-6)}, kGrid));
+  const auto searched_without = [&](std::set<SearchRule> off, std::set<SearchRule>& decided) {
+    SearchOptions options;
+    options.rules = {std::move(off), [&decided](SearchRule rule) { decided.insert(rule); }};
+    Search search(study.model, std::vector<bool>(study.model.size(), false), std::move(options));
+    search.run();
+    return search;
+  };
+  std::set<SearchRule> by_all, by_others;
+  const Search all = searched_without({}, by_all);
+  ASSERT_EQ(all.reached().added().size(), 1U);
+  EXPECT_TRUE(by_all.contains(SearchRule::DoubtfulScans)) << "a strong effect is seen by most scans";
+  EXPECT_FALSE(by_all.contains(SearchRule::OneCause));
+  const Search without = searched_without({SearchRule::OneCause, SearchRule::NamesTogether}, by_others);
+  EXPECT_EQ(by_others, by_all);
+  ASSERT_EQ(without.reached().added().size(), 1U);
+  EXPECT_EQ(without.reached().added()[0].test.gain, all.reached().added()[0].test.gain);
+}
+
 /// Backlash that grows along the travel and passes through zero on it: of either part there is little alone.
 TEST(Search, NamesTwoEffectsThatHideEachOther) {
   sim::HiddenEffect constant = reversal("EYY", 0.0), growing = hidden_beside("reversal-position", "EYY", 0.0);

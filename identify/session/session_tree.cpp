@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/search/ladder.h"
+#include "volcal/identify/numeric/interruption.h"
 #include "volcal/identify/solve/adjustment.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/solve/normals/datum.h"
@@ -31,6 +32,13 @@ FitOptions fit_options(int threads, const SessionProgress& progress) {
   };
   return options;
 }
+
+/// What others wait for is not stopped by the one who makes it, and asks nothing: who answers may be waiting.
+struct UndisturbedLock {
+  explicit UndisturbedLock(std::mutex& mutex) : lock(mutex) {}
+  std::lock_guard<std::mutex> lock;
+  Interruption::Share undisturbed{nullptr};
+};
 
 double mean_noise_variance(const ModelState& state) {
   double sum = 0.0, count = 0.0;
@@ -66,7 +74,7 @@ void Session::Fitted::find_values() {
 }
 
 ModelState Session::Fitted::state() const {
-  const std::lock_guard lock(mutex_);
+  const UndisturbedLock lock(mutex_);
   if (!kept_)
     kept_.emplace(LinearModel(*campaign_, result_).with_smoothing(smoothing_), setting_, noise_estimate_);
   return *kept_;
@@ -74,7 +82,7 @@ ModelState Session::Fitted::state() const {
 
 std::shared_ptr<const Projector> Session::Fitted::projector_of_all_readings() const {
   const ModelState own = state();
-  const std::lock_guard lock(mutex_);
+  const UndisturbedLock lock(mutex_);
   if (!all_readings_) all_readings_ = own.projector_of_all_readings();
   return all_readings_;
 }
@@ -138,7 +146,7 @@ std::shared_ptr<const Projector> Session::Recipe::projector_without_effects() co
 }
 
 const CatalogueTests& Session::SharedTests::get() {
-  const std::lock_guard lock(mutex_);
+  const UndisturbedLock lock(mutex_);
   if (!made_) {
     made_.emplace(make_());
     make_ = {};

@@ -5,10 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "tests/support/hidden_studies.h"
@@ -360,6 +364,28 @@ TEST_F(SessionOfTwo, IsStoppedWithinAStage) {
   EXPECT_EQ(stopped_in, scans);
   EXPECT_FALSE(session().is_scanned());
   EXPECT_EQ(session().current().standing, ModelStanding::Preview);
+}
+
+/// A page holds a lock of its own while it asks for the ranking, and work behind asks for that lock: neither
+/// waits for the other.
+TEST_F(SessionOfTwo, WorkBehindAsksNothingWhileOthersWaitForIt) {
+  session().add(kReversal);
+  const SessionWork scan = session().scan();
+  std::mutex of_page;
+  std::atomic<bool> begun{false};
+  const auto under_lock = [&](const std::string& /*stage*/, double /*done*/) {
+    begun = true;
+    const std::lock_guard lock(of_page);
+    return true;
+  };
+  std::thread behind([&] { scan(under_lock); });
+  while (!begun) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  {
+    const std::lock_guard lock(of_page);
+    EXPECT_FALSE(session().rank().empty());
+  }
+  behind.join();
 }
 
 TEST_F(SessionOfTwo, AFormulaIsOneMoreTest) {

@@ -29,8 +29,8 @@ class Player {
 
   async confirm() {
     const button = this.page.getByRole('button', { name: 'Confirm by a full fit' });
-    if (await this.page.getByText('linear preview, not yet confirmed by a full fit').count() > 0) await button.click();
-    await this.page.getByText(/^(confirmed by a full fit|the full fit contradicts the preview)/).waitFor(kLong);
+    if (await this.page.getByText(/^(linear preview|refit): .*(as before the step|not yet a full fit)/).count() > 0) await button.click();
+    await this.page.getByText(/^(confirmed by a full fit|the full fit contradicts what stood before)/).waitFor(kLong);
     await this.settled();
   }
 

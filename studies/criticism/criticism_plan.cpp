@@ -176,7 +176,10 @@ class Planner {
       return;
     }
     const bool starts_unlisted = is("unlisted") || is("behind");
-    const auto list = starts_unlisted ? unlisted_kinds() : is("shared") ? shared_kinds() : listed_kinds();
+    const auto list = starts_unlisted ? unlisted_kinds()
+                      : is("shared")  ? shared_kinds()
+                      : is("axes")    ? kinds_over_axes()
+                                      : listed_kinds();
     const auto count = static_cast<int>(list.size());
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift) % count)]);
     if (is("behind")) {
@@ -268,7 +271,8 @@ class Planner {
 
   void set_size(PlannedEffect& effect, sim::RandomStream& random) const {
     if (is("listed")) effect.signal = drawn(random, kSignals);
-    if (is("pairs") || is("shared") || is("behind")) effect.signal = drawn(random, kPairSignals);
+    if (is("pairs") || is("shared") || is("axes") || is("behind"))
+      effect.signal = drawn(random, kPairSignals);
     if (is("unlisted") || is("left-out")) effect.signal = drawn(random, kUnlistedSignals);
     if (is("partial")) effect.rms = drawn(random, kPartialRms);
     if (is("mdb")) {
@@ -286,7 +290,7 @@ class Planner {
 
 std::span<const std::string> criticism_rows() {
   static const std::vector<std::string> kRows = {"null",    "listed", "unlisted", "pairs", "left-out",
-                                                 "partial", "mdb",    "shared",   "behind"};
+                                                 "partial", "mdb",    "shared",   "axes",  "behind"};
   return kRows;
 }
 

@@ -2,6 +2,7 @@
 // channel, amplitudes are per metre, per kelvin or per second, positions count from home.
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "volcal/sim/hidden/hidden_settings.h"
 #include "volcal/sim/known_errors.h"
@@ -55,6 +56,49 @@ void known_reversal(const HiddenSettings& settings, HiddenScene& scene) {
   scene.machine.add_state_error(symbol,
                                 [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
                                     const MachineState& state) { return half * d(state); });
+}
+
+/// Of the key `symbols`, "EXX EYY".
+std::vector<ErrorSymbol> symbols_of(const HiddenSettings& settings) {
+  constexpr const char* kRemedy = "write symbols = \"EXX EYY EZZ\"";
+  std::istringstream words(settings.text("symbols", ""));
+  std::vector<ErrorSymbol> symbols;
+  for (std::string word; words >> word;) {
+    const auto symbol = ErrorSymbol::parse(word);
+    if (!symbol) settings.fail("\"" + word + "\" is no error motion", kRemedy);
+    symbols.push_back(*symbol);
+  }
+  if (symbols.empty()) settings.fail("it names no error motion", kRemedy);
+  return symbols;
+}
+
+void known_common_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  for (const ErrorSymbol symbol : symbols_of(settings)) {
+    scene.machine.add_state_error(
+        symbol, [half = 0.5 * amplitude_of(settings), d = direction_of_approach(symbol.axis)](
+                    const MachineState& state) { return half * d(state); });
+  }
+}
+
+void known_common_expansion(const HiddenSettings& settings, HiddenScene& scene) {
+  for (const AxisName axis : settings.linear_axes("axes")) {
+    scene.machine.add_state_error(
+        positioning_of(axis),
+        [a = amplitude_of(settings), excess = settings.excess_temperature("temperature"),
+         q = from_home(settings, axis)](const MachineState& state) { return a * excess(state) * q(state); });
+  }
+}
+
+void known_common_growth(const HiddenSettings& settings, HiddenScene& scene) {
+  constexpr double kUsualGrowth = 3600.0;  // s
+  for (const AxisName axis : settings.linear_axes("axes")) {
+    scene.machine.add_state_error(
+        positioning_of(axis),
+        [a = amplitude_of(settings), tau = settings.positive("time_constant", kUsualGrowth),
+         q = from_home(settings, axis)](const MachineState& state) {
+          return a * q(state) * (1.0 - std::exp(-state.time / tau));
+        });
+  }
 }
 
 void known_position_reversal(const HiddenSettings& settings, HiddenScene& scene) {
@@ -209,6 +253,9 @@ struct KnownKind {
 constexpr KnownKind kKnownKinds[] = {
     {"axis-coupling", known_axis_coupling},
     {"ball-bar-length", known_bar_length},
+    {"common-expansion", known_common_expansion},
+    {"common-growth", known_common_growth},
+    {"common-reversal", known_common_reversal},
     {"encoder-subdivision", known_subdivision},
     {"lagged-expansion", known_lagged_expansion},
     {"lagged-temperature", known_lagged_temperature},

@@ -63,9 +63,8 @@ std::unique_ptr<Effect> extend_model(const ModelToExtend& extended, const Effect
       refuse_known(model, present.source_line, words.label, words);
   }
   if (extended.campaign != nullptr) effect->check(*extended.campaign, words.place);
-  for (const EffectAmplitude& amplitude : effect->amplitudes()) {
-    if (amplitude.target.kind == TargetKind::Motion)
-      require_axis(extended, amplitude.target.symbol.axis, words);
+  for (const EffectTerm& term : effect->terms()) {
+    if (term.target.kind == TargetKind::Motion) require_axis(extended, term.target.symbol.axis, words);
   }
   if (extended.campaign != nullptr) check_drivers_vary(*extended.campaign, *effect, words.place);
   model.effects.push_back(spec);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "volcal/identify/errors/linear_axis_errors.h"
@@ -207,8 +208,11 @@ PoseErrorVector ErrorField::condition_value(const AxisPosition& position,
     if (expansion.parameter >= 0)
       error += rows.col(place_of(expansion.parameter)) * parameters_[expansion.parameter];
   }
-  for (std::size_t c = 0; c < effects_.amplitude_count(); ++c)
-    error += rows.col(places_of_columns_[c]) * parameters_[effects_.columns()[c].parameter];
+  std::set<int> taken;  // one amplitude may have several columns, and has one place
+  for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
+    const int parameter = effects_.columns()[c].parameter;
+    if (taken.insert(parameter).second) error += rows.col(places_of_columns_[c]) * parameters_[parameter];
+  }
   return error;
 }
 
@@ -293,7 +297,13 @@ std::vector<Contribution> ErrorField::contributions() const {
     for (std::size_t c = 0; c < effects_.amplitude_count(); ++c) {
       if (effects_.columns()[c].effect == e) part.parameters.push_back(effects_.columns()[c].parameter);
     }
-    parts.push_back(std::move(part));
+    // One cause that acts in several places is one contribution.
+    const auto same = std::ranges::find(parts, part.parameters, &Contribution::parameters);
+    if (same == parts.end()) {
+      parts.push_back(std::move(part));
+    } else if (same->depends_on != part.depends_on) {
+      same->depends_on = joined_words(same->depends_on, part.depends_on);
+    }
   }
   if (tool_parameter_ >= 0)
     parts.push_back({ContributionKind::Tool,

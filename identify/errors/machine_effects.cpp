@@ -126,8 +126,9 @@ std::string EffectReach::text() const {
 
 /// What all copies share: the effects, and the poses' readings by thread.
 struct MachineEffects::Shared {
+  /// An effect, or a term of one that acts in several places.
   struct One {
-    std::unique_ptr<Effect> effect;
+    std::shared_ptr<const Effect> effect;
     std::string label;
     Eigen::VectorXd shape;
     EffectReach reach;
@@ -274,21 +275,23 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
   for (const EffectSpec& spec : result.identified.effects) {
     const EffectKind* kind = find_effect(spec.kind);
     if (kind == nullptr) throw std::logic_error("an effect of the result is not registered: " + spec.kind);
-    Shared::One one;
-    one.effect = kind->make(spec, result.identified.file);
-    if (!acts_on_machine(*one.effect)) continue;
-    if (!probe) probe.emplace(shared->machine, shared->tool, conditions, shared->clock_start);
-    one.reach = probe->reach_of(*one.effect);
-    if (!one.reach.acts) continue;
-    one.label = effect_label(*one.effect);
-    one.shape = one.effect->shape_values();
-    const auto& shapes = one.effect->shapes();
-    for (std::size_t s = 0; s < shapes.size(); ++s) {
-      if (const ParameterBlock* block = result.layout.find_block(shapes[s].label))
-        one.shape[static_cast<Eigen::Index>(s)] = result.parameters[block->offset];
+    for (std::shared_ptr<const Effect>& effect : single_terms(kind->make(spec, result.identified.file))) {
+      Shared::One one;
+      one.effect = std::move(effect);
+      if (!acts_on_machine(*one.effect)) continue;
+      if (!probe) probe.emplace(shared->machine, shared->tool, conditions, shared->clock_start);
+      one.reach = probe->reach_of(*one.effect);
+      if (!one.reach.acts) continue;
+      one.label = effect_label(*one.effect);
+      one.shape = one.effect->shape_values();
+      const auto& shapes = one.effect->shapes();
+      for (std::size_t s = 0; s < shapes.size(); ++s) {
+        if (const ParameterBlock* block = result.layout.find_block(shapes[s].label))
+          one.shape[static_cast<Eigen::Index>(s)] = result.parameters[block->offset];
+      }
+      one.uneven = probe->uneven_directions(*one.effect, one.reach);
+      shared->effects.push_back(std::move(one));
     }
-    one.uneven = probe->uneven_directions(*one.effect, one.reach);
-    shared->effects.push_back(std::move(one));
   }
   std::vector<EffectColumn> slopes;
   for (std::size_t e = 0; e < shared->effects.size(); ++e) {

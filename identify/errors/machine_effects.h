@@ -3,6 +3,9 @@
 /// motions and to the tool's offset. Drivers are those of the catalogue (model/effects), asked for at the
 /// stated conditions; effects on stations, the floor or readings belong to the measurement and are not here.
 ///
+/// An effect that acts in several places with one amplitude is here one effect a place, all with the same
+/// parameters.
+///
 /// At direction of approach 0 a driver is the mean of both directions. A temperature that an effect follows
 /// late stands at its stated value long enough for the lag to be over.
 

@@ -25,6 +25,10 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
      "After an axis has turned round it takes a way to settle: its error fades the farther it travels on.",
      "seals, wipers or covers that stick before they slide; friction that winds up the drive; a hydrostatic "
      "or plain guideway that lifts as it moves"},
+    {"common-reversal", "Several axes stop at two different places by the same amount.",
+     "one setting of backlash compensation or friction in the control for all axes; drives of one make at "
+     "one "
+     "preload; a reflector or probe that follows its carrier late; settling that is not waited for"},
     {"lead-error", "The position repeats its error with every turn of the ball screw.",
      "a screw that wobbles because it or its bearing is not centred; a coupling or motor encoder that sits "
      "off centre; a bent screw"},
@@ -47,6 +51,12 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
      "An axis becomes longer as it warms: its positions are wrong in proportion to the distance from home.",
      "a scale or screw that follows the workshop's temperature; a thermal expansion coefficient that is "
      "missing or wrong in the control; a temperature sensor that sits elsewhere than the scale"},
+    {"common-expansion", "All axes become longer alike as the machine warms.",
+     "scales of one material at one temperature; a reference temperature or coefficient that the control has "
+     "wrong for all axes; a length scale of the instrument that follows that temperature"},
+    {"common-growth", "All axes become longer alike after the first reading, fast at first and then slower.",
+     "a machine that was switched on shortly before it was measured; coolant or hall that reach another "
+     "temperature; an instrument that warms up"},
     {"thermal-drift", "An error motion shifts with a temperature, as the structure bends.",
      "a column or ram that warms on one side by motor, sun or draught; a hydraulic unit or cabinet beside "
      "the column; a hall whose temperature is layered"},

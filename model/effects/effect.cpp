@@ -1,6 +1,7 @@
 #include "volcal/model/effects/effect.h"
 
 #include <cmath>
+#include <utility>
 
 #include "volcal/model/description/units.h"
 
@@ -29,6 +30,50 @@ std::string surface_name(const Effect& effect) {
 
 std::string effect_label(const Effect& effect) {
   return effect.surface() != nullptr ? surface_name(effect) : effect.amplitudes().front().label;
+}
+
+std::vector<EffectTerm> Effect::terms() const {
+  if (!terms_.empty()) return terms_;
+  std::vector<EffectTerm> terms;
+  terms.reserve(amplitudes_.size());
+  for (std::size_t k = 0; k < amplitudes_.size(); ++k) terms.push_back({k, amplitudes_[k].target});
+  return terms;
+}
+
+namespace {
+
+class SingleTerm final : public Effect {
+ public:
+  SingleTerm(std::shared_ptr<const Effect> whole, const EffectTerm& term, Eigen::Index column)
+      : whole_(std::move(whole)), column_(column) {
+    name_ = whole_->name();
+    amplitudes_ = {whole_->amplitudes()[term.amplitude]};
+    amplitudes_.front().target = term.target;
+    shapes_ = whole_->shapes();
+  }
+  void check(const Campaign& campaign, const SourcePlace& place) const override {
+    whole_->check(campaign, place);
+  }
+  Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const override {
+    return whole_->drivers(view, shape).col(column_);
+  }
+  bool changes_with_any_driver() const override { return whole_->changes_with_any_driver(); }
+  std::size_t unrecorded(const SetupView& view) const override { return whole_->unrecorded(view); }
+
+ private:
+  std::shared_ptr<const Effect> whole_;
+  Eigen::Index column_;
+};
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Effect>> single_terms(std::shared_ptr<const Effect> effect) {
+  const std::vector<EffectTerm> terms = effect->terms();
+  if (terms.size() == effect->amplitudes().size()) return {std::move(effect)};
+  std::vector<std::shared_ptr<const Effect>> single;
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    single.push_back(std::make_shared<SingleTerm>(effect, terms[k], static_cast<Eigen::Index>(k)));
+  return single;
 }
 
 Eigen::VectorXd Effect::shape_values() const {

@@ -33,7 +33,7 @@ struct EffectTarget {
   int component = 0;   ///< ToolOffset, Station, Floor: 0..2 = x, y, z; Reading: the channel
 };
 
-/// One unknown amplitude: adds amplitude x driver to the target.
+/// One unknown amplitude: adds amplitude x driver to the target, and to the others of Effect::terms().
 struct EffectAmplitude {
   std::string label;  ///< unique in a model: "reversal EXX"
   EffectTarget target;
@@ -45,6 +45,12 @@ struct EffectAmplitude {
   double si_per_unit() const;
   /// Keeps a value, SI, where the amplitude is read from.
   void keep(double value, Options& options) const;
+};
+
+/// One of the places where an amplitude acts, with a driver of its own.
+struct EffectTerm {
+  std::size_t amplitude = 0;  ///< number among the effect's
+  EffectTarget target;
 };
 
 /// A parameter of the shape, on which the driver depends nonlinearly.
@@ -92,13 +98,16 @@ class Effect {
   const EffectName& name() const { return name_; }
   const std::vector<EffectAmplitude>& amplitudes() const { return amplitudes_; }
   const std::vector<EffectShape>& shapes() const { return shapes_; }
+  /// Where the amplitudes act, those of one amplitude together and in the order of the amplitudes: as a rule
+  /// one term each, several where one cause acts in several places.
+  std::vector<EffectTerm> terms() const;
   /// Values of the shape's parameters, in the order of shapes().
   Eigen::VectorXd shape_values() const;
 
   /// Throws InputError when the machine or the campaign lacks what the effect is about: an axis, a tool, a
   /// station, a column without which it makes no sense.
   virtual void check(const Campaign& campaign, const SourcePlace& place) const = 0;
-  /// Drivers of all readings of a setup, rows x amplitudes; 0 where the effect does not act or its driver was
+  /// Drivers of all readings of a setup, rows x terms; 0 where the effect does not act or its driver was
   /// not recorded. `shape`: values of the shape's parameters, SI.
   virtual Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& shape) const = 0;
   /// Values of the shape's parameters at which an unknown shape is looked for; one entry, the given shape,
@@ -116,7 +125,12 @@ class Effect {
   EffectName name_;
   std::vector<EffectAmplitude> amplitudes_;
   std::vector<EffectShape> shapes_;
+  std::vector<EffectTerm> terms_;  ///< empty: every amplitude acts on its own target alone
 };
+
+/// Every term as an effect of its own, with the same amplitudes' labels and the same shapes: what a term does
+/// alone. An effect whose amplitudes act on one target each stays as it is.
+std::vector<std::shared_ptr<const Effect>> single_terms(std::shared_ptr<const Effect> effect);
 
 /// Name of the function that the amplitudes of a surface describe together: "surface EAY by y z".
 std::string surface_name(const Effect& effect);

@@ -23,6 +23,11 @@ class FormulaEffect final : public Effect {
     name_ = std::move(name);
     amplitudes_ = std::move(amplitudes);
   }
+  /// The only amplitude acts on all of these targets; the formula has a column for each.
+  void act_on(const std::vector<EffectTarget>& targets) {
+    terms_.clear();
+    for (const EffectTarget& target : targets) terms_.push_back({0, target});
+  }
   void add_shape(EffectShape shape) { shapes_.push_back(std::move(shape)); }
   void count_unrecorded(Count count) { unrecorded_ = std::move(count); }
   void scan_by(Scan scan) { scan_ = std::move(scan); }

@@ -13,6 +13,7 @@ namespace volcal {
   EFFECT(curved_reversal_effect)      \
   EFFECT(thermal_reversal_effect)     \
   EFFECT(pre_travel_effect)           \
+  EFFECT(common_reversal_effect)      \
   EFFECT(lead_error_effect)           \
   EFFECT(growing_lead_error_effect)   \
   EFFECT(encoder_subdivision_effect)  \
@@ -20,6 +21,8 @@ namespace volcal {
   EFFECT(ring_eccentricity_effect)    \
   EFFECT(screw_heating_effect)        \
   EFFECT(scale_expansion_effect)      \
+  EFFECT(common_expansion_effect)     \
+  EFFECT(common_growth_effect)        \
   EFFECT(thermal_drift_effect)        \
   EFFECT(spindle_growth_effect)       \
   EFFECT(tool_expansion_effect)       \

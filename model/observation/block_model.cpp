@@ -51,7 +51,10 @@ void for_each_shared(const CampaignBinding& binding, const BlockLevers& levers, 
     f(place++, term.parameter, *driver++, 6 * term.joint + term.component);
   for (const EffectBinding& effect : binding.effects) {
     int parameter = effect.first_parameter;
-    for (const int target : effect.target) f(place++, parameter++, *driver++, target);
+    for (std::size_t k = 0; k < effect.target.size(); ++k)
+      f(place + effect.amplitude[k], parameter + effect.amplitude[k], *driver++, effect.target[k]);
+    place += effect.amplitude_count();
+    parameter += effect.amplitude_count();
     for (std::size_t i = 0; i < effect.free_shape.size(); ++i, ++place, ++parameter) {
       for (const int target : effect.target) f(place, parameter, *driver++, target);
     }
@@ -163,7 +166,7 @@ void BlockModel::find_levers(const ReadingBlock& block, const Eigen::VectorXd& p
   find_drivers(block, parameters, levers);
 }
 
-/// Of locations, uncertain expansions, and effects: amplitudes, then amplitudes times slopes.
+/// Of locations, uncertain expansions, and effects: terms, then amplitudes times slopes.
 void BlockModel::find_drivers(const ReadingBlock& block, const Eigen::VectorXd& parameters,
                               BlockLevers& levers) const {
   const CampaignBinding& binding = model_.binding();
@@ -179,7 +182,7 @@ void BlockModel::find_drivers(const ReadingBlock& block, const Eigen::VectorXd& 
     add_warmed(expansion, block, levers.position[index_of(expansion.axis)], 1.0, *driver++);
   }
   for (const EffectBinding& effect : binding.effects) {
-    const int count = effect.amplitude_count();
+    const int count = effect.term_count();
     const auto take = [&](const EffectBinding::Table& table, int k, Lanes& lanes) {
       take_rows(table.data() + block.first_row * static_cast<std::size_t>(count) + k, count, block.size,
                 lanes);
@@ -193,7 +196,9 @@ void BlockModel::find_drivers(const ReadingBlock& block, const Eigen::VectorXd& 
         take(effect.slope[i][block.setup], k, tabulated);
         add_scaled(tabulated, change, driver[k]);
         slope->fill(0.0);
-        add_scaled(tabulated, parameters[effect.first_parameter + k], *slope);
+        add_scaled(tabulated,
+                   parameters[effect.first_parameter + effect.amplitude[static_cast<std::size_t>(k)]],
+                   *slope);
       }
     }
     driver = slope;
@@ -239,8 +244,9 @@ void BlockModel::add_terms(const ReadingBlock& block, const Eigen::VectorXd& par
     add_scaled(*driver++, parameters[term.parameter], motion(term));
   for (const EffectBinding& effect : binding.effects) {
     const double* amplitude = parameters.data() + effect.first_parameter;
-    for (const int target : effect.target)
-      add_scaled(*driver++, *amplitude++, levers.motion[static_cast<std::size_t>(target)]);
+    for (std::size_t k = 0; k < effect.target.size(); ++k)
+      add_scaled(*driver++, amplitude[effect.amplitude[k]],
+                 levers.motion[static_cast<std::size_t>(effect.target[k])]);
     driver += effect.target.size() * effect.free_shape.size();
   }
 }

@@ -35,7 +35,7 @@ struct BlockLevers {
   std::vector<Lanes> arm_s;        ///< 3 per joint
   std::vector<Lanes> rotation_ws;  ///< 9 per joint, filled where it turns
   std::vector<Lanes> rotation_wt;  ///< 9; filled where the machine turns the tool's offset
-  std::vector<Lanes> driver;       ///< per shared term, then per amplitude and slope of the effects
+  std::vector<Lanes> driver;       ///< per shared term, then per term and slope of the effects
   std::vector<Lanes> motion;       ///< per disturbance: its size, or the work on a unit of it
   ToolStateLanes tool;
 };

@@ -231,12 +231,15 @@ class CampaignBinder {
       if (layout().find_parameter(amplitude.label)) {
         throw InputError(place, "effect \"" + amplitude.label + "\" is given twice", "delete one of the two");
       }
-      binding.target.push_back(disturbance_of(amplitude.target, machine_));
-      binding_.effect_moves_tool |= amplitude.target.kind == TargetKind::ToolOffset;
-      binding_.effect_tilts_floor |= amplitude.target.kind == TargetKind::Floor;
       if (binding.effect->surface() == nullptr) add_block(effect_block(amplitude));
     }
     if (binding.effect->surface() != nullptr) add_block(surface_block(*binding.effect));
+    for (const EffectTerm& term : binding.effect->terms()) {
+      binding.target.push_back(disturbance_of(term.target, machine_));
+      binding.amplitude.push_back(static_cast<int>(term.amplitude));
+      binding_.effect_moves_tool |= term.target.kind == TargetKind::ToolOffset;
+      binding_.effect_tilts_floor |= term.target.kind == TargetKind::Floor;
+    }
     binding.shape = binding.effect->shape_values();
     const auto& shapes = binding.effect->shapes();
     for (std::size_t i = 0; i < shapes.size(); ++i) {
@@ -245,7 +248,7 @@ class CampaignBinder {
       add_block(shape_block(shapes[i]));
     }
     binding_.effect_parameters += binding.parameter_count();
-    binding_.effect_drivers += binding.amplitude_count() * (1 + static_cast<int>(binding.free_shape.size()));
+    binding_.effect_drivers += binding.term_count() * (1 + static_cast<int>(binding.free_shape.size()));
     binding_.effects.push_back(std::move(binding));
   }
 

@@ -53,14 +53,16 @@ struct EffectBinding {
   using Table = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
   std::unique_ptr<Effect> effect;
-  std::vector<int> target;      ///< per amplitude: index of the disturbance
+  std::vector<int> target;      ///< per term: index of the disturbance
+  std::vector<int> amplitude;   ///< per term: number of its amplitude
   std::vector<int> free_shape;  ///< indices of the shape parameters that are estimated
   int first_parameter = 0;
   Eigen::VectorXd shape;                  ///< all shape parameters, SI
-  std::vector<Table> driver;              ///< per setup: rows x amplitudes
+  std::vector<Table> driver;              ///< per setup: rows x terms
   std::vector<std::vector<Table>> slope;  ///< per free shape parameter and setup: derivative of the drivers
 
-  int amplitude_count() const { return static_cast<int>(target.size()); }
+  int term_count() const { return static_cast<int>(target.size()); }
+  int amplitude_count() const { return static_cast<int>(effect->amplitudes().size()); }
   int parameter_count() const { return amplitude_count() + static_cast<int>(free_shape.size()); }
   int shape_parameter(std::size_t free) const {
     return first_parameter + amplitude_count() + static_cast<int>(free);

@@ -25,11 +25,12 @@ struct MeasurementModel::RowState {
 
 namespace {
 
-/// Adds an effect's contribution; writes the drivers of its amplitudes and, per free shape parameter,
-/// amplitude times slope. Returns the place after them.
+/// Adds an effect's contribution; writes the drivers of its terms and, per free shape parameter, amplitude
+/// times slope. Returns the place after them.
 double* add_effect(const EffectBinding& effect, std::size_t setup, std::size_t row,
                    const Eigen::VectorXd& parameters, double* disturbance, double* driver) {
-  const int count = effect.amplitude_count();
+  const int count = effect.term_count();
+  const int* of = effect.amplitude.data();
   const double* table = &effect.driver[setup](static_cast<Eigen::Index>(row), 0);
   const double* amplitude = parameters.data() + effect.first_parameter;
   double* slope = driver + count;
@@ -39,11 +40,11 @@ double* add_effect(const EffectBinding& effect, std::size_t setup, std::size_t r
     const double change = parameters[effect.shape_parameter(i)] - effect.shape[effect.free_shape[i]];
     for (int k = 0; k < count; ++k) {
       driver[k] += change * tabulated[k];
-      *slope++ = amplitude[k] * tabulated[k];
+      *slope++ = amplitude[of[k]] * tabulated[k];
     }
   }
   for (int k = 0; k < count; ++k)
-    disturbance[effect.target[static_cast<std::size_t>(k)]] += driver[k] * amplitude[k];
+    disturbance[effect.target[static_cast<std::size_t>(k)]] += driver[k] * amplitude[of[k]];
   return slope;
 }
 
@@ -173,7 +174,10 @@ void MeasurementModel::fill_channel(const SetupBinding& place, const RowState& s
     *tail++ = *driver++ * sensitivity[6 * term.joint + term.component];
   }
   for (const EffectBinding& effect : binding_.effects) {
-    for (const int target : effect.target) *tail++ = *driver++ * sensitivity[target];
+    std::fill_n(tail, effect.amplitude_count(), 0.0);
+    for (std::size_t k = 0; k < effect.target.size(); ++k)
+      tail[effect.amplitude[k]] += *driver++ * sensitivity[effect.target[k]];
+    tail += effect.amplitude_count();
     for (std::size_t i = 0; i < effect.free_shape.size(); ++i) {
       *tail = 0.0;
       for (const int target : effect.target) *tail += *driver++ * sensitivity[target];

@@ -77,11 +77,12 @@ PoseErrors<double> MeasurementModel::errors_at_reading(std::size_t setup, std::s
     errors.motion[index_of(axis)][static_cast<std::size_t>(term.component)] += value;
   };
   for (const EffectBinding& effect : binding_.effects) {
-    for (int k = 0; k < effect.amplitude_count(); ++k) {
+    for (int k = 0; k < effect.term_count(); ++k) {
       const int target = effect.target[static_cast<std::size_t>(k)];
       if (target >= kToolDisturbance) continue;
       const double driver = effect.driver[setup](static_cast<Eigen::Index>(row), k);
-      add({target / 6, target % 6, -1}, driver * parameters[effect.first_parameter + k]);
+      add({target / 6, target % 6, -1},
+          driver * parameters[effect.first_parameter + effect.amplitude[static_cast<std::size_t>(k)]]);
     }
   }
   for (const ExpansionBinding& expansion : binding_.setups[setup].expansions) {

@@ -14,6 +14,15 @@ void reversal(const HiddenSettings& settings, HiddenScene& scene) {
   });
 }
 
+void common_reversal(const HiddenSettings& settings, HiddenScene& scene) {
+  const double half = 0.5 * settings.amplitude();
+  for (const AxisName axis : settings.linear_axes("axes")) {
+    scene.machine.add_state_error(
+        positioning_of(axis),
+        [half, k = index_of(axis)](const MachineState& state) { return half * state.direction[k]; });
+  }
+}
+
 void reversal_position(const HiddenSettings& settings, HiddenScene& scene) {
   const ErrorSymbol symbol = settings.symbol();
   const StateNumber u = settings.share(symbol.axis);
@@ -89,6 +98,13 @@ std::vector<HiddenKind> hidden_drive_kinds() {
       "w = 2 pi q / period + phase";
   return {
       {"reversal", "drive", "E += d a/2, d of the symbol's axis", {symbol_key()}, "", "", reversal},
+      {"common-reversal",
+       "drive",
+       "positioning of each axis += d a/2, d of that axis",
+       {text_key("axes", "\"X Y Z\"")},
+       "um",
+       "",
+       common_reversal},
       {"reversal-position",
        "drive",
        "E += d u a/2, d and u of the symbol's axis",

@@ -1,6 +1,7 @@
 #include "volcal/sim/hidden/hidden_settings.h"
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 namespace volcal::sim {
@@ -102,6 +103,20 @@ AxisName HiddenSettings::linear_axis(const std::string& stem) const {
   const AxisName name = axis(stem);
   if (is_rotary(name)) fail(std::string("axis ") + letter_of(name) + " is rotary", "use X, Y or Z");
   return name;
+}
+
+std::vector<AxisName> HiddenSettings::linear_axes(const std::string& stem) const {
+  std::istringstream words(required_text(stem));
+  std::vector<AxisName> axes;
+  for (std::string word; words >> word;) {
+    const auto name = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
+    if (!name || is_rotary(*name) || !context_.machine.has_axis(*name))
+      fail("\"" + word + "\" is no linear axis of the machine", "write \"X Y Z\"");
+    if (std::ranges::find(axes, *name) != axes.end()) fail("it names " + word + " twice", "write \"X Y Z\"");
+    axes.push_back(*name);
+  }
+  if (axes.size() < 2) fail("one cause in several places needs two axes or more", "write \"X Y Z\"");
+  return axes;
 }
 
 AxisName HiddenSettings::other_axis(const std::string& stem) const {

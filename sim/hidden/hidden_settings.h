@@ -36,6 +36,7 @@ class HiddenSettings {
   LocationSymbol location_symbol() const;  ///< squareness of the datum, or of a rotary axis
   AxisName axis(const std::string& stem) const;
   AxisName linear_axis(const std::string& stem) const;
+  std::vector<AxisName> linear_axes(const std::string& stem) const;  ///< "X Y Z"; two or more
   /// An axis other than the symbol's own: otherwise the effect is one of the 21 functions.
   AxisName other_axis(const std::string& stem) const;
   std::size_t tool() const;

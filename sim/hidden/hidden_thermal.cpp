@@ -13,6 +13,22 @@ void scale_expansion(const HiddenSettings& settings, HiddenScene& scene) {
                                     settings.channel("channel").name);
 }
 
+void common_expansion(const HiddenSettings& settings, HiddenScene& scene) {
+  for (const AxisName axis : settings.linear_axes("axes"))
+    scene.machine.set_scale_expansion(axis, settings.amplitude(), settings.channel("channel").name);
+}
+
+void common_growth(const HiddenSettings& settings, HiddenScene& scene) {
+  const double time_constant = settings.positive("time_constant");
+  for (const AxisName axis : settings.linear_axes("axes")) {
+    scene.machine.add_state_error(
+        positioning_of(axis), [a = settings.amplitude(), time_constant, home = settings.home(axis),
+                               q = settings.position(axis)](const MachineState& state) {
+          return a * (q(state) - home) * (1.0 - std::exp(-state.time / time_constant));
+        });
+  }
+}
+
 /// Tools that an optional key leaves.
 OccasionTest with_tool(const HiddenSettings& settings) {
   if (!settings.has("tool")) return [](const Occasion&) { return true; };
@@ -95,6 +111,20 @@ std::vector<HiddenKind> hidden_thermal_kinds() {
        "um_per_m_K",
        "",
        scale_expansion},
+      {"common-expansion",
+       "thermal",
+       "positioning of each axis += a dT (q - home)",
+       {text_key("axes", "\"X Y Z\""), channel},
+       "um_per_m_K",
+       "",
+       common_expansion},
+      {"common-growth",
+       "thermal",
+       "positioning of each axis += a (q - home) (1 - exp(-t / time_constant)) since the campaign's start",
+       {text_key("axes", "\"X Y Z\""), number_key("time_constant_s", "of the warming up")},
+       "um_per_m",
+       "",
+       common_growth},
       {"tool-growth",
        "thermal",
        "tool offset += a (1 - exp(-t / time_constant)) direction, since the campaign's start",

@@ -373,6 +373,8 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   add("one cause in several places: right name or in a set of up to 3", right, row("shared"), ">= 90 %");
   add("  its driver alone: right name", outcome({Outcome::Right}), row("shared"), ">= 90 %");
   add("  a wrong name", wrong, row("shared"), "");
+  add("one cause on all axes: right name or in a set of up to 3", right, row("axes"), ">= 90 %");
+  add("  a wrong name", wrong, row("axes"), "");
   add(
       "a law in the grammar: proposed, or one equal in the readings",
       [](const CampaignRecord& record) { return std::ranges::any_of(record.laws, is_true_law); }, has_law,
@@ -408,7 +410,11 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   const auto offered = [](const CampaignRecord& record) {
     return recovered_share(record, record.ms_offered) >= kRecovered;
   };
+<<<<<<< HEAD
   for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "behind", "rotary"})
+=======
+  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "axes", "behind"})
+>>>>>>> unnamed35
     add(fmt::format("the model offered recovers >= 0.9, s >= 12: {}", name), offered, row(name, 12.0),
         ">= 97 %");
   add("  rotary errors missing from the model", offered, row("rotary-missing"), ">= 97 %");

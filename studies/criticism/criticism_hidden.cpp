@@ -99,6 +99,7 @@ class Drawer {
       own_ = one_of(kAxes);
       set("symbol", "E" + own_ + own_);
     }
+    if (is({"common-reversal", "common-expansion", "common-growth"})) set("axes", std::string("X Y Z"));
     if (is({"squareness-drift", "squareness-channel"})) {
       set("symbol", one_of(study_.machine.datum.squareness()).name());
     }
@@ -124,9 +125,9 @@ class Drawer {
       set("dead_path", 0.3);
       if (random_.uniform() < 0.7) set("channel", channel());
     }
-    if (is({"scale-expansion", "tool-growth-channel", "thermal-tilt", "squareness-channel", "air-index",
-            "lagged-temperature", "direction-temperature", "gradient-bending", "temperature-squared",
-            "station-expansion"})) {
+    if (is({"scale-expansion", "common-expansion", "tool-growth-channel", "thermal-tilt",
+            "squareness-channel", "air-index", "lagged-temperature", "direction-temperature",
+            "gradient-bending", "temperature-squared", "station-expansion"})) {
       set("channel", channel());
     }
     if (is({"gradient-bending"})) {
@@ -147,7 +148,7 @@ class Drawer {
       set("period", one_of(std::array{20e-6, 40e-6, 100e-6, 200e-6, 500e-6, 1e-3, 2e-3}));
       set("phase", random_.uniform(0.0, turn));
     }
-    if (is({"screw-heating", "tool-growth", "heated-zone", "tool-growth-on-off"})) {
+    if (is({"screw-heating", "common-growth", "tool-growth", "heated-zone", "tool-growth-on-off"})) {
       set("time_constant", logarithmic(600.0, 7200.0));
     }
     if (is({"tool-growth-on-off"})) set("off", duration_ * random_.uniform(0.3, 0.6));
@@ -264,6 +265,11 @@ std::span<const std::string> shared_kinds() {
   static const std::vector<std::string> kKinds = {std::string("dead-path-air") + kAtStation,
                                                   std::string("dead-path-air") + kEverywhere,
                                                   std::string("station-drift") + kEverywhere};
+  return kKinds;
+}
+
+std::span<const std::string> kinds_over_axes() {
+  static const std::vector<std::string> kKinds = {"common-reversal", "common-expansion", "common-growth"};
   return kKinds;
 }
 

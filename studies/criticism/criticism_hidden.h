@@ -14,6 +14,8 @@ std::span<const std::string> listed_kinds();
 std::span<const std::string> unlisted_kinds();
 /// One cause with one amplitude in several setups or stations: "dead-path-air at a station".
 std::span<const std::string> shared_kinds();
+/// One cause with one amplitude on several axes.
+std::span<const std::string> kinds_over_axes();
 
 /// Kind of the catalogue for a listed kind of sim/.
 std::string catalogue_kind(const std::string& hidden_kind);

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 #include <map>
 #include <numbers>
+#include <sstream>
 
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -51,6 +53,16 @@ class Answerer {
     return location && is_rotary(location->axis);
   }
   static std::string positioning(const std::string& axis) { return "E" + axis + axis; }
+  /// Of the key `axes`, "X Y Z".
+  std::vector<std::string> axes() const {
+    std::istringstream words(text("axes"));
+    return {std::istream_iterator<std::string>(words), {}};
+  }
+  std::string all_positioning() const {
+    std::vector<std::string> symbols;
+    for (const std::string& axis : axes()) symbols.push_back(positioning(axis));
+    return fmt::format("{}", fmt::join(symbols, " "));
+  }
 
   void set(const std::string& kind, const std::string& target, const std::string& driver,
            const std::string& shape = "") {
@@ -80,6 +92,7 @@ class Answerer {
   void name_drive() {
     const std::string symbol = text("symbol");
     if (is({"reversal"})) set("reversal", symbol, "");
+    if (is({"common-reversal"})) set("common-reversal", all_positioning(), "");
     if (is({"reversal-position"})) set("position-reversal", symbol, "");
     if (is({"reversal-spike"})) set("pre-travel", symbol, "");
     if (is({"direction-temperature"}))
@@ -94,6 +107,8 @@ class Answerer {
   void name_temperature() {
     const std::string symbol = text("symbol"), axis = text("axis"), channel = temperature();
     if (is({"screw-heating"})) set("screw-heating", positioning(axis), "");
+    if (is({"common-growth"})) set("common-growth", all_positioning(), "");
+    if (is({"common-expansion"})) set("common-expansion", all_positioning(), channel);
     if (is({"scale-expansion"})) set("scale-expansion", positioning(axis), channel);
     if (is({"thermal-tilt"}) && !has("by")) set("thermal-drift", symbol, channel);
     if (is({"lagged-temperature"}) && !has("by")) set("lagged-temperature", symbol, channel);
@@ -160,6 +175,9 @@ class Answerer {
     for (const char* stem : {"channel", "minus"}) {
       if (has(stem)) drivers.insert("T_" + text(stem));
     }
+    for (const std::string& axis : axes())
+      drivers.insert(is({"common-reversal"}) ? "dir_" + lower(axis) : lower(axis));
+    if (is({"common-growth"})) drivers.insert("time");
     if (has("station")) drivers.insert("station " + text("station"));
     if (has("tool")) drivers.insert("tool " + text("tool"));
     if (is({"reversal", "reversal-position", "backlash-kink", "reversal-spike", "direction-memory",
@@ -219,6 +237,7 @@ class Answerer {
       const std::string axis = lower(text(stem));
       if (axis.size() == 1) add_motion(stem == std::string("about"), axis[0] - 'x');
     }
+    for (const std::string& axis : axes()) add(axis[0] - 'X');
     const std::string symbol = text("symbol");
     if (symbol.size() < 3) return;
     const bool rotation = symbol[1] >= 'A' && symbol[1] <= 'C';

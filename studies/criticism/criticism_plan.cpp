@@ -183,6 +183,7 @@ class Planner {
     const auto list = starts_unlisted ? unlisted_kinds()
                       : is("shared")  ? shared_kinds()
                       : is("rotary")  ? rotary_kinds()
+                      : is("axes")    ? kinds_over_axes()
                                       : listed_kinds();
     const auto count = static_cast<int>(list.size());
     kinds_.push_back(list[static_cast<std::size_t>((plan_.index + shift) % count)]);
@@ -282,7 +283,8 @@ class Planner {
 
   void set_size(PlannedEffect& effect, sim::RandomStream& random) const {
     if (is("listed") || is("rotary")) effect.signal = drawn(random, kSignals);
-    if (is("pairs") || is("shared") || is("behind")) effect.signal = drawn(random, kPairSignals);
+    if (is("pairs") || is("shared") || is("axes") || is("behind"))
+      effect.signal = drawn(random, kPairSignals);
     if (is("unlisted") || is("left-out")) effect.signal = drawn(random, kUnlistedSignals);
     if (is("partial")) effect.rms = drawn(random, kPartialRms);
     if (is("mdb")) {
@@ -299,9 +301,9 @@ class Planner {
 }  // namespace
 
 std::span<const std::string> criticism_rows() {
-  static const std::vector<std::string> kRows = {"null",     "listed",  "unlisted",    "pairs",
-                                                 "left-out", "partial", "mdb",         "shared",
-                                                 "behind",   "rotary",  "rotary-null", "rotary-missing"};
+  static const std::vector<std::string> kRows = {
+      "null",   "listed", "unlisted", "pairs",  "left-out",    "partial",       "mdb",
+      "shared", "axes",   "behind",   "rotary", "rotary-null", "rotary-missing"};
   return kRows;
 }
 

@@ -9,6 +9,7 @@
 ///   left-out  one effect of the catalogue, whose kind the diagnosis does not know
 ///   partial   one effect of the catalogue, measured with ball-bar circles or body diagonals alone
 ///   shared    one cause with one amplitude in several places
+///   axes      one cause with one amplitude on all linear axes
 ///   behind    one effect that is in no catalogue and one of the catalogue
 ///   rotary    one effect of rotary axes that the catalogue has, on machines of four structures
 ///   rotary-null     nothing is hidden in a machine with rotary axes; five kinds of noise take turns

@@ -37,7 +37,8 @@ std::vector<WordList> word_lists() {
 std::string words_text(const WordList& list) {
   std::string text = fmt::format("\n{}\n", list.title);
   for (const EffectWord& word : list.words) {
-    const std::string only = word.kind.empty() ? "" : fmt::format(" ({})", word.kind);
+    const std::string_view more = word.kind.ends_with('-') ? "..." : "";
+    const std::string only = word.kind.empty() ? "" : fmt::format(" ({}{})", word.kind, more);
     text += fmt::format("    {:<24} {}{}\n", word.pattern, word.meaning, only);
   }
   return text;

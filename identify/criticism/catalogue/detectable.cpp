@@ -27,17 +27,21 @@ FunctionalPointLevers::FunctionalPointLevers(const LinearModel& model) : model_(
 }
 
 double FunctionalPointLevers::rms(const Effect& effect, const Eigen::VectorXd& shape, std::size_t k) const {
-  const EffectTarget& target = effect.amplitudes()[k].target;
-  if (target.kind != TargetKind::Motion && target.kind != TargetKind::ToolOffset) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const int disturbance = disturbance_of(target, model_.campaign().machine);
+  const std::vector<EffectTerm> terms = effect.terms();
   double squares = 0.0, count = 0.0;
   for (std::size_t setup = 0; setup < length_.size(); ++setup) {
-    const Eigen::VectorXd driver =
-        effect.drivers(model_.views()[setup], shape).col(static_cast<Eigen::Index>(k));
-    squares += driver.cwiseProduct(length_[setup].col(disturbance)).squaredNorm();
-    count += static_cast<double>(driver.size());
+    const Eigen::MatrixXd drivers = effect.drivers(model_.views()[setup], shape);
+    for (std::size_t t = 0; t < terms.size(); ++t) {
+      const EffectTarget& target = terms[t].target;
+      if (terms[t].amplitude != k) continue;
+      if (target.kind != TargetKind::Motion && target.kind != TargetKind::ToolOffset)
+        return std::numeric_limits<double>::quiet_NaN();
+      const int disturbance = disturbance_of(target, model_.campaign().machine);
+      squares += drivers.col(static_cast<Eigen::Index>(t))
+                     .cwiseProduct(length_[setup].col(disturbance))
+                     .squaredNorm();
+    }
+    count += static_cast<double>(drivers.rows());
   }
   return std::sqrt(squares / std::max(1.0, count));
 }

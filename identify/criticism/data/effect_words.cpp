@@ -14,6 +14,7 @@ namespace volcal {
 namespace {
 
 constexpr const char* kResolution = "resolution";
+constexpr const char* kCommon = "common-";  // one cause in several places
 
 constexpr auto kModelChanges = std::to_array<ModelChange>({
     {kLeftOut, "an error function or squareness that the model file switches off: give it back to the model"},
@@ -23,6 +24,7 @@ constexpr auto kModelChanges = std::to_array<ModelChange>({
 constexpr auto kTargets = std::to_array<EffectWord>({
     {"SYMBOL", "error motion of an axis (EXX, EAY), or a squareness (EC0Y)"},
     {"SYMBOL SYMBOL ...", "several error functions together", kLeftOut},
+    {"SYMBOL SYMBOL ...", "several error motions, all by the same amount", kCommon},
     {"tool", "offset of every tool, tool coordinates"},
     {"tool TOOL", "offset of one tool, tool coordinates"},
     {"clamping in SETUP", "offset of the tool that one setup carries, tool coordinates"},
@@ -43,6 +45,7 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"AXIS AXIS AXIS", "positions of three axes"},
     {"position", "positions of the axes that the errors belong to", kLeftOut},
     {"dir_AXIS", "direction of approach of an axis"},
+    {"dir_AXIS dir_AXIS ...", "directions of approach of several axes, each for its own error motion"},
     {"dir_AXIS AXIS", "direction of approach, and position, of an axis"},
     {"dir_AXIS travel", "direction of approach, and travel since the axis turned round"},
     {"dir_AXIS T_CHANNEL", "direction of approach of an axis, and temperature of a channel less 20 degC"},
@@ -51,6 +54,7 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"dir feed", "sense in which a circle is run through, and feed"},
     {"time", "time since the first reading of the campaign"},
     {"time AXIS", "time, and position of an axis"},
+    {"time AXIS AXIS ...", "time, and position of each of several axes"},
     {"T_CHANNEL", "temperature of a channel less 20 degC"},
     {"rate of T_CHANNEL", "how fast the temperature of a channel changes"},
     {"length", "length that is measured"},
@@ -104,6 +108,8 @@ std::string any_instrument() {
 /// Pattern of a word; only what stands for something in the files varies.
 std::regex expression_of(std::string_view pattern) {
   const std::pair<std::string_view, std::string> places[] = {
+      {"dir_AXIS ...", "dir_[xyzabc]( dir_[xyzabc])*"},
+      {"AXIS ...", "[xyzabc]( [xyzabc])*"},
       {"SYMBOL ...", "E[XYZABC]0?[XYZABC]( E[XYZABC]0?[XYZABC])*"},
       {"SYMBOL", "E[XYZABC]0?[XYZABC]"},
       {"AXIS", "[xyzabc]"},
@@ -134,11 +140,16 @@ std::regex expression_of(std::string_view pattern) {
   return std::regex(text);
 }
 
+/// A kind that ends with a hyphen stands for all that start with it.
+bool is_of_kind(const EffectWord& word, const std::string& kind) {
+  if (word.kind.ends_with('-')) return kind.starts_with(word.kind);
+  return word.kind.empty() || word.kind == kind;
+}
+
 const EffectWord* find_in(std::span<const EffectWord> words, const std::string& kind,
                           const std::string& text) {
   const auto found = std::ranges::find_if(words, [&](const EffectWord& word) {
-    const bool other_kind = !word.kind.empty() && word.kind != kind;
-    return !other_kind && std::regex_match(text, expression_of(word.pattern));
+    return is_of_kind(word, kind) && std::regex_match(text, expression_of(word.pattern));
   });
   return found == words.end() ? nullptr : &*found;
 }

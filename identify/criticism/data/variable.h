@@ -18,7 +18,7 @@ namespace volcal {
 struct EffectWord {
   std::string_view pattern;  ///< "readings of SETUP"
   std::string_view meaning;
-  std::string_view kind = {};  ///< the only kind that has it; empty: any
+  std::string_view kind = {};  ///< the only one that has it; "common-": all that start so; empty: any
 };
 
 struct Variable {

@@ -203,20 +203,22 @@ LinearModel LinearModel::with_reinstated(const std::vector<std::size_t>& observa
 
 void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
                           Eigen::Ref<Eigen::MatrixXd> out) const {
-  const auto& amplitudes = effect.amplitudes();
+  const std::vector<EffectTerm> terms = effect.terms();
   const Eigen::Index first = parts()[setup], count = parts()[setup + 1] - first;
   const Eigen::MatrixXd drivers = effect.drivers(views()[setup], shape);
-  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    const auto sensitivity = fixed_->sensitivity.col(disturbance_of(amplitudes[k].target, campaign().machine))
-                                 .segment(first, count);
+  out.setZero();
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto term = static_cast<Eigen::Index>(k);
+    auto column = out.col(static_cast<Eigen::Index>(terms[k].amplitude));
+    const auto sensitivity =
+        fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine)).segment(first, count);
     if (drivers.rows() == count) {
-      out.col(column) = drivers.col(column).cwiseProduct(sensitivity);
+      column += drivers.col(term).cwiseProduct(sensitivity);
       continue;
     }
     for (Eigen::Index i = 0; i < count; ++i) {
       const std::size_t row = observations()[static_cast<std::size_t>(first + i)].row;
-      out(i, column) = drivers(static_cast<Eigen::Index>(row), column) * sensitivity[i];
+      column[i] += drivers(static_cast<Eigen::Index>(row), term) * sensitivity[i];
     }
   }
 }

@@ -165,17 +165,18 @@ HypotheticalRows HypotheticalCampaign::rows(std::size_t measurement) const {
 Eigen::MatrixXd HypotheticalCampaign::columns(std::size_t measurement, const HypotheticalRows& rows,
                                               const Effect& effect, const Eigen::VectorXd& shape) const {
   const auto [first, count] = stretches_[measurement];
-  const auto& amplitudes = effect.amplitudes();
-  Eigen::MatrixXd out(rows.sensitivity.rows(), static_cast<Eigen::Index>(amplitudes.size()));
+  const std::vector<EffectTerm> terms = effect.terms();
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(rows.sensitivity.rows(), static_cast<Eigen::Index>(effect.amplitudes().size()));
   Eigen::Index at = 0;
   for (std::size_t setup = first; setup < first + count; ++setup) {
     const Eigen::MatrixXd drivers = effect.drivers(views_[setup], shape);
     const Eigen::Index channels = model_.bound(setup).channels();
     for (Eigen::Index i = 0; i < drivers.rows() * channels; ++i, ++at) {
-      for (std::size_t k = 0; k < amplitudes.size(); ++k) {
-        const int target = disturbance_of(amplitudes[k].target, campaign_.machine);
-        const auto column = static_cast<Eigen::Index>(k);
-        out(at, column) = drivers(i / channels, column) * rows.sensitivity(at, target);
+      for (std::size_t k = 0; k < terms.size(); ++k) {
+        const int target = disturbance_of(terms[k].target, campaign_.machine);
+        out(at, static_cast<Eigen::Index>(terms[k].amplitude)) +=
+            drivers(i / channels, static_cast<Eigen::Index>(k)) * rows.sensitivity(at, target);
       }
     }
   }

@@ -23,9 +23,9 @@ std::set<Variable> own_variables(const Family& family) {
     if (variable.kind == Variable::Kind::Direction)
       own.insert({Variable::Kind::TravelSinceTurning, variable.axis});
   }
-  for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
-    if (amplitude.target.kind == TargetKind::Motion)
-      own.insert({Variable::Kind::Position, amplitude.target.symbol.axis});
+  for (const EffectTerm& term : family.effect->terms()) {
+    if (term.target.kind == TargetKind::Motion)
+      own.insert({Variable::Kind::Position, term.target.symbol.axis});
   }
   return own;
 }

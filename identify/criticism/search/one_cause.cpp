@@ -16,10 +16,10 @@ namespace volcal {
 namespace {
 
 /// What a surface in the place of an added effect is of: its variables, and the error motion that it moves.
-/// Nothing for what moves no single error motion.
+/// Nothing for what moves no single error motion, or several at once.
 std::optional<UnknownFinding> finding_of(const ModelState& state, const AddedEffect& added) {
   const Family& family = state.family_of(added);
-  if (!family.effect || family.effect->amplitudes().size() != 1) return std::nullopt;
+  if (!family.effect || family.effect->terms().size() != 1) return std::nullopt;
   const EffectTarget& target = family.effect->amplitudes().front().target;
   if (target.kind != TargetKind::Motion) return std::nullopt;
   const Eigen::VectorXd moved = displacement(state.model(), family, added.test);

@@ -133,6 +133,8 @@ EffectSpec example_of(const std::string& kind, const Machine& machine) {
   };
   if (has("symbol")) spec.options.set("symbol", std::string(kind == "squareness-drift" ? "EC0Y" : "EBX"));
   if (kind == "product-coupling") spec.options.set("second_axis", std::string("Z"));
+  if (has("symbols")) spec.options.set("symbols", std::string("EXX EYY EZZ"));
+  if (has("axes")) spec.options.set("axes", std::string("X Y Z"));
   if (has("axis")) spec.options.set("axis", std::string("Y"));
   if (has("temperature")) spec.options.set("temperature", std::string(kChannel));
   if (has("tool")) spec.options.set("tool", machine.tools[1].name);

@@ -29,9 +29,10 @@ struct Disturbed {
 
   Disturbed(const Effect& effect, const Eigen::RowVectorXd& driver, const Eigen::Vector3d& tool_offset)
       : tool(tool_offset.cast<InstrumentJet>()), station(JetVector::Zero()), floor(JetVector::Zero()) {
-    for (std::size_t k = 0; k < effect.amplitudes().size(); ++k) {
-      const auto index = static_cast<int>(k);
-      target(effect.amplitudes()[k].target) += InstrumentJet(0.0, index) * driver[index];
+    const std::vector<EffectTerm> terms = effect.terms();
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      target(terms[k].target) +=
+          InstrumentJet(0.0, static_cast<int>(terms[k].amplitude)) * driver[static_cast<Eigen::Index>(k)];
     }
   }
 

@@ -102,6 +102,20 @@ TEST_F(EffectContract, CandidatesHaveNamesUnitsAndKeys) {
       << "a kind has no candidate in a campaign that has everything";
 }
 
+/// Every amplitude acts somewhere, first where it says; those of one stand together.
+TEST_F(EffectContract, TermsAreThoseOfTheAmplitudesInTheirOrder) {
+  for (const auto& [kind, spec, effect] : candidates_) {
+    const std::vector<EffectTerm> terms = effect->terms();
+    EXPECT_TRUE(std::ranges::is_sorted(terms, {}, &EffectTerm::amplitude)) << spec.kind;
+    for (std::size_t k = 0; k < effect->amplitudes().size(); ++k) {
+      const auto first = std::ranges::find(terms, k, &EffectTerm::amplitude);
+      ASSERT_NE(first, terms.end()) << spec.kind;
+      EXPECT_EQ(first->target.kind, effect->amplitudes()[k].target.kind) << spec.kind;
+      EXPECT_EQ(first->target.symbol, effect->amplitudes()[k].target.symbol) << spec.kind;
+    }
+  }
+}
+
 /// Identified values can be written into the effect's table and are read from it again.
 TEST_F(EffectContract, IdentifiedValuesSurviveInTheOptions) {
   for (const auto& [kind, spec, effect] : candidates_) {
@@ -132,7 +146,7 @@ TEST_F(EffectContract, DriversAreFiniteRepeatableAndNotNothing) {
     for (const SetupView& view : views) {
       const Eigen::MatrixXd once = effect->drivers(view, effect->shape_values());
       ASSERT_EQ(once.rows(), static_cast<Eigen::Index>(view.rows())) << effect->amplitudes()[0].label;
-      ASSERT_EQ(once.cols(), static_cast<Eigen::Index>(effect->amplitudes().size()));
+      ASSERT_EQ(once.cols(), static_cast<Eigen::Index>(effect->terms().size()));
       EXPECT_TRUE(once.allFinite()) << effect->amplitudes()[0].label;
       EXPECT_EQ(once, effect->drivers(view, effect->shape_values())) << effect->amplitudes()[0].label;
       EXPECT_LE(effect->unrecorded(view), view.rows());

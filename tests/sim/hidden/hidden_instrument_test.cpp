@@ -210,7 +210,8 @@ Study every_instrument() {
 
 const char* any_name(const HiddenKind& kind, std::string_view key) {
   static const std::map<std::string_view, const char*> names = {
-      {"about", "y"}, {"by", "Y"}, {"and", "Z"}, {"axis", "X"}, {"tool", "side_x"}, {"minus", "column"}};
+      {"about", "y"},    {"by", "Y"},        {"and", "Z"},       {"axis", "X"},
+      {"axes", "X Y Z"}, {"tool", "side_x"}, {"minus", "column"}};
   if (key == "symbol") return kind.kind.starts_with("squareness") ? "EC0Y" : "EAX";
   const auto found = names.find(key);
   return found == names.end() ? "air" : found->second;

@@ -61,6 +61,24 @@ TEST_F(HiddenMachine, ReversalByDirectionOfItsOwnAxis) {
   EXPECT_EQ(error("EXX", {"reversal", options({{"symbol", text("EXX")}})}), 0.0);
 }
 
+TEST_F(HiddenMachine, OneCauseMovesEveryAxisByItsOwnState) {
+  const HiddenEffect backlash{"common-reversal", options({{"axes", text("X Y")}})};
+  EXPECT_EQ(error("EXX", backlash), 0.5);
+  EXPECT_EQ(error("EYY", backlash), -0.5);
+  EXPECT_EQ(error("EZZ", backlash), 0.0);
+  // 5 K of the column; home of X at -0.2 m, of Y at 0
+  const HiddenEffect scales{"common-expansion",
+                            options({{"axes", text("X Y")}, {"channel", text("column")}})};
+  EXPECT_NEAR(error("EXX", scales), 5.0 * 0.5, kTiny);
+  EXPECT_NEAR(error("EYY", scales), 5.0 * 0.1, kTiny);
+  // half an hour with a time constant of as much
+  const HiddenEffect warming{"common-growth", options({{"axes", text("Y X")}, {"time_constant", 1800.0}})};
+  EXPECT_NEAR(error("EXX", warming), 0.5 * (1.0 - std::exp(-1.0)), kTiny);
+  EXPECT_NEAR(error("EYY", warming), 0.1 * (1.0 - std::exp(-1.0)), kTiny);
+  for (const char* wrong : {"X", "X X", "X C", "X Q"})
+    EXPECT_THROW(with({"common-reversal", options({{"axes", text(wrong)}})}, 1.0), InputError) << wrong;
+}
+
 TEST_F(HiddenMachine, ReversalGrowsAlongTheTravel) {
   // u = (0.3 + 0.2) / 1
   EXPECT_NEAR(error("EXX", {"reversal-position", options({{"symbol", text("EXX")}})}), 0.25, kTiny);

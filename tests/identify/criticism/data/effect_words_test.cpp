@@ -61,7 +61,12 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   EXPECT_EQ(target("tool"), "tool");
   EXPECT_EQ(target("tool long probe"), "tool TOOL");
   EXPECT_EQ(target("readings of S (1)"), "readings of SETUP");
-  EXPECT_EQ(target("EAX EBX"), "none") << "only for what a model leaves out";
+  EXPECT_EQ(target("EAX EBX"), "none") << "only for what a model leaves out, and one cause in several places";
+  const EffectWord* several =
+      find_word(NamePart::Driver, {"common-reversal", "EXX EYY", "dir_x dir_y", "step"});
+  ASSERT_NE(several, nullptr);
+  EXPECT_EQ(several->pattern, "dir_AXIS dir_AXIS ...");
+  EXPECT_NE(find_word(NamePart::Target, {"common-reversal", "EXX EYY", "dir_x dir_y", "step"}), nullptr);
   const EffectWord* shape = find_word(NamePart::Shape, {"servo-mismatch", "XY", "dir", "sin(2 phi)"});
   ASSERT_NE(shape, nullptr);
   EXPECT_EQ(shape->pattern, "sin(2 phi)");

@@ -117,7 +117,24 @@ TEST(Search, NamesTwoEffectsThatAScanTakesForOne) {
   EXPECT_EQ(search.reached().added().size(), 2U);
 }
 
-/// The same with white noise alone, in which few rules have anything to decide: what decides it says so, what
+/// Three equal reversals, written by three error motions of the simulator: one name with one amplitude, since
+/// three of them explain no more.
+TEST(Search, NamesOneCauseOnAllAxes) {
+  std::vector<sim::HiddenEffect> same;
+  for (const char* symbol : {"EXX", "EYY", "EZZ"}) {
+    sim::HiddenEffect& one = same.emplace_back(reversal(symbol, 0.0));
+    one.rms.reset();
+    one.amplitude = 1.6e-6;
+  }
+  const FittedStudy study(hiding(std::move(same), kGrid));
+  const Diagnosis diagnosis = searched(study, true);
+  ASSERT_THAT(kinds_and_targets(diagnosis.effects), ::testing::ElementsAre("common-reversal EXX EYY EZZ"));
+  ASSERT_EQ(diagnosis.effects[0].amplitudes.size(), 1U);
+  const AmplitudeFigure& b = diagnosis.effects[0].amplitudes[0];
+  EXPECT_NEAR(b.value, 1.6e-6, 3.0 * b.u);
+}
+
+/// What decides says so, what
 /// is left out decides nothing, and what decided nothing changes nothing.
 TEST(Search, TellsWhichRulesDecide) {
   FittedStudy study(hiding({reversal("EXX", 0.7e-6)}, kGrid));

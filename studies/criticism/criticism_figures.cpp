@@ -410,11 +410,7 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   const auto offered = [](const CampaignRecord& record) {
     return recovered_share(record, record.ms_offered) >= kRecovered;
   };
-<<<<<<< HEAD
-  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "behind", "rotary"})
-=======
-  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "axes", "behind"})
->>>>>>> unnamed35
+  for (const char* name : {"listed", "unlisted", "left-out", "pairs", "shared", "axes", "behind", "rotary"})
     add(fmt::format("the model offered recovers >= 0.9, s >= 12: {}", name), offered, row(name, 12.0),
         ">= 97 %");
   add("  rotary errors missing from the model", offered, row("rotary-missing"), ">= 97 %");

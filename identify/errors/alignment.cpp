@@ -11,6 +11,7 @@
 #include "volcal/model/effects/reversal_label.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 #include "volcal/model/observation/measurement_model.h"
+#include "volcal/model/observation/restated_readings.h"
 
 namespace volcal {
 namespace {
@@ -23,6 +24,7 @@ constexpr double kSameOrigin = 1e-9;    // m
 constexpr double kLargestTilt = 10e-3;  // rad
 constexpr double kHeld = 1e-7;          // share of a displacement that locations and frames may leave
 constexpr int kAlignedPoses = 180;
+constexpr double kSameOffset = 1e-12;  // m
 
 Eigen::Vector3d axis_vector(AxisName axis) { return Eigen::Vector3d::Unit(direction_of(axis)); }
 
@@ -476,9 +478,15 @@ void adopt_alignment(Campaign& campaign, const FitResult& result) {
   for (Axis& axis : campaign.machine.axes) {
     if (result.machine.has_axis(axis.name)) axis.home = result.machine.axis(axis.name).home;
   }
-  for (Tool& tool : campaign.machine.tools) {
+  for (std::size_t number = 0; number < campaign.machine.tools.size(); ++number) {
+    Tool& tool = campaign.machine.tools[number];
     const auto index = result.machine.tool_index(tool.name);
-    if (index) tool.offset = result.machine.tools[*index].offset;
+    if (!index) continue;
+    const Eigen::Vector3d former = std::exchange(tool.offset, result.machine.tools[*index].offset);
+    if ((tool.offset - former).norm() < kSameOffset) continue;
+    for (Setup& setup : campaign.setups) {
+      if (setup.tool == number) restate_readings(campaign.machine, campaign.file, former, tool.offset, setup);
+    }
   }
 }
 

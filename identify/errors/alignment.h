@@ -52,7 +52,8 @@ struct AlignedResult {
 AlignedResult align_result(const FitResult& result, const Alignment& alignment);
 
 /// Readings of a campaign of the machine as it was identified, in the coordinate system of an aligned result:
-/// its datum, origin and tool offsets. Any other campaign and result stay as they are.
+/// its datum, origin and tool offsets. Readings that count from the nominal tool point, which the control has
+/// from the former offsets, are restated for the new ones. Any other campaign and result stay as they are.
 void adopt_alignment(Campaign& campaign, const FitResult& result);
 
 }  // namespace volcal

@@ -338,7 +338,7 @@ std::vector<Figure> figures_of(const Campaigns& campaigns) {
   add("  a wrong name, any s", wrong, row("rotary"), "<= 1 %");
   add("rotary axes, nothing hidden: false alarm", alarm, row("rotary-null"), "<= 1 %");
   const auto told_missing = outcome({Outcome::Right, Outcome::RightInSet, Outcome::MoreRemains});
-  add("rotary errors missing from the model: said", told_missing, row("rotary-missing"), ">= 97 %");
+  add("rotary errors missing from the model: reported", told_missing, row("rotary-missing"), ">= 97 %");
   add("  a wrong name", wrong, row("rotary-missing"), "<= 1 %");
   const auto misnamed = [](const CampaignRecord& record) {
     return outcome_of(record) == Outcome::Wrong && remainder_of(record) >= kUndetectable;

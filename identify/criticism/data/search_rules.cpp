@@ -39,8 +39,8 @@ constexpr auto kWords = std::to_array<RuleWords>({
     {EstimatedNoise, "estimated-noise", "F in place of chi-squared: noise is known by estimation"},
     {DoubtfulScans, "doubtful-scans", "chi-squared for scans where many exceed"},
     {Reinstated, "reinstated-outliers", "outliers that a name explains are readings again"},
-    {SimplestFirst, "simplest-first", "of scans that stand out nearly alike the simplest is told"},
-    {CertainVariable, "certain-variable", "a second variable is told where no other does as well"},
+    {SimplestFirst, "simplest-first", "of scans that stand out nearly alike the simplest is reported"},
+    {CertainVariable, "certain-variable", "a second variable is reported where no other does as well"},
 });
 
 constexpr auto kRules = [] {

@@ -35,8 +35,8 @@ enum class SearchRule {
   EstimatedNoise,     ///< F in place of chi-squared
   DoubtfulScans,      ///< chi-squared where many scans exceed
   Reinstated,         ///< outliers that a name explains are readings again
-  SimplestFirst,      ///< of scans that are nearly alike the simplest is told
-  CertainVariable     ///< a second variable is told where it is certain
+  SimplestFirst,      ///< of scans that are nearly alike the simplest is reported
+  CertainVariable     ///< a second variable is reported where it is certain
 };
 
 std::span<const SearchRule> search_rules();
@@ -46,7 +46,7 @@ std::string_view name_of(SearchRule rule);
 std::string_view description_of(SearchRule rule);
 std::optional<SearchRule> search_rule_of(std::string_view name);
 
-/// Which rules a search follows, and whom it tells when one of them decides something. A search in which a
+/// Which rules a search follows, and who hears when one of them decides something. A search in which a
 /// rule decided nothing is the same to the bit without it.
 struct SearchRules {
   std::set<SearchRule> off;

@@ -22,7 +22,7 @@ struct RulesArguments {
 std::string rules_text(const RulesArguments& arguments, const std::vector<RuleCampaign>& campaigns) {
   TextTable table({{"without", Align::Left},
                    {"decided in"},
-                   {"told otherwise"},
+                   {"reported otherwise"},
                    {"right"},
                    {"wrong"},
                    {"false alarms"},

@@ -29,8 +29,8 @@ std::vector<RuleKey> keys_in_turn(const RuleStudyOptions& options) {
   std::vector<RuleKey> keys;
   for (int index = 0; index < options.campaigns; ++index) {
     for (const std::string& row : options.rows) {
-      for (int k = 0; k < (row == "null" ? noises : 1); ++k)
-        keys.emplace_back(row, row == "null" ? noises * index + k : index);
+      for (int k = 0; k < (is_null_row(row) ? noises : 1); ++k)
+        keys.emplace_back(row, is_null_row(row) ? noises * index + k : index);
     }
   }
   return keys;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/effects/travel_since_turning.h"
 
 namespace volcal {
@@ -90,6 +91,26 @@ ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
     if (log10_p < least.log10_p) least = {variable.name(), log10_p};
   }
   return least;
+}
+
+double log10_p_of_one_amplitude(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                                const Projector& projector, const std::optional<ScoreTest>& own) {
+  if (!family.effect) return 0.0;
+  const auto places = single_terms(family.effect);
+  const auto count = static_cast<Eigen::Index>(places.size());
+  if (count <= family.amplitudes()) return 0.0;
+  // Of columns that the projector holds the last place follows from the others.
+  Eigen::MatrixXd apart(static_cast<Eigen::Index>(model.size()), own ? count : count - 1);
+  for (Eigen::Index place = 0; place < apart.cols(); ++place) {
+    Family alone = family;
+    alone.effect = places[static_cast<std::size_t>(place)];
+    apart.col(place) = family_columns(model, alone, shape).col(0);
+  }
+  const ScoreTest all = score_test(projector.project(apart), 0, apart.cols());
+  if (!own) return all.log10_p;
+  if (all.dof <= own->dof) return 0.0;
+  const double more = std::max(0.0, all.lm - own->lm);
+  return std::log10(std::max(1e-300, chi_squared_exceedance(more, all.dof - own->dof)));
 }
 
 }  // namespace volcal

@@ -6,6 +6,7 @@
 /// variable: a few degrees of freedom along the effect's own derivative see what a scan of the whole volume
 /// misses.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,11 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model);
 /// columns. `moved`: readings' change by the effect at its estimate.
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector);
+
+/// log10 p that an effect of several places (Effect::terms) has one amplitude in all of them; 0 for an effect
+/// of a single place. `own`: the score test of the effect where it is not in the projector, which else holds
+/// its columns.
+double log10_p_of_one_amplitude(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                                const Projector& projector, const std::optional<ScoreTest>& own);
 
 }  // namespace volcal

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -20,6 +21,24 @@ std::string shape_word(const EffectShape& shape) {
 }
 
 Finding rejected(FindingCode code, const Family& family) { return {code, {{"effect", family.label()}}}; }
+
+/// Added effects that act in one of the places of an effect of several, and would hide that it differs there.
+std::set<std::size_t> in_places_of(const ModelState& state, std::size_t added) {
+  std::set<std::size_t> others;
+  const auto places = state.family_of(state.added()[added]).effect->terms();
+  for (std::size_t i = 0; i < state.added().size(); ++i) {
+    const Family& family = state.family_of(state.added()[i]);
+    if (i == added || !family.effect) continue;
+    const auto acts_there = [&](const EffectTerm& term) {
+      return std::ranges::any_of(places, [&](const EffectTerm& place) {
+        return place.target.kind == TargetKind::Motion && term.target.kind == TargetKind::Motion &&
+               place.target.symbol == term.target.symbol;
+      });
+    };
+    if (std::ranges::any_of(family.effect->terms(), acts_there)) others.insert(i);
+  }
+  return others;
+}
 
 /// `first`: of its columns among the projector's parameters.
 ConstancyTest constancy_of(const ModelState& state, const Family& family, const Eigen::MatrixXd& columns,
@@ -128,8 +147,13 @@ bool Rejection::lies_beyond_its_scan(std::size_t added) const {
 
 ConstancyTest Rejection::constancy(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
-  return constancy_of(state_, state_.family_of(effect), effect.columns, state_.first_column(added),
-                      state_.projector());
+  const Family& family = state_.family_of(effect);
+  const ConstancyTest least =
+      constancy_of(state_, family, effect.columns, state_.first_column(added), state_.projector());
+  const auto alone = state_.projector_without(in_places_of(state_, added));
+  const double one_amplitude =
+      log10_p_of_one_amplitude(state_.model(), family, effect.test.shape, *alone, {});
+  return one_amplitude < least.log10_p ? ConstancyTest{"axis", one_amplitude} : least;
 }
 
 /// In the place of an added effect.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/scans/amplitude_constancy.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
 #include "volcal/identify/criticism/search/one_cause.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
@@ -36,6 +37,13 @@ bool scan_does_better(const GenericTest& scan, double log10_p, const Evidence& n
                       double probability_margin) {
   return (!scan.kernel && scan.gain > names.gain + gain_margin) ||
          log10_p < (1.0 + probability_margin) * names.log10_p - 1.0;
+}
+
+/// One cause on several axes is a name where its amplitude is the same on all of them.
+bool acts_alike_in_its_places(const ModelState& state, const FamilyTest& test) {
+  const Family& family = state.setting().families[test.family];
+  return log10_p_of_one_amplitude(state.model(), family, test.shape, state.projector(), test.score) >
+         std::log10(kThresholds.constancy_risk);
 }
 
 }  // namespace
@@ -213,7 +221,7 @@ void Search::climb() {
 
 bool Search::may_be_added(const FamilyTest& test) const {
   return test.score.dof > 0 && !state_->has(test.family) && !rejected_.contains(test.family) &&
-         !dropped_.contains(test.family);
+         !dropped_.contains(test.family) && acts_alike_in_its_places(*state_, test);
 }
 
 /// The best of those that are not in the model; null: none.

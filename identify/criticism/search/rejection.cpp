@@ -23,21 +23,25 @@ std::string shape_word(const EffectShape& shape) {
 Finding rejected(FindingCode code, const Family& family) { return {code, {{"effect", family.label()}}}; }
 
 /// Added effects that act in one of the places of an effect of several, and would hide that it differs there.
-std::set<std::size_t> in_places_of(const ModelState& state, std::size_t added) {
+std::set<std::size_t> in_places_of(const ModelState& state, std::size_t family) {
   std::set<std::size_t> others;
-  const auto places = state.family_of(state.added()[added]).effect->terms();
+  const auto places = state.setting().families[family].effect->terms();
   for (std::size_t i = 0; i < state.added().size(); ++i) {
-    const Family& family = state.family_of(state.added()[i]);
-    if (i == added || !family.effect) continue;
+    const Family& own = state.family_of(state.added()[i]);
+    if (state.added()[i].test.family == family || !own.effect) continue;
     const auto acts_there = [&](const EffectTerm& term) {
       return std::ranges::any_of(places, [&](const EffectTerm& place) {
         return place.target.kind == TargetKind::Motion && term.target.kind == TargetKind::Motion &&
                place.target.symbol == term.target.symbol;
       });
     };
-    if (std::ranges::any_of(family.effect->terms(), acts_there)) others.insert(i);
+    if (std::ranges::any_of(own.effect->terms(), acts_there)) others.insert(i);
   }
   return others;
+}
+
+bool has_several_places(const Family& family) {
+  return family.effect && family.effect->terms().size() > family.effect->amplitudes().size();
 }
 
 /// `first`: of its columns among the projector's parameters.
@@ -150,7 +154,8 @@ ConstancyTest Rejection::constancy(std::size_t added) const {
   const Family& family = state_.family_of(effect);
   const ConstancyTest least =
       constancy_of(state_, family, effect.columns, state_.first_column(added), state_.projector());
-  const auto alone = state_.projector_without(in_places_of(state_, added));
+  if (!has_several_places(family)) return least;
+  const auto alone = state_.projector_without(in_places_of(state_, effect.test.family));
   const double one_amplitude =
       log10_p_of_one_amplitude(state_.model(), family, effect.test.shape, *alone, {});
   return one_amplitude < least.log10_p ? ConstancyTest{"axis", one_amplitude} : least;
@@ -163,7 +168,13 @@ double Rejection::log10_constancy_of_rival(std::size_t added, const FamilyTest& 
   const auto projector = state_.projector_without({added});
   const Eigen::Index first = projector->parameters();
   const Eigen::MatrixXd columns = accept(state_.model(), family, rival, *projector);
-  return constancy_of(state_, family, columns, first, *projector).log10_p;
+  const double log10_p = constancy_of(state_, family, columns, first, *projector).log10_p;
+  if (!has_several_places(family)) return log10_p;
+  std::set<std::size_t> others = in_places_of(state_, rival.family);
+  others.insert(added);
+  const auto alone = state_.projector_without(others);
+  accept(state_.model(), family, rival, *alone);
+  return std::min(log10_p, log10_p_of_one_amplitude(state_.model(), family, rival.shape, *alone, {}));
 }
 
 std::vector<AddedEffect> Rejection::drop_inconsistent_rivals() const {

@@ -187,10 +187,7 @@ std::vector<FiveAxisCampaign> five_axis_study(const FiveAxisStudyOptions& option
                              });
   return all_campaigns<FiveAxisCampaign>(
       static_cast<std::size_t>(options.campaigns), options.threads, options.progress,
-      [&](std::size_t number) -> const FiveAxisCampaign* {
-        const auto found = known.find(number);
-        return found == known.end() ? nullptr : &found->second;
-      },
+      [&](std::size_t number) { return finished_before(known, number); },
       [&](std::size_t number) { return counted(options, static_cast<int>(number)); },
       [&](std::size_t number, const FiveAxisCampaign& campaign) {
         finished.append(json_of(options, number, campaign));

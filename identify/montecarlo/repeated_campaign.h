@@ -4,7 +4,7 @@
 /// Truth is the identified machine z^, the readings are y = f(z^) + e + G a: f the measurement model with the
 /// exact transforms' remainder, e from the noise model of the fit (instrument noise, repeatability, and
 /// correlated drift, offsets of lines and a part in proportion to length where it has them), G a effects that
-/// the adjustment knows nothing of, with amplitudes a from their distributions. What the adjustment is told
+/// the adjustment knows nothing of, with amplitudes a from their distributions. What the adjustment knows
 /// beforehand - a station, a tool's offset, a scale's expansion, an instrument's length scale with their
 /// standard uncertainties, and how large and rough an error function is - is a statement s about z with
 /// covariance P^-1, drawn about the truth: only the difference of statement and truth matters to first order,

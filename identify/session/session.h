@@ -186,8 +186,8 @@ class Session {
   /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
   SessionWork removal(const EffectName& effect) const;
   /// A linear preview with its noise found again, shapes of its effects moved to where readings want them,
-  /// and residuals of the exact model; in some tenths of a second. Nothing changes where it has been refitted
-  /// or fitted. Throws std::out_of_range.
+  /// and residuals of the exact model; 0.7 to 0.8 s of processor time at 6,720 readings. Nothing changes
+  /// where it has been refitted or fitted. Throws std::out_of_range.
   SessionWork refit(std::size_t model) const;
   SessionWork refit() const { return refit(current_); }
   /// A model of the tree by a full fit, noise and smoothing anew; nothing changes where it is one already.

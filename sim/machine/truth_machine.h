@@ -27,7 +27,7 @@
 
 namespace volcal::sim {
 
-/// What the machine is told and what surrounds it at one reading.
+/// What the machine is commanded and what surrounds it at one reading.
 struct MachineState {
   std::array<double, kAxisCount> position{};        ///< commanded, m or rad
   std::array<std::int8_t, kAxisCount> direction{};  ///< of approach: -1, 0 (neither), +1

@@ -58,10 +58,7 @@ std::vector<CampaignRecord> criticism(const CriticismOptions& options) {
   const std::vector<Job> jobs = jobs_of(options);
   return all_campaigns<CampaignRecord>(
       jobs.size(), options.threads, options.progress,
-      [&](std::size_t i) -> const CampaignRecord* {
-        const auto found = known.find({jobs[i].row, jobs[i].index});
-        return found == known.end() ? nullptr : &found->second;
-      },
+      [&](std::size_t i) { return finished_before(known, Key(jobs[i].row, jobs[i].index)); },
       [&](std::size_t i) {
         return criticise_campaign(jobs[i].row, jobs[i].index, options.seed, options.readings,
                                   {.off = options.without, .decided = {}});

@@ -13,16 +13,20 @@
 
 namespace volcal::cli {
 
-struct CriticismOptions {
+/// Which campaigns a study of model criticism makes, and where it keeps those that are finished.
+struct CriticisedCampaigns {
   std::vector<std::string> rows;  ///< of criticism_rows()
   int campaigns = 20;             ///< per row; null: per kind of noise
   std::uint64_t seed = 1;
   int readings = 1500;
-  std::set<SearchRule> without;  ///< rules of the search that are left out
-  int threads = 0;               ///< 0 = all; results do not depend on it
-  std::string output;            ///< folder; empty = nothing is kept
+  int threads = 0;     ///< 0 = all; results do not depend on it
+  std::string output;  ///< folder; empty = nothing is kept
   bool resume = false;
   std::function<void(int done, int all)> progress;
+};
+
+struct CriticismOptions : CriticisedCampaigns {
+  std::set<SearchRule> without;  ///< rules of the search that are left out
 };
 
 /// In the order of rows and indices. Throws InputError for an output folder that holds campaigns already

@@ -119,10 +119,7 @@ std::vector<PreviewedCampaign> previews(const PreviewsOptions& options) {
   const std::vector<PreviewJob> jobs = preview_jobs(options);
   return all_campaigns<PreviewedCampaign>(
       jobs.size(), options.threads, options.progress,
-      [&](std::size_t i) -> const PreviewedCampaign* {
-        const auto found = known.find(jobs[i].name);
-        return found == known.end() ? nullptr : &found->second;
-      },
+      [&](std::size_t i) { return finished_before(known, jobs[i].name); },
       [&](std::size_t i) { return preview_campaign(jobs[i], options); },
       [&](std::size_t, const PreviewedCampaign& record) { finished.append(record); });
 }

@@ -69,23 +69,23 @@ void require_same_study(const RuleCampaign& campaign, const RuleStudyOptions& op
                    "give the same, or choose another folder");
 }
 
-std::vector<std::string> told_names(const CampaignRecord& record) {
-  std::vector<std::string> told = {record.verdict};
-  for (const AnswerRecord& answer : record.named) told.push_back(answer.name);
+std::vector<std::string> reported_names(const CampaignRecord& record) {
+  std::vector<std::string> names = {record.verdict};
+  for (const AnswerRecord& answer : record.named) names.push_back(answer.name);
   for (const auto& set : record.sets) {
-    told.emplace_back("one of");
-    for (const AnswerRecord& answer : set) told.push_back(answer.name);
+    names.emplace_back("one of");
+    for (const AnswerRecord& answer : set) names.push_back(answer.name);
   }
-  for (const std::string& drawn : record.drawn) told.push_back(drawn);
+  for (const std::string& drawn : record.drawn) names.push_back(drawn);
   if (!record.unknown.empty()) {
-    told.push_back(record.unknown.front().direction);
-    std::ranges::copy(record.unknown.front().variables, std::back_inserter(told));
+    names.push_back(record.unknown.front().direction);
+    std::ranges::copy(record.unknown.front().variables, std::back_inserter(names));
   }
-  return told;
+  return names;
 }
 
-bool told_otherwise(const CampaignRecord& one, const CampaignRecord& other) {
-  return told_names(one) != told_names(other) ||
+bool reported_otherwise(const CampaignRecord& one, const CampaignRecord& other) {
+  return reported_names(one) != reported_names(other) ||
          std::abs(one.ms_offered - other.ms_offered) > kSameError * one.ms_offered;
 }
 
@@ -96,28 +96,28 @@ bool is_right(const CampaignRecord& record) {
          (stranger && outcome == Outcome::Unknown);
 }
 
-void count_into(ToldOfCampaigns& told, const CampaignRecord& record) {
+void count_into(RuleCounts& counts, const CampaignRecord& record) {
   if (!record.failure.empty()) return;
   if (record.hidden.empty()) {
-    told.alarms += outcome_of(record) == Outcome::Right ? 0 : 1;
+    counts.alarms += outcome_of(record) == Outcome::Right ? 0 : 1;
     return;
   }
-  told.right += is_right(record) ? 1 : 0;
-  told.wrong += outcome_of(record) == Outcome::Wrong && remainder_of(record) >= kUndetectable ? 1 : 0;
+  counts.right += is_right(record) ? 1 : 0;
+  counts.wrong += outcome_of(record) == Outcome::Wrong && remainder_of(record) >= kUndetectable ? 1 : 0;
   if (!record.recovery) return;
-  ++told.of_removed;
-  told.removed += recovered_share(record, record.ms_offered) >= kRemovedShare ? 1 : 0;
+  ++counts.of_removed;
+  counts.removed += recovered_share(record, record.ms_offered) >= kRemovedShare ? 1 : 0;
 }
 
 RuleRow row_of(const std::vector<RuleCampaign>& campaigns, const std::string& rule) {
-  RuleRow row{.rule = rule, .told = {}};
+  RuleRow row{.rule = rule, .counts = {}};
   for (const RuleCampaign& campaign : campaigns) {
     const auto without = campaign.without.find(rule);
     const bool again = without != campaign.without.end();
     row.decided += again ? 1 : 0;
-    row.changed += again && told_otherwise(campaign.all, without->second) ? 1 : 0;
-    count_into(row.told, again ? without->second : campaign.all);
-    row.told.seconds += again ? campaign.seconds_without.at(rule) : campaign.seconds;
+    row.changed += again && reported_otherwise(campaign.all, without->second) ? 1 : 0;
+    count_into(row.counts, again ? without->second : campaign.all);
+    row.counts.seconds += again ? campaign.seconds_without.at(rule) : campaign.seconds;
   }
   return row;
 }
@@ -136,10 +136,7 @@ std::vector<RuleCampaign> rule_study(const RuleStudyOptions& options) {
   const std::vector<RuleKey> keys = keys_in_turn(options);
   return all_campaigns<RuleCampaign>(
       keys.size(), options.threads, options.progress,
-      [&](std::size_t i) -> const RuleCampaign* {
-        const auto found = known.find(keys[i]);
-        return found == known.end() ? nullptr : &found->second;
-      },
+      [&](std::size_t i) { return finished_before(known, keys[i]); },
       [&](std::size_t i) { return campaign_with_and_without(keys[i], options); },
       [&](std::size_t, const RuleCampaign& campaign) { finished.append(campaign); });
 }

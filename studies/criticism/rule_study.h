@@ -3,16 +3,15 @@
 /// and then without each in turn; resumable: every finished campaign is a line of rules.jsonl in the output
 /// folder.
 ///
-/// A campaign in which a rule decided nothing is told alike without it, to the bit (search_rules.h), and is
-/// not diagnosed again. Rows and indices are those of criticism.h, in turn, so that a part of the set holds
-/// all rows.
+/// A campaign in which a rule decided nothing is diagnosed alike without it, to the bit (search_rules.h), and
+/// is not diagnosed again. Rows and indices are those of criticism.h, in turn, so that a part of the set
+/// holds all rows.
 
-#include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "volcal/studies/criticism/criticism.h"
 #include "volcal/studies/criticism/criticism_record.h"
 
 namespace volcal::cli {
@@ -25,27 +24,19 @@ struct RuleCampaign {
   std::map<std::string, double> seconds_without;
 };
 
-struct RuleStudyOptions {
-  std::vector<std::string> rows;
+struct RuleStudyOptions : CriticisedCampaigns {
   std::vector<std::string> rules;  ///< that are left out in turn
-  int campaigns = 5;               ///< per row; null: per kind of noise
-  std::uint64_t seed = 1;
-  int readings = 1500;
-  int threads = 0;
-  std::string output;  ///< folder; empty = nothing is kept
-  bool resume = false;
-  std::function<void(int done, int all)> progress;
 };
 
 /// Throws InputError for an output folder that holds campaigns already (without `resume`), or campaigns of
 /// another seed, size or rules (with it).
 std::vector<RuleCampaign> rule_study(const RuleStudyOptions& options);
 
-/// What is told of a set of campaigns.
-struct ToldOfCampaigns {
+/// What diagnoses of a set of campaigns report.
+struct RuleCounts {
   int right = 0;    ///< names, sets of up to three; of what no catalogue holds its variables and axis
-  int wrong = 0;    ///< a name is wrong, and what is told leaves 4 sigma or more of what is hidden
-  int alarms = 0;   ///< nothing was hidden, and something is told
+  int wrong = 0;    ///< a name is wrong, and what is reported leaves 4 sigma or more of what is hidden
+  int alarms = 0;   ///< nothing was hidden, and something is reported
   int removed = 0;  ///< campaigns whose systematic error the offered model removes to 0.9
   int of_removed = 0;
   double seconds = 0.0;
@@ -54,8 +45,8 @@ struct ToldOfCampaigns {
 struct RuleRow {
   std::string rule;  ///< empty: every rule followed
   int decided = 0;   ///< campaigns in which it decided something
-  int changed = 0;   ///< of them, those that are told otherwise without it
-  ToldOfCampaigns told;
+  int changed = 0;   ///< of them, those that are diagnosed otherwise without it
+  RuleCounts counts;
 };
 
 /// The first row with every rule, then one a rule.

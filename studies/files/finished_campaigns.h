@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -40,6 +41,13 @@ class FinishedCampaigns {
   std::filesystem::path path_;
   std::ofstream file_;
 };
+
+/// What was finished before under a key; null: nothing.
+template <class Key, class Record>
+const Record* finished_before(const std::map<Key, Record>& known, const Key& key) {
+  const auto found = known.find(key);
+  return found == known.end() ? nullptr : &found->second;
+}
 
 /// Records of campaigns 0 ... count - 1: `known(i)` is a pointer to what was finished before, or null;
 /// otherwise `make(i)`, on several threads, and `keep(i, record)`, by one thread at a time.

@@ -103,7 +103,7 @@ TEST_P(PartialCampaignProgram, SaysTheSameInJson) {
   EXPECT_LT(invisible, 21U);
 }
 
-// Whoever goes on with such a result is told again.
+// Whoever goes on with such a result reads it again.
 TEST_P(PartialCampaignProgram, WhatUsesTheResultNamesWhatIsNotSeen) {
   simulate(GetParam().second);
   const auto fitted = fit("--json");

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 using testing::run_program;
 
 /// One effect of 20 times the noise; a name that is it, or is another.
-CampaignRecord told_by_name(bool right) {
+CampaignRecord named_record(bool right) {
   CampaignRecord record;
   record.row = "listed";
   HiddenRecord& hidden = record.hidden.emplace_back();
@@ -57,12 +57,12 @@ RuleCampaign campaign_of(CampaignRecord record, double seconds, const char* deci
   return campaign;
 }
 
-TEST(RuleStudy, CountsWhatIsToldOtherwise) {
-  RuleCampaign kept = campaign_of(told_by_name(true), 2.0, "recheck");
-  kept.without["recheck"] = told_by_name(false);
+TEST(RuleStudy, CountsWhatIsReportedOtherwise) {
+  RuleCampaign kept = campaign_of(named_record(true), 2.0, "recheck");
+  kept.without["recheck"] = named_record(false);
   kept.seconds_without["recheck"] = 1.5;
-  RuleCampaign same = campaign_of(told_by_name(true), 2.0, "recheck");
-  same.without["recheck"] = told_by_name(true);
+  RuleCampaign same = campaign_of(named_record(true), 2.0, "recheck");
+  same.without["recheck"] = named_record(true);
   same.seconds_without["recheck"] = 2.5;
   RuleCampaign silent = campaign_of(nothing_hidden("NOTHING_ABOVE"), 1.0, "estimated-noise");
   silent.without["estimated-noise"] = nothing_hidden("UNKNOWN");
@@ -70,16 +70,16 @@ TEST(RuleStudy, CountsWhatIsToldOtherwise) {
   const auto rows = cli::rows_of({kept, same, silent}, {"recheck", "estimated-noise", "one-cause"});
   ASSERT_EQ(rows.size(), 4U);
   const auto counts = [&](std::size_t row) {
-    const cli::ToldOfCampaigns& told = rows[row].told;
-    return std::vector{rows[row].decided, rows[row].changed, told.right,
-                       told.wrong,        told.alarms,       told.removed};
+    const cli::RuleCounts& counted = rows[row].counts;
+    return std::vector{rows[row].decided, rows[row].changed, counted.right,
+                       counted.wrong,     counted.alarms,    counted.removed};
   };
   EXPECT_EQ(counts(0), (std::vector{0, 0, 2, 0, 0, 2}));
   EXPECT_EQ(counts(1), (std::vector{2, 1, 1, 1, 0, 1})) << "a wrong name leaves half of 20 sigma squared";
   EXPECT_EQ(counts(2), (std::vector{1, 1, 2, 0, 1, 2}));
   EXPECT_EQ(counts(3), (std::vector{0, 0, 2, 0, 0, 2}));
-  EXPECT_DOUBLE_EQ(rows[0].told.seconds, 5.0);
-  EXPECT_DOUBLE_EQ(rows[1].told.seconds, 1.5 + 2.5 + 1.0);
+  EXPECT_DOUBLE_EQ(rows[0].counts.seconds, 5.0);
+  EXPECT_DOUBLE_EQ(rows[1].counts.seconds, 1.5 + 2.5 + 1.0);
 }
 
 TEST(RuleStudy, RefusesARuleThatThereIsNot) {
@@ -106,7 +106,7 @@ TEST(RuleStudy, GoesOnWhereItEndedAndIsItsOwn) {
 }
 
 TEST(RuleStudy, CriticismKeepsCampaignsWithoutARuleApart) {
-  VOLCAL_FOR_THE_NIGHT("RuleStudy.CountsWhatIsToldOtherwise counts them apart by hand");
+  VOLCAL_FOR_THE_NIGHT("RuleStudy.CountsWhatIsReportedOtherwise counts them apart by hand");
   const testing::ScratchFolder folder;
   const std::string kept = (folder.path() / "kept").string();
   const std::string study = "study criticism --rows partial -n 1 --seed 5 --readings 400 ";

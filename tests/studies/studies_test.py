@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/studies with a program that prints what it is told: runs what the page says, once for each program, goes on
+"""scripts/studies with a program that prints its arguments: runs what the page says, once for each program, goes on
 with what was interrupted, and shows the lines of the page that were not printed.
 """
 

@@ -25,6 +25,7 @@ constexpr auto kWords = std::to_array<RuleWords>({
     {NamesTogether, "names-together", "several names are tried at once against a scan"},
     {AbsorbedEffects, "absorbed-effects", "effects that the noise may hold are tested jointly with it"},
     {AbsorbedScans, "absorbed-scans", "scans that the noise may hold are tested jointly with it"},
+    {OneAmplitude, "one-amplitude", "no name of several axes is added whose amplitude differs between them"},
     {Departure, "departure", "a name that is weak beside the others leaves"},
     {Exchange, "exchange", "a better name replaces another"},
     {LeavesMore, "leaves-more", "no name: what it leaves is less probable than it"},

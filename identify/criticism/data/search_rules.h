@@ -21,6 +21,7 @@ enum class SearchRule {
   NamesTogether,      ///< several names at once against a scan
   AbsorbedEffects,    ///< effects that the noise may hold
   AbsorbedScans,      ///< scans that the noise may hold
+  OneAmplitude,       ///< no name of several axes is added whose amplitude differs between them
   Departure,          ///< a name that is weak beside the others leaves
   Exchange,           ///< a better name replaces another
   LeavesMore,         ///< no name: what it leaves is less probable than it

@@ -93,24 +93,25 @@ ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
   return least;
 }
 
+bool acts_in_several_places(const Family& family) {
+  return family.effect && family.effect->terms().size() > family.effect->amplitudes().size();
+}
+
 double log10_p_of_one_amplitude(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
-                                const Projector& projector, const std::optional<ScoreTest>& own) {
-  if (!family.effect) return 0.0;
+                                const Projector& projector) {
+  const auto score_of = [&projector](const Eigen::MatrixXd& columns) {
+    return score_test(projector.project(columns), 0, columns.cols());
+  };
   const auto places = single_terms(family.effect);
-  const auto count = static_cast<Eigen::Index>(places.size());
-  if (count <= family.amplitudes()) return 0.0;
-  // Of columns that the projector holds the last place follows from the others.
-  Eigen::MatrixXd apart(static_cast<Eigen::Index>(model.size()), own ? count : count - 1);
-  for (Eigen::Index place = 0; place < apart.cols(); ++place) {
+  Eigen::MatrixXd apart(static_cast<Eigen::Index>(model.size()), static_cast<Eigen::Index>(places.size()));
+  for (std::size_t place = 0; place < places.size(); ++place) {
     Family alone = family;
-    alone.effect = places[static_cast<std::size_t>(place)];
-    apart.col(place) = family_columns(model, alone, shape).col(0);
+    alone.effect = places[place];
+    apart.col(static_cast<Eigen::Index>(place)) = family_columns(model, alone, shape).col(0);
   }
-  const ScoreTest all = score_test(projector.project(apart), 0, apart.cols());
-  if (!own) return all.log10_p;
-  if (all.dof <= own->dof) return 0.0;
-  const double more = std::max(0.0, all.lm - own->lm);
-  return std::log10(std::max(1e-300, chi_squared_exceedance(more, all.dof - own->dof)));
+  const ScoreTest each = score_of(apart), together = score_of(family_columns(model, family, shape));
+  if (each.dof <= together.dof) return 0.0;
+  return log10_chi_squared_exceedance(std::max(0.0, each.lm - together.lm), each.dof - together.dof);
 }
 
 }  // namespace volcal

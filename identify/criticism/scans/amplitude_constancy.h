@@ -6,7 +6,6 @@
 /// variable: a few degrees of freedom along the effect's own derivative see what a scan of the whole volume
 /// misses.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +30,13 @@ std::vector<ScanVariable> travel_since_turning(const LinearModel& model);
 ConstancyTest least_constant(const Family& family, const Eigen::VectorXd& moved,
                              const std::vector<ScanVariable>& variables, const Projector& projector);
 
-/// log10 p that an effect of several places (Effect::terms) has one amplitude in all of them; 0 for an effect
-/// of a single place. `own`: the score test of the effect where it is not in the projector, which else holds
-/// its columns.
+/// Whether an amplitude acts in more than one place (Effect::terms).
+bool acts_in_several_places(const Family& family);
+
+/// log10 p that such an effect has one amplitude in all its places: the likelihood ratio of an amplitude for
+/// each against one for all, in the linear model. `projector` holds neither the effect nor what acts in one
+/// of its places alone.
 double log10_p_of_one_amplitude(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
-                                const Projector& projector, const std::optional<ScoreTest>& own);
+                                const Projector& projector);
 
 }  // namespace volcal

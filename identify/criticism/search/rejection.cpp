@@ -22,26 +22,30 @@ std::string shape_word(const EffectShape& shape) {
 
 Finding rejected(FindingCode code, const Family& family) { return {code, {{"effect", family.label()}}}; }
 
-/// Added effects that act in one of the places of an effect of several, and would hide that it differs there.
-std::set<std::size_t> in_places_of(const ModelState& state, std::size_t family) {
-  std::set<std::size_t> others;
-  const auto places = state.setting().families[family].effect->terms();
-  for (std::size_t i = 0; i < state.added().size(); ++i) {
-    const Family& own = state.family_of(state.added()[i]);
-    if (state.added()[i].test.family == family || !own.effect) continue;
-    const auto acts_there = [&](const EffectTerm& term) {
-      return std::ranges::any_of(places, [&](const EffectTerm& place) {
-        return place.target.kind == TargetKind::Motion && term.target.kind == TargetKind::Motion &&
-               place.target.symbol == term.target.symbol;
-      });
-    };
-    if (std::ranges::any_of(own.effect->terms(), acts_there)) others.insert(i);
-  }
-  return others;
+bool acts_in_place_of(const Family& one, const Family& other) {
+  if (!one.effect || !other.effect) return false;
+  const auto symbols_of = [](const Family& family) {
+    std::set<ErrorSymbol> symbols;
+    for (const EffectTerm& term : family.effect->terms()) {
+      if (term.target.kind == TargetKind::Motion) symbols.insert(term.target.symbol);
+    }
+    return symbols;
+  };
+  const std::set<ErrorSymbol> places = symbols_of(other);
+  return std::ranges::any_of(symbols_of(one),
+                             [&](const ErrorSymbol& symbol) { return places.contains(symbol); });
 }
 
-bool has_several_places(const Family& family) {
-  return family.effect && family.effect->terms().size() > family.effect->amplitudes().size();
+/// log10 p that an effect of several places has one amplitude, in the model without `added`, which it may be,
+/// and without all that acts in its places and would hide that it differs there; 0 for one of a single place.
+double log10_constancy_over_places(const ModelState& state, const FamilyTest& test, std::size_t added) {
+  const Family& family = state.setting().families[test.family];
+  if (!acts_in_several_places(family)) return 0.0;
+  std::set<std::size_t> without = {added};
+  for (std::size_t i = 0; i < state.added().size(); ++i) {
+    if (acts_in_place_of(state.family_of(state.added()[i]), family)) without.insert(i);
+  }
+  return log10_p_of_one_amplitude(state.model(), family, test.shape, *state.projector_without(without));
 }
 
 /// `first`: of its columns among the projector's parameters.
@@ -151,13 +155,9 @@ bool Rejection::lies_beyond_its_scan(std::size_t added) const {
 
 ConstancyTest Rejection::constancy(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
-  const Family& family = state_.family_of(effect);
-  const ConstancyTest least =
-      constancy_of(state_, family, effect.columns, state_.first_column(added), state_.projector());
-  if (!has_several_places(family)) return least;
-  const auto alone = state_.projector_without(in_places_of(state_, effect.test.family));
-  const double one_amplitude =
-      log10_p_of_one_amplitude(state_.model(), family, effect.test.shape, *alone, {});
+  const ConstancyTest least = constancy_of(state_, state_.family_of(effect), effect.columns,
+                                           state_.first_column(added), state_.projector());
+  const double one_amplitude = log10_constancy_over_places(state_, effect.test, added);
   return one_amplitude < least.log10_p ? ConstancyTest{"axis", one_amplitude} : least;
 }
 
@@ -168,13 +168,8 @@ double Rejection::log10_constancy_of_rival(std::size_t added, const FamilyTest& 
   const auto projector = state_.projector_without({added});
   const Eigen::Index first = projector->parameters();
   const Eigen::MatrixXd columns = accept(state_.model(), family, rival, *projector);
-  const double log10_p = constancy_of(state_, family, columns, first, *projector).log10_p;
-  if (!has_several_places(family)) return log10_p;
-  std::set<std::size_t> others = in_places_of(state_, rival.family);
-  others.insert(added);
-  const auto alone = state_.projector_without(others);
-  accept(state_.model(), family, rival, *alone);
-  return std::min(log10_p, log10_p_of_one_amplitude(state_.model(), family, rival.shape, *alone, {}));
+  return std::min(constancy_of(state_, family, columns, first, *projector).log10_p,
+                  log10_constancy_over_places(state_, rival, added));
 }
 
 std::vector<AddedEffect> Rejection::drop_inconsistent_rivals() const {

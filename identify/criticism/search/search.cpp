@@ -42,8 +42,9 @@ bool scan_does_better(const GenericTest& scan, double log10_p, const Evidence& n
 /// One cause on several axes is a name where its amplitude is the same on all of them.
 bool acts_alike_in_its_places(const ModelState& state, const FamilyTest& test) {
   const Family& family = state.setting().families[test.family];
-  return log10_p_of_one_amplitude(state.model(), family, test.shape, state.projector(), test.score) >
-         std::log10(kThresholds.constancy_risk);
+  return !acts_in_several_places(family) ||
+         log10_p_of_one_amplitude(state.model(), family, test.shape, state.projector()) >
+             std::log10(kThresholds.constancy_risk);
 }
 
 }  // namespace
@@ -221,7 +222,8 @@ void Search::climb() {
 
 bool Search::may_be_added(const FamilyTest& test) const {
   return test.score.dof > 0 && !state_->has(test.family) && !rejected_.contains(test.family) &&
-         !dropped_.contains(test.family) && acts_alike_in_its_places(*state_, test);
+         !dropped_.contains(test.family) &&
+         !rules().decide(SearchRule::OneAmplitude, [&] { return !acts_alike_in_its_places(*state_, test); });
 }
 
 /// The best of those that are not in the model; null: none.

@@ -112,6 +112,16 @@ TEST(Dense, SolvesPositiveDefiniteSystemsAndRefusesOthers) {
   EXPECT_THROW(solve_positive_definite(a, Eigen::Vector2d(8.0, 8.0)), std::runtime_error);
 }
 
+/// By hand, of parts of larger matrices too.
+TEST(Dense, MultipliesMatricesAndParts) {
+  Eigen::MatrixXd a(3, 3), b(2, 2);
+  a << 9.0, 9.0, 9.0, 1.0, 2.0, 9.0, 3.0, 4.0, 9.0;
+  b << 5.0, 6.0, 7.0, 8.0;
+  const Eigen::MatrixXd expected = (Eigen::MatrixXd(2, 2) << 19.0, 22.0, 43.0, 50.0).finished();
+  EXPECT_EQ(product(a.block(1, 0, 2, 2), b), expected);
+  EXPECT_EQ(product(Eigen::MatrixXd(2, 0), Eigen::MatrixXd(0, 3)), Eigen::MatrixXd::Zero(2, 3));
+}
+
 TEST(Dense, MatricesWithoutRowsOrColumnsAreNoCase) {
   const Eigen::MatrixXd none(0, 0);
   ::testing::internal::CaptureStdout();
@@ -126,8 +136,8 @@ TEST(Dense, MatricesWithoutRowsOrColumnsAreNoCase) {
   EXPECT_EQ(null_space(Eigen::MatrixXd(0, 2)).cols(), 2);
   EXPECT_EQ(solve_positive_definite(none, Eigen::MatrixXd(0, 3)).cols(), 3);
   EXPECT_EQ(least_squares(Eigen::MatrixXd(3, 0), Eigen::Vector3d::Ones()).rank, 0);
-  Eigen::MatrixXd product(0, 0), right(0, 2);
-  outer_product_upper(nullptr, 0, 3, product);
+  Eigen::MatrixXd outer(0, 0), right(0, 2);
+  outer_product_upper(nullptr, 0, 3, outer);
   solve_lower(none, right);
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "LAPACK writes of what it refuses";
 }

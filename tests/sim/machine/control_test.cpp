@@ -93,7 +93,7 @@ TEST(Control, CorrectionsComeInWholeSteps) {
   EXPECT_NEAR(added(compensation, state_at(0.35, 0, 0, 1)).y(), 3e-6, 1e-18) << "2.8 um";
 }
 
-// EBX = 10 urad at x = 1 m moves the point of a tool of -200 mm by -2 um in x. The control is told so, and
+// EBX = 10 urad at x = 1 m moves the point of a tool of -200 mm by -2 um in x. The control knows it, and
 // adds 2 um; the compensation stands in the table as minus the error.
 TEST(Control, ModelsUseTheToolThatTheyWereTold) {
   ControlModel model{testing_support::machine_of("w b X Y Z t"), {0.0, 0.0, -0.2}, {}, {}, {}};

@@ -5,10 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "volcal/identify/cli/commands/studies/rule_names.h"
+#include "volcal/identify/cli/commands/studies/criticism_options.h"
 #include "volcal/identify/cli/commands/studies/studies.h"
 #include "volcal/identify/cli/commands/studies/study_run.h"
-#include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/text/atomic_folder.h"
@@ -114,7 +113,7 @@ int write_one(const CriticismArguments& arguments) {
 int run_criticism_study(CriticismArguments arguments) {
   if (!arguments.one.empty()) return write_one(arguments);
   CriticismOptions& options = arguments.options;
-  if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
+  complete_rows(options);
   for (const std::string& name : arguments.without) {
     if (const auto rule = search_rule_of(name)) options.without.insert(*rule);
   }
@@ -130,20 +129,7 @@ int run_criticism_study(CriticismArguments arguments) {
 std::function<int()> define_criticism_study(CLI::App& app) {
   auto arguments = std::make_shared<CriticismArguments>();
   CriticismOptions& options = arguments->options;
-  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
-  app.add_option("--rows", options.rows, fmt::format("{}; default: all", fmt::join(rows, ", ")))
-      ->delimiter(',')
-      ->check(CLI::IsMember(rows));
-  app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")
-      ->check(positive())
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
-  app.add_option("--readings", options.readings, "of a campaign, about")
-      ->check(CLI::Range(400, 100'000))
-      ->capture_default_str();
-  app.add_option("-o,--output", options.output,
-                 "folder that keeps every finished campaign (campaigns.jsonl)");
-  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  add_campaign_options(app, options, "campaigns.jsonl");
   app.add_option("--one", arguments->one,
                  "ROW:INDEX: write this campaign to the output folder, and what is hidden in it, and stop");
   app.add_option("--without", arguments->without, "rules that are left out, names of volcal study rules")

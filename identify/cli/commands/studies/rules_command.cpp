@@ -3,12 +3,10 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "volcal/identify/cli/commands/studies/rule_names.h"
+#include "volcal/identify/cli/commands/studies/criticism_options.h"
 #include "volcal/identify/cli/commands/studies/studies.h"
 #include "volcal/identify/cli/commands/studies/study_run.h"
-#include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/report/text/text_tables.h"
-#include "volcal/studies/criticism/criticism_plan.h"
 #include "volcal/studies/criticism/rule_study.h"
 
 namespace volcal::cli {
@@ -32,10 +30,10 @@ std::string rules_text(const RulesArguments& arguments, const std::vector<RuleCa
   for (const RuleRow& row : rows_of(campaigns, arguments.options.rules)) {
     const bool all = row.rule.empty();
     table.add_row({all ? "none" : row.rule, all ? "-" : count_number(row.decided),
-                   all ? "-" : count_number(row.changed), count_number(row.told.right),
-                   count_number(row.told.wrong), count_number(row.told.alarms),
-                   fmt::format("{} of {}", row.told.removed, row.told.of_removed),
-                   fixed_number(row.told.seconds, 0)});
+                   all ? "-" : count_number(row.changed), count_number(row.counts.right),
+                   count_number(row.counts.wrong), count_number(row.counts.alarms),
+                   fmt::format("{} of {}", row.counts.removed, row.counts.of_removed),
+                   fixed_number(row.counts.seconds, 0)});
   }
   return fmt::format("rules of the search, {} campaigns of about {} readings, seeds from {}\n\n{}",
                      campaigns.size(), count_number(arguments.options.readings), arguments.options.seed,
@@ -53,18 +51,18 @@ nlohmann::ordered_json rules_json(const RulesArguments& arguments,
     json["rows"].push_back({{"without", row.rule},
                             {"decided", row.decided},
                             {"changed", row.changed},
-                            {"right", row.told.right},
-                            {"wrong", row.told.wrong},
-                            {"false_alarms", row.told.alarms},
-                            {"removed", {{"count", row.told.removed}, {"of", row.told.of_removed}}},
-                            {"processor_s", row.told.seconds}});
+                            {"right", row.counts.right},
+                            {"wrong", row.counts.wrong},
+                            {"false_alarms", row.counts.alarms},
+                            {"removed", {{"count", row.counts.removed}, {"of", row.counts.of_removed}}},
+                            {"processor_s", row.counts.seconds}});
   }
   return json;
 }
 
 int run_rules(RulesArguments arguments) {
   RuleStudyOptions& options = arguments.options;
-  if (options.rows.empty()) options.rows.assign(criticism_rows().begin(), criticism_rows().end());
+  complete_rows(options);
   if (options.rules.empty()) options.rules = names_of_rules();
   ProgressBar bar("rules");
   options.progress = counted_on(bar, "campaigns");
@@ -78,22 +76,11 @@ int run_rules(RulesArguments arguments) {
 std::function<int()> define_rules(CLI::App& app) {
   auto arguments = std::make_shared<RulesArguments>();
   RuleStudyOptions& options = arguments->options;
-  const std::vector<std::string> rows(criticism_rows().begin(), criticism_rows().end());
-  app.add_option("--rows", options.rows, fmt::format("{}; default: all", fmt::join(rows, ", ")))
-      ->delimiter(',')
-      ->check(CLI::IsMember(rows));
+  options.campaigns = 5;
+  add_campaign_options(app, options, "rules.jsonl");
   app.add_option("--without", options.rules, described_rules() + "; default: each in turn")
       ->delimiter(',')
       ->check(CLI::IsMember(names_of_rules()));
-  app.add_option("-n,--campaigns", options.campaigns, "per row; row null: per kind of noise")
-      ->check(positive())
-      ->capture_default_str();
-  app.add_option("--seed", options.seed, "of the first campaign, the others follow")->capture_default_str();
-  app.add_option("--readings", options.readings, "of a campaign, about")
-      ->check(CLI::Range(400, 100'000))
-      ->capture_default_str();
-  app.add_option("-o,--output", options.output, "folder that keeps every finished campaign (rules.jsonl)");
-  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
   add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_rules(*arguments); };
 }

@@ -14,7 +14,7 @@ for (const section of drawn) {
   if (section.textContent.length < 40) throw new Error(`section ${section.id} is empty`);
 }
 
-/** Whoever does not see the page is told what every table and plot is. */
+/** Every table and plot has a name for whoever does not see the page. */
 function checkNames() {
   for (const table of view.pages.querySelectorAll('table')) {
     if (table.querySelectorAll('tr').length === 0) continue;

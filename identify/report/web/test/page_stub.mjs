@@ -10,7 +10,7 @@ function checkText(text) {
   if (wrong.test(text)) throw new Error(`shows "${text}"`);
 }
 
-/** Everything that a plot is told, at any depth. */
+/** Everything that a plot is given, at any depth. */
 function checkPlot(value, path) {
   if (value === undefined || value === null || typeof value === 'boolean') return;
   if (typeof value === 'number') {

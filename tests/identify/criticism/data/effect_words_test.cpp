@@ -98,7 +98,7 @@ TEST(Variable, NamesAreReadAgain) {
     EXPECT_EQ(Variable::parse(text), std::nullopt) << text;
 }
 
-/// What scans see nearly alike is told in this order.
+/// What scans see nearly alike is reported in this order.
 TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
   const auto rank = [](const std::vector<std::string>& names, const std::string& direction) {
     return complexity_rank(testing_support::variables_named(names), direction);

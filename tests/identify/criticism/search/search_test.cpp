@@ -48,8 +48,13 @@ std::vector<std::string> kinds_and_targets(const std::vector<EffectFinding>& fin
   return all;
 }
 
+/// A reversal of all axes explains most of two of different size, and is no name for them.
 TEST(Search, AStepTellsTheFirstEffectAndThatMoreHasAName) {
   const FittedStudy study(hiding({reversal("EXX", 0.7e-6), reversal("EYY", 0.5e-6)}, kGrid));
+  const Diagnosis both = searched(study, true);
+  EXPECT_EQ(to_string(both.verdict), "NAMED");
+  EXPECT_THAT(kinds_and_targets(both.effects),
+              ::testing::UnorderedElementsAre("reversal EXX", "reversal EYY"));
   const Diagnosis step = searched(study, false);
   EXPECT_EQ(to_string(step.verdict), "NAMED_MORE_REMAINS");
   EXPECT_THAT(kinds_and_targets(step.effects), ::testing::ElementsAre("reversal EXX"));
@@ -134,8 +139,7 @@ TEST(Search, NamesOneCauseOnAllAxes) {
   EXPECT_NEAR(b.value, 1.6e-6, 3.0 * b.u);
 }
 
-/// What decides says so, what
-/// is left out decides nothing, and what decided nothing changes nothing.
+/// What decides says so, what is left out decides nothing, and what decided nothing changes nothing.
 TEST(Search, TellsWhichRulesDecide) {
   FittedStudy study(hiding({reversal("EXX", 0.7e-6)}, kGrid));
   const auto searched_without = [&](std::set<SearchRule> off, std::set<SearchRule>& decided) {
@@ -228,7 +232,7 @@ TEST(Search, AReversalThatIsTakenUpOnTheWayGetsNoName) {
   EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
 }
 
-/// A screw that no name of the catalogue stands for is told by its period.
+/// A screw that no name of the catalogue stands for is reported by its period.
 TEST(Search, AWaveWithoutANameIsToldByItsPeriod) {
   sim::HiddenEffect lead = hidden_beside("screw-lead", "EXX", 0.6e-6);
   lead.options.set("period", 10.3e-3);

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "volcal/identify/errors/volume_uncertainty.h"
+#include "volcal/identify/errors/volume/volume_uncertainty.h"
 #include "volcal/model/description/errors.h"
 
 namespace volcal {

@@ -8,7 +8,7 @@
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/compensation_tables.h"
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal {
 

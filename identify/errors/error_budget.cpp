@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "volcal/identify/errors/error_grid.h"
-#include "volcal/identify/errors/volume_moments.h"
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volume_moments.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/statistics/quadratic_form.h"
 

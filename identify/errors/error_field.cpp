@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "volcal/identify/errors/effects/effect_displacements.h"
 #include "volcal/identify/errors/linear_axis_errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
@@ -16,11 +17,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kEdgeOfMeasured = 1e-6;  // m or rad
-
-const JointLever& joint_lever(const JointLever* levers, std::size_t count, AxisName axis) {
-  return *std::find_if(levers, levers + count,
-                       [axis](const JointLever& lever) { return lever.axis == axis; });
-}
 
 /// Displacement and rotation of the tool per unit of an error motion.
 PoseErrorVector motion_column(const JointLever& lever, Component component) {
@@ -327,63 +323,15 @@ struct LinearDisplacements::Parts {
     double home;    ///< m
   };
   std::vector<Strain> strains;
-  MachineEffects coupled;
-  MachineEffects single;                        ///< effects of one axis; empty where `polynomials` hold them
+  EffectDisplacements coupled, single;          ///< single: of one axis; empty where `polynomials` hold them
   std::optional<LinearAxisErrors> polynomials;  ///< in place of the chain
 
-  /// Displacement by one unit of an amplitude's driver: linear in the positions of the linear axes.
-  struct Lever {
-    Vector3d at_zero;
-    Eigen::Matrix3d per_metre;
-
-    Vector3d at(const AxisPosition& position) const {
-      return at_zero + per_metre * Vector3d(position[0], position[1], position[2]);
-    }
-  };
-  std::vector<Lever> coupled_levers, single_levers;  ///< by amplitude
-
-  std::vector<Lever> levers_of(const MachineEffects& effects) const;
-  Vector3d of_effects(const MachineEffects& effects, std::span<const Lever> levers,
-                      const AxisPosition& position, const ApproachDirection& direction) const;
+  Vector3d of_effects(const EffectDisplacements& effects, const AxisPosition& position,
+                      const ApproachDirection& direction) const {
+    const AxisPosition linear = without_rotary_axes(position);
+    return effects.at(linear, measured.held(linear), direction);
+  }
 };
-
-std::vector<LinearDisplacements::Parts::Lever> LinearDisplacements::Parts::levers_of(
-    const MachineEffects& effects) const {
-  const auto at = [&](const EffectTarget& target, const AxisPosition& position) -> Vector3d {
-    if (target.kind == TargetKind::ToolOffset) return Vector3d::Unit(target.component);
-    if (target.kind != TargetKind::Motion || is_rotary(target.symbol.axis)) return Vector3d::Zero();
-    JointLever levers[kAxisCount];
-    chain.levers(position, tool.offset, levers);
-    return KinematicChain::motion_lever_w(joint_lever(levers, chain.joint_count(), target.symbol.axis),
-                                          target.symbol.component);
-  };
-  std::vector<Lever> levers;
-  for (std::size_t c = 0; c < effects.amplitude_count(); ++c) {
-    const EffectTarget& target = effects.columns()[c].target;
-    Lever lever{at(target, {}), Eigen::Matrix3d::Zero()};
-    for (const AxisName axis : kLinearAxes) {
-      AxisPosition a_metre_on{};
-      a_metre_on[index_of(axis)] = 1.0;
-      lever.per_metre.col(direction_of(axis)) = at(target, a_metre_on) - lever.at_zero;
-    }
-    levers.push_back(lever);
-  }
-  return levers;
-}
-
-Vector3d LinearDisplacements::Parts::of_effects(const MachineEffects& effects, std::span<const Lever> levers,
-                                                const AxisPosition& position,
-                                                const ApproachDirection& direction) const {
-  const AxisPosition held = measured.held(position);
-  const Eigen::MatrixXd drivers = effects.drivers({&held, 1}, {&direction, 1});
-  Vector3d displacement = Vector3d::Zero();
-  for (std::size_t c = 0; c < levers.size(); ++c) {
-    const double value =
-        parameters[effects.columns()[c].parameter] * drivers(0, static_cast<Eigen::Index>(c));
-    displacement += value * levers[c].at(position);
-  }
-  return displacement;
-}
 
 bool is_of_own_axis(const MachineEffects& effects, std::size_t effect) {
   for (std::size_t c = 0; c < effects.amplitude_count(); ++c) {
@@ -405,17 +353,19 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
   std::vector<std::size_t> single, coupled;
   for (std::size_t e = 0; e < effects.effect_count(); ++e)
     (is_of_own_axis(effects, e) ? single : coupled).push_back(e);
-  auto parts = std::make_shared<Parts>(Parts{KinematicChain(result.machine),
+  const KinematicChain chain(result.machine);
+  const MachineEffects of_own_axis = effects.subset(single);
+  std::optional<LinearAxisErrors> polynomials = LinearAxisErrors::make(result, tool.offset, of_own_axis);
+  const MachineEffects left = polynomials ? of_own_axis.subset(polynomials->effects_left_out()) : of_own_axis;
+  auto parts = std::make_shared<Parts>(Parts{chain,
                                              tool,
                                              result.layout,
                                              result.parameters,
                                              MeasuredTravel(result),
                                              {},
-                                             effects.subset(coupled),
-                                             effects.subset(single),
-                                             {},
-                                             {},
-                                             {}});
+                                             {result, chain, tool, effects.subset(coupled)},
+                                             {result, chain, tool, left},
+                                             std::move(polynomials)});
   for (const Axis& axis : result.machine.axes) {
     if (!axis.expansion || is_rotary(axis.name)) continue;
     const double excess = temperature_excess_at(conditions, axis.expansion->channel);
@@ -425,12 +375,6 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
       strain += result.parameters[block->offset] * excess;
     if (strain != 0.0) parts->strains.push_back({index_of(axis.name), strain, axis.home});
   }
-  parts->polynomials = LinearAxisErrors::make(result, tool.offset, parts->single);
-  if (parts->polynomials) {
-    parts->single = parts->single.subset(parts->polynomials->effects_left_out());
-  }
-  parts->coupled_levers = parts->levers_of(parts->coupled);
-  parts->single_levers = parts->levers_of(parts->single);
   parts_ = std::move(parts);
 }
 
@@ -450,9 +394,7 @@ Vector3d LinearDisplacements::rigid(const AxisPosition& position, const Approach
   }
   for (const Parts::Strain& each : parts_->strains)
     displacement[static_cast<Eigen::Index>(each.axis)] += each.strain * (position[each.axis] - each.home);
-  if (!parts_->single.empty())
-    displacement +=
-        parts_->of_effects(parts_->single, parts_->single_levers, without_rotary_axes(position), direction);
+  if (!parts_->single.empty()) displacement += parts_->of_effects(parts_->single, position, direction);
   return displacement;
 }
 
@@ -463,8 +405,7 @@ Vector3d LinearDisplacements::at(const AxisPosition& position, const ApproachDir
 Vector3d LinearDisplacements::coupled(const AxisPosition& position,
                                       const ApproachDirection& direction) const {
   if (!has_coupled()) return Vector3d::Zero();
-  return parts_->of_effects(parts_->coupled, parts_->coupled_levers, without_rotary_axes(position),
-                            direction);
+  return parts_->of_effects(parts_->coupled, position, direction);
 }
 
 std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> LinearDisplacements::coupled_units(
@@ -474,25 +415,17 @@ std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> LinearDisplacements::coupl
     linear[i] = without_rotary_axes(positions[i]);
     held[i] = parts_->measured.held(linear[i]);
   }
-  const MachineEffects& effects = parts_->coupled;
-  const Eigen::MatrixXd drivers = effects.drivers(held, directions);
-  std::vector<Eigen::Matrix<double, 3, Eigen::Dynamic>> units;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    auto& of_pose = units.emplace_back(3, drivers.cols());
-    for (Eigen::Index c = 0; c < drivers.cols(); ++c)
-      of_pose.col(c) = drivers(static_cast<Eigen::Index>(i), c) *
-                       parts_->coupled_levers[static_cast<std::size_t>(c)].at(linear[i]);
-  }
-  return units;
+  return parts_->coupled.units(linear, held, directions);
 }
 
-const MachineEffects& LinearDisplacements::coupled_effects() const { return parts_->coupled; }
+const MachineEffects& LinearDisplacements::coupled_effects() const { return parts_->coupled.effects(); }
 
 bool LinearDisplacements::has_coupled() const { return !parts_->coupled.empty(); }
 
 bool LinearDisplacements::is_of_two_axes() const {
-  for (const EffectColumn& column : parts_->coupled.columns()) {
-    if (parts_->coupled.reach(column.effect).positions() > 1) return false;
+  const MachineEffects& effects = parts_->coupled.effects();
+  for (const EffectColumn& column : effects.columns()) {
+    if (effects.reach(column.effect).positions() > 1) return false;
   }
   return true;
 }

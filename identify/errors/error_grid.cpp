@@ -406,41 +406,42 @@ class ErrorGrid::Conditional {
       rotation_.push_back(sum_planes(plane_of(shared, first)));
   }
 
-  /// Adds to the covariance of the displacement.
+  /// Adds J C_e0 + C_0e J^T + J C_ee J^T to the covariance of the displacement.
   void add_covariance(std::size_t node, Covariance3& covariance) const {
     const auto rows = rows_of(node).topRows<3>();
-    Matrix3d added = Matrix3d::Zero();
-    for (std::size_t j = 0; j < displacement_.size(); ++j) {
-      const Matrix3d both = rows.col(static_cast<Eigen::Index>(j)) * displacement_[j][node].transpose();
-      added += both + both.transpose();
-    }
     for (Eigen::Index j = 0; j < own_.cols(); ++j) {
-      for (Eigen::Index i = 0; i < own_.rows(); ++i)
-        added += own_(i, j) * (rows.col(i) * rows.col(j).transpose());
+      const Vector3d row = rows.col(j);
+      const Vector3d half = displacement_[static_cast<std::size_t>(j)][node] + half_of_own(rows, j);
+      covariance.xx += 2.0 * row[0] * half[0];
+      covariance.xy += row[0] * half[1] + row[1] * half[0];
+      covariance.xz += row[0] * half[2] + row[2] * half[0];
+      covariance.yy += 2.0 * row[1] * half[1];
+      covariance.yz += row[1] * half[2] + row[2] * half[1];
+      covariance.zz += 2.0 * row[2] * half[2];
     }
-    covariance.xx += added(0, 0);
-    covariance.xy += added(0, 1);
-    covariance.xz += added(0, 2);
-    covariance.yy += added(1, 1);
-    covariance.yz += added(1, 2);
-    covariance.zz += added(2, 2);
   }
 
   void add(std::size_t node, NodeError& error) const {
     const auto rows = rows_of(node);
     error.value += grid_.field_.condition_value(positions_[node], rows);
-    for (std::size_t j = 0; j < displacement_.size(); ++j) {
-      PoseErrorVector shared;
-      shared << displacement_[j][node], rotation_[j][node];
-      error.variance += 2.0 * rows.col(static_cast<Eigen::Index>(j)).cwiseProduct(shared);
-    }
     for (Eigen::Index j = 0; j < own_.cols(); ++j) {
-      for (Eigen::Index i = 0; i < own_.rows(); ++i)
-        error.variance += own_(i, j) * rows.col(i).cwiseProduct(rows.col(j));
+      const auto place = static_cast<std::size_t>(j);
+      PoseErrorVector half = half_of_own(rows, j);
+      half.head<3>() += displacement_[place][node];
+      half.tail<3>() += rotation_[place][node];
+      error.variance += 2.0 * rows.col(j).cwiseProduct(half);
     }
   }
 
  private:
+  /// Half of C_ee J^T, the column of one parameter.
+  template <class Rows>
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, 1> half_of_own(const Rows& rows, Eigen::Index j) const {
+    Eigen::Matrix<double, Rows::RowsAtCompileTime, 1> sum = 0.5 * own_(0, j) * rows.col(0);
+    for (Eigen::Index i = 1; i < own_.rows(); ++i) sum += 0.5 * own_(i, j) * rows.col(i);
+    return sum;
+  }
+
   PoseErrorRows::ConstColsBlockXpr rows_of(std::size_t node) const {
     const auto count = static_cast<Eigen::Index>(parameters_.size());
     return rows_.middleCols(static_cast<Eigen::Index>(node) * count, count);

@@ -173,7 +173,8 @@ class AxisEffects {
     std::vector<std::size_t> kept;
     for (const std::size_t effect : effects_of_axis(effects)) {
       const std::vector<std::size_t> one = {effect};
-      (is_polynomial(effects.subset(one)) ? kept : left_out_).push_back(effect);
+      const bool declared = effects.is_polynomial(effect);
+      (declared && is_polynomial(effects.subset(one)) ? kept : left_out_).push_back(effect);
     }
     effects_ = effects.subset(kept);
   }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/standards/iso230_2.h"
 #include "volcal/identify/standards/iso230_3.h"

@@ -150,6 +150,9 @@ struct EffectSchema {
   std::string kind;
   std::string summary;
   std::string source;
+  /// Its drivers are, for given directions of approach and conditions, polynomials in the positions of linear
+  /// axes, at most cubic in each.
+  bool polynomial = false;
   std::vector<KeySchema> keys;
 };
 

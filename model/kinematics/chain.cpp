@@ -29,6 +29,11 @@ Matrix3d nominal_rotation(int direction, double angle) {
 
 }  // namespace
 
+const JointLever& joint_lever(const JointLever* levers, std::size_t count, AxisName axis) {
+  return *std::find_if(levers, levers + count,
+                       [axis](const JointLever& lever) { return lever.axis == axis; });
+}
+
 KinematicChain::KinematicChain(const Machine& machine) {
   joints_.reserve(machine.structure.joints.size());
   for (const Joint& joint : machine.structure.joints) {

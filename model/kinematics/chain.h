@@ -47,6 +47,9 @@ struct JointLever {
   Eigen::Vector3d arm_s = Eigen::Vector3d::Zero();
 };
 
+/// The lever of an axis, which must be among the `count` levers.
+const JointLever& joint_lever(const JointLever* levers, std::size_t count, AxisName axis);
+
 /// First-order displacement and rotation of the tool, split by side of the bed; workpiece coordinates.
 struct ToolTwist {
   Eigen::Vector3d displacement_w = Eigen::Vector3d::Zero();

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "volcal/identify/errors/error_tables.h"
-#include "volcal/identify/errors/remaining_error.h"
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/remaining_error.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal::report {
 namespace {

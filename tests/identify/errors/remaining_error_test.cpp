@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/remaining_error.h"
+#include "volcal/identify/errors/volume/remaining_error.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/volume_uncertainty.h"
+#include "volcal/identify/errors/volume/volume_uncertainty.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
 #include "volcal/identify/compensation/volume_check.h"
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 
 namespace volcal {
 namespace {

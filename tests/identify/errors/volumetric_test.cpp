@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 
 #include <gtest/gtest.h>
 

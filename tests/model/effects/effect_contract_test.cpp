@@ -156,6 +156,46 @@ TEST_F(EffectContract, DriversAreFiniteRepeatableAndNotNothing) {
   }
 }
 
+/// Fifth differences over the readings of a setup whose positions are moved along one linear axis in equal
+/// steps, all else held: 0 for a polynomial of fourth degree, so for a cubic.
+TEST_F(EffectContract, DeclaredPolynomialsAreSo) {
+  constexpr std::size_t kSteps = 6;
+  constexpr double kBinomial[kSteps] = {-1, 5, -10, 10, -5, 1};
+  const MeasurementModel model(campaign_, model_without_functions());
+  const std::vector<SetupView> views = setup_views(campaign_, model.binding(), model.chain());
+  std::set<std::string> declared, curved;
+  for (const auto& [kind, spec, effect] : candidates_) {
+    if (effect->amplitudes()[0].target.kind != TargetKind::Motion) continue;
+    bool is_curved = false;
+    for (const Axis& axis : campaign_.machine.axes) {
+      if (is_rotary(axis.name)) continue;
+      Campaign moved = campaign_;
+      std::vector<Eigen::MatrixXd> steps;
+      double largest = 0.0;
+      for (std::size_t step = 0; step < kSteps; ++step) {
+        Readings& readings = moved.setups[0].readings;
+        readings = campaign_.setups[0].readings;
+        for (double& position : readings.position[index_of(axis.name)])
+          position = axis.travel_min + (0.1 + 0.137 * static_cast<double>(step)) * axis.travel();
+        SetupView view{moved,           moved.setups[0],      views[0].nominal_point_w,
+                       views[0].length, views[0].clock_start, views[0].is_path};
+        steps.push_back(effect->drivers(view, effect->shape_values()));
+        largest = std::max(largest, steps.back().cwiseAbs().maxCoeff());
+      }
+      Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(steps[0].rows(), steps[0].cols());
+      for (std::size_t step = 0; step < kSteps; ++step) difference += kBinomial[step] * steps[step];
+      is_curved = is_curved || difference.cwiseAbs().maxCoeff() > 1e-9 * largest;
+    }
+    if (is_curved) curved.insert(spec.kind);
+    if (kind->schema().polynomial) {
+      EXPECT_FALSE(is_curved) << effect->amplitudes()[0].label;
+      declared.insert(spec.kind);
+    }
+  }
+  EXPECT_GE(declared.size(), 10U);
+  EXPECT_TRUE(curved.contains("lead-error")) << "the test sees no wave";
+}
+
 /// Prediction and derivatives of a model with the effect, against differences of the prediction.
 TEST_F(EffectContract, DerivativesAreThoseOfThePrediction) {
   for (const auto& [kind, spec, effect] : candidates_) {

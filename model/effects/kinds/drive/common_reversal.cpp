@@ -63,6 +63,7 @@ const EffectKind& common_reversal_effect() {
            "several error motions differ by the same b between the directions of approach of their own "
            "axes: one cause in several drives",
        .source = "ISO 230-2:2014, 3.11 (reversal value)",
+       .polynomial = true,
        .keys = joined({{shared_symbols_key("error motions that jump alike: \"EXX EYY EZZ\"")},
                        motion_amplitude_keys({""}, "b of each: value towards + minus value towards -")})},
       make_common_reversal, common_reversals);

@@ -37,6 +37,7 @@ const EffectKind& curved_reversal_effect() {
        .summary = "the reversal of an error motion changes with the square of the position of its own axis; "
                   "counted from home, beside reversal and position-reversal",
        .source = "ISO 230-2:2014, 3.11 (reversal value at a position)",
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion whose reversal changes: EXX ...")},
                        motion_amplitude_keys({"per_m2"}, "change of b per square metre of travel")})},
       make_curved_reversal, curved_reversals);

@@ -12,6 +12,7 @@ EffectSchema position_reversal_schema() {
               "the reversal of an error motion changes along the travel of its own axis by this much per "
               "metre; counted from home",
           .source = "ISO 230-2:2014, 3.11 (reversal value at a position)",
+          .polynomial = true,
           .keys = joined({{symbol_key("error motion whose reversal changes: EXX ...")},
                           motion_amplitude_keys({"per_m"}, "change of b per metre of travel")})};
 }

@@ -13,6 +13,7 @@ EffectSchema reversal_schema() {
               "an error motion differs by b between the two directions of approach of its own axis; the "
               "error function is the mean, readings of unknown direction get 0",
           .source = "ISO 230-1 and ISO 230-2 (reversal value), as quoted in ISO/TR 16907:2015",
+          .polynomial = true,
           .keys = joined({{symbol_key("error motion that jumps at reversal: EXX, EYX, ECX ...")},
                           motion_amplitude_keys({""}, "b: value towards + minus value towards -")})};
 }

@@ -44,6 +44,7 @@ const EffectKind& thermal_reversal_effect() {
        .summary = "the reversal of an error motion changes with a temperature by this much per kelvin; "
                   "counted from 20 degC",
        .source = "ISO 230-2:2014, 3.11 (reversal value), ISO 230-3 (thermal effects)",
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion whose reversal changes: EXX ..."),
                         text_key("temperature", "channel: column T_<channel>_degC")},
                        motion_amplitude_keys({"per_K"}, "change of b per kelvin")})},

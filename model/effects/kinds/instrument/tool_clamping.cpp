@@ -51,6 +51,7 @@ const EffectKind& tool_clamping_effect() {
        .summary = "the tool, or its reflector, was clamped anew for a setup and sits otherwise than in the "
                   "other setups that carry it",
        .source = "ISO/TR 16907:2015, 3.2 and 7.1 (functional point)",
+       .polynomial = true,
        .keys = joined({{text_key("setup", "name of the setup")},
                        vector_amplitude_keys("um",
                                              "offset in this setup less that in the others, tool "

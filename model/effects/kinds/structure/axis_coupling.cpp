@@ -21,6 +21,7 @@ EffectSchema coupling_schema() {
               "an error motion of one axis depends on the position of another: ram droop EAY(z), cross table "
               "EBX(y), cantilever z^2 and z^3; counted from the other axis's home",
           .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
+          .polynomial = true,
           .keys = joined({{symbol_key("error motion that changes: EAY, EBX ..."),
                            axis_key("axis", "axis on whose position it depends"),
                            {.key = "shape",

@@ -129,6 +129,7 @@ const EffectKind& product_coupling_effect() {
       {.kind = "product-coupling",
        .summary = "an error motion depends on the product of two axes' positions, counted from their homes",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
+       .polynomial = true,
        .keys = joined(
            {{symbol_key("error motion that changes: EAX ..."), axis_key("axis", "first axis of the product"),
              axis_key("second_axis", "second axis of the product")},
@@ -144,6 +145,7 @@ const EffectKind& tool_load_effect() {
            "the weight of a tool tilts what carries it: an error motion is larger by this with the tool, or "
            "with every tool in proportion to its length",
        .source = "ISO/TR 16907:2015, 8.6 (workpiece and tool mass)",
+       .polynomial = true,
        .keys = joined(
            {{symbol_key("error motion that changes: EAZ ..."),
              text_key("tool", "name of the tool; absent = all, by their length", false)},

@@ -114,6 +114,7 @@ const EffectKind& triple_coupling_effect() {
        .summary = "an error motion depends on the product of three positions, of which two may be of one "
                   "axis: a ram that bends more the further its saddle is out, y z^2; counted from home",
        .source = "ISO/TR 16907:2015, 7.4.2 (non-rigid behaviour)",
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion that changes: EAY ..."),
                         text_key("axes", "the three factors, \"Y Z Z\" for y z^2")},
                        motion_amplitude_keys({"per_m3"}, "change per cubic metre")})},

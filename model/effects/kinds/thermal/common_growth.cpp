@@ -58,6 +58,7 @@ const EffectKind& common_growth_effect() {
            "the positioning errors of several axes grow alike, in proportion to the distance from home, "
            "towards a final value after the first reading",
        .source = "ISO 230-3:2020, 6 (environmental temperature variation), first order",
+       .polynomial = true,
        .keys = joined({{shared_axes_key("axes that grow alike: \"X Y Z\"")},
                        motion_amplitude_keys({"per_m"}, "final growth"),
                        shape_keys("time_constant", "s", "of the growth")})},

@@ -54,6 +54,7 @@ const EffectKind& lagged_temperature_effect() {
        .summary = "an error motion shifts with a temperature, but late: a (T1 - 20 degC), T1 follows the "
                   "channel with a time constant from the first reading on",
        .source = "ISO 230-3 (distortion caused by temperature); first-order lag of a lumped thermal mass",
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion that shifts: EAZ ..."),
                         text_key("temperature", "channel: column T_<channel>_degC")},
                        shape_keys("time_constant", "s", "of the lag"),
@@ -69,6 +70,7 @@ const EffectKind& lagged_expansion_effect() {
        .summary = "spindle or tool follow a temperature late: a (T1 - 20 degC), tool coordinates, T1 follows "
                   "the channel with a time constant from the first reading on",
        .source = "ISO 230-3 (distortion caused by temperature); first-order lag of a lumped thermal mass",
+       .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},
                        shape_keys("time_constant", "s", "of the lag"),
                        vector_amplitude_keys("um_per_K", "displacement per kelvin")})},

@@ -50,6 +50,7 @@ const EffectKind& temperature_rate_effect() {
            "warmer than its core: a (T - T1), T1 follows the channel with a time constant tau, so that "
            "slow changes give a tau dT/dt",
        .source = kSource,
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion that bends: EAZ ..."),
                         text_key("temperature", "channel: column T_<channel>_degC")},
                        shape_keys("time_constant", "s", kConstant),
@@ -66,6 +67,7 @@ const EffectKind& tool_rate_effect() {
            "spindle or tool follow how fast a temperature changes: a (T - T1), tool coordinates, T1 follows "
            "the channel with a time constant tau, so that slow changes give a tau dT/dt",
        .source = kSource,
+       .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},
                        shape_keys("time_constant", "s", kConstant),
                        vector_amplitude_keys("um_per_K", "displacement per kelvin between skin and core")})},

@@ -217,6 +217,7 @@ const EffectKind& scale_expansion_effect() {
       {.kind = "scale-expansion",
        .summary = "the scale of an axis expands with a temperature: alpha (T - 20 degC) per metre from home",
        .source = "ISO/TR 16907:2015, 8.3; ISO 230-3 (thermal effects)",
+       .polynomial = true,
        .keys = {axis_key("axis", "axis whose scale expands"),
                 text_key("temperature", "channel: column T_<channel>_degC"),
                 amplitude_key("amplitude_um_per_m_K", "coefficient of expansion")}},
@@ -229,6 +230,7 @@ const EffectKind& thermal_drift_effect() {
       {.kind = "thermal-drift",
        .summary = "an error motion shifts with a temperature, column and ram tilt above all: a (T - 20 degC)",
        .source = "ISO 230-3 (distortion caused by temperature)",
+       .polynomial = true,
        .keys = joined({{symbol_key("error motion that shifts: EAZ ..."),
                         text_key("temperature", "channel: column T_<channel>_degC")},
                        motion_amplitude_keys({"per_K"}, "shift per kelvin")})},
@@ -241,6 +243,7 @@ const EffectKind& spindle_growth_effect() {
       {.kind = "spindle-growth",
        .summary = "the spindle moves the tool as it warms up: a (1 - exp(-t/tau)) from the first reading on",
        .source = "ISO 230-3 (distortion caused by the rotating spindle)",
+       .polynomial = true,
        .keys = joined({shape_keys("time_constant", "s", "tau"),
                        vector_amplitude_keys("um", "final displacement in tool coordinates")})},
       make_spindle_growth, spindle_growths);
@@ -252,6 +255,7 @@ const EffectKind& tool_expansion_effect() {
       {.kind = "tool-expansion",
        .summary = "spindle or tool move with a temperature: a (T - 20 degC), tool coordinates",
        .source = "ISO 230-3 (distortion caused by the rotating spindle)",
+       .polynomial = true,
        .keys = joined({{text_key("temperature", "channel: column T_<channel>_degC")},
                        vector_amplitude_keys("um_per_K", "displacement per kelvin")})},
       make_tool_expansion, tool_expansions);
@@ -263,6 +267,7 @@ const EffectKind& screw_heating_effect() {
       {.kind = "screw-heating",
        .summary = "a ball screw warms up and stretches: a q (1 - exp(-t/tau)), q from home",
        .source = "ISO 230-3 (distortion caused by linear motion)",
+       .polynomial = true,
        .keys = joined({{axis_key("axis", "axis that the screw drives")},
                        shape_keys("time_constant", "s", "tau"),
                        motion_amplitude_keys({"per_m"}, "final stretch per metre")})},
@@ -276,6 +281,7 @@ const EffectKind& squareness_drift_effect() {
        .summary = "two axes turn against each other slowly: squareness changes in proportion to time or to a "
                   "temperature",
        .source = "ISO 230-3 (environmental temperature variation)",
+       .polynomial = true,
        .keys = {symbol_key("squareness that drifts: EC0Y, EA0Z, EB0Z"),
                 text_key("temperature", "channel that drives it; absent = time", false),
                 amplitude_key("amplitude_urad_per_h", "change per hour"),

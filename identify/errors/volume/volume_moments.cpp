@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/volume_moments.h"
+#include "volcal/identify/errors/volume/volume_moments.h"
 
 #include <Eigen/Geometry>
 #include <vector>

@@ -60,6 +60,10 @@ class MachineEffects {
   const std::string& label(std::size_t effect) const;
   const EffectReach& reach(std::size_t effect) const;
   std::size_t effect_count() const;
+  /// Numbers of the effects that are asked for here: of a subset() those of the subset.
+  std::span<const std::size_t> numbers() const { return used_; }
+  /// EffectSchema::polynomial of its kind.
+  bool is_polynomial(std::size_t effect) const;
 
   /// Drivers, poses x amplitudes; `direction` holds one entry for all poses or one each.
   Eigen::MatrixXd drivers(std::span<const AxisPosition> positions,

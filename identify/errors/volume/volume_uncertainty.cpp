@@ -1,10 +1,10 @@
-#include "volcal/identify/errors/volume_uncertainty.h"
+#include "volcal/identify/errors/volume/volume_uncertainty.h"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "volcal/identify/errors/volume_moments.h"
+#include "volcal/identify/errors/volume/volume_moments.h"
 
 namespace volcal {
 namespace {

@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/machine_effects.h"
+#include "volcal/identify/errors/effects/machine_effects.h"
 
 #include <algorithm>
 #include <atomic>
@@ -133,6 +133,7 @@ struct MachineEffects::Shared {
     Eigen::VectorXd shape;
     EffectReach reach;
     std::array<bool, kAxisCount> uneven{};
+    bool polynomial = false;
   };
 
   Shared(const FitResult& result, const Tool& of_tool, const Conditions& at)
@@ -289,6 +290,7 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
         if (const ParameterBlock* block = result.layout.find_block(shapes[s].label))
           one.shape[static_cast<Eigen::Index>(s)] = result.parameters[block->offset];
       }
+      one.polynomial = kind->schema().polynomial;
       one.uneven = probe->uneven_directions(*one.effect, one.reach);
       shared->effects.push_back(std::move(one));
     }
@@ -320,6 +322,7 @@ MachineEffects::MachineEffects(const FitResult& result, const Tool& tool, const 
 const std::string& MachineEffects::label(std::size_t effect) const { return shared_->effects[effect].label; }
 const EffectReach& MachineEffects::reach(std::size_t effect) const { return shared_->effects[effect].reach; }
 std::size_t MachineEffects::effect_count() const { return shared_->effects.size(); }
+bool MachineEffects::is_polynomial(std::size_t effect) const { return shared_->effects[effect].polynomial; }
 
 MachineEffects MachineEffects::subset(std::span<const std::size_t> effects) const {
   MachineEffects part = *this;

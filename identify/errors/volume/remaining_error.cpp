@@ -1,9 +1,9 @@
-#include "volcal/identify/errors/remaining_error.h"
+#include "volcal/identify/errors/volume/remaining_error.h"
 
 #include <cstdint>
 #include <random>
 
-#include "volcal/identify/errors/volumetric.h"
+#include "volcal/identify/errors/volume/volumetric.h"
 #include "volcal/identify/numeric/dense.h"
 
 namespace volcal {

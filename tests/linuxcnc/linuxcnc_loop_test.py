@@ -3,11 +3,13 @@
 Usage: linuxcnc_loop_test.py VOLCAL     (the program; exit 77 where there is no LinuxCNC)
 """
 
+import concurrent.futures
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -15,6 +17,7 @@ LOOP = ROOT / "scripts" / "linuxcnc-loop"
 SKIPPED = 77
 POINTS = 32  # from both sides
 FEW = 4  # of tables that must be found wrong
+AT_ONCE = 6  # LinuxCNCs: each moves its axes in real time and leaves the processors alone
 
 # Reversals differ by axis in size and sign, so that no swap of axes or directions goes unseen.
 STUDY = """format = "volcal-study-1"
@@ -188,10 +191,11 @@ class RotaryAxes(Loop):
     OPTIONS = ("--step", 100, "--rotary-step", 15)
 
     def setUp(self):
-        for name, structure in {"table": "w C' A' b X Y Z t", "head": "w X' b Y Z C B t"}.items():
-            if name not in FIVE_AXES:
-                folder = pathlib.Path(tempfile.mkdtemp(dir=WORK))
-                FIVE_AXES[name] = identify_five_axes(structure, folder)
+        with IDENTIFYING:
+            for name, structure in {"table": "w C' A' b X Y Z t", "head": "w X' b Y Z C B t"}.items():
+                if name not in FIVE_AXES:
+                    folder = pathlib.Path(tempfile.mkdtemp(dir=WORK))
+                    FIVE_AXES[name] = identify_five_axes(structure, folder)
 
     def five(self, name, points, *options):
         return loop("--volumetric", "--points", points, "--", *self.OPTIONS, *options, result=FIVE_AXES[name])
@@ -237,8 +241,29 @@ class RotaryAxes(Loop):
             self.assertIn(what, done.stderr)
 
 
+class SideBySide(unittest.TestSuite):
+    def run(self, result, debug=False):
+        def alone(test):
+            own = unittest.TestResult()
+            test.run(own)
+            return own
+
+        with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool:
+            for own in pool.map(alone, self):
+                result.testsRun += own.testsRun
+                result.failures += own.failures
+                result.errors += own.errors
+        return result
+
+
+def load_tests(loader, _tests, _pattern):
+    cases = (AxisTables, Volume, RotaryAxes)
+    return SideBySide(test for case in cases for test in loader.loadTestsFromTestCase(case))
+
+
 if __name__ == "__main__":
     FIVE_AXES = {}
+    IDENTIFYING = threading.Lock()
     if len(sys.argv) < 2:
         sys.exit(__doc__)
     PROGRAM = pathlib.Path(sys.argv.pop(1)).resolve()

@@ -17,6 +17,7 @@ constexpr auto kWords = [] {
   using enum SearchRule;
   return std::to_array<RuleWords>({
       {OneCause, "one-cause", "a curve takes the place of two names"},
+      {WiderSurface, "wider-surface", "a surface of more variables takes the place of one and a name"},
       {Surfaces, "surfaces", "what has no name is drawn"},
       {CrossedFindings, "crossed-findings", "surfaces of one scan's variables on another's target"},
       {ReplacedSurfaces, "replaced-surfaces", "names are tried in the place of surfaces"},

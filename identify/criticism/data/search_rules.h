@@ -13,6 +13,7 @@ namespace volcal {
 
 enum class SearchRule {
   OneCause,           ///< a curve takes the place of two names
+  WiderSurface,       ///< a surface of more variables takes the place of one and a name
   Surfaces,           ///< what has no name is drawn
   CrossedFindings,    ///< surfaces of one scan's variables on another's target
   ReplacedSurfaces,   ///< names in the place of surfaces

@@ -195,14 +195,13 @@ std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParam
   return make_projector(without(model_.problem().data, setting_->heldout), noise);
 }
 
-std::unique_ptr<Projector> ModelState::projector_without_surface(const AddedSurface& surface) const {
+std::unique_ptr<Projector> ModelState::projector_without_surface(
+    const AddedSurface& surface, const std::set<std::size_t>& left_out) const {
   const LinearModel model = model_.without_surface(surface.term);
   auto projector =
       std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise_,
                                   setting_->threads, model.parts());
-  Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
-  for (const AddedEffect& effect : added_) append_columns(effect.columns, columns);
-  if (columns.cols() > 0) projector->accept(columns);
+  accept_added(left_out, *projector);
   return projector;
 }
 
@@ -211,12 +210,16 @@ std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,
                                                       const std::set<std::size_t>& left_out) const {
   auto projector =
       std::make_unique<Projector>(model_.problem(), data, noise, setting_->threads, model_.parts());
+  accept_added(left_out, *projector);
+  return projector;
+}
+
+void ModelState::accept_added(const std::set<std::size_t>& left_out, Projector& projector) const {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model_.size()), 0);
   for (std::size_t i = 0; i < added_.size(); ++i) {
     if (!left_out.contains(i)) append_columns(added_[i].columns, columns);
   }
-  if (columns.cols() > 0) projector->accept(columns);
-  return projector;
+  if (columns.cols() > 0) projector.accept(columns);
 }
 
 Eigen::VectorXd ModelState::residual() const {

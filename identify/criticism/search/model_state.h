@@ -98,8 +98,9 @@ class ModelState {
   NoiseProblem problem() const;
   /// Without some of the added effects, by their places.
   std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
-  /// At the same noise and smoothing.
-  std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface) const;
+  /// At the same noise and smoothing, `left_out` of the added effects.
+  std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface,
+                                                       const std::set<std::size_t>& left_out = {}) const;
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
   /// From all readings, those that are held out as well.
   std::unique_ptr<Projector> projector_of_all_readings() const;
@@ -109,6 +110,7 @@ class ModelState {
  private:
   std::unique_ptr<Projector> make_projector(const NoiseData& data, const std::vector<NoiseParameters>& noise,
                                             const std::set<std::size_t>& left_out = {}) const;
+  void accept_added(const std::set<std::size_t>& left_out, Projector& projector) const;
   void find_noise();
   bool refine_shape_of_last();
   bool reinstate_outliers();

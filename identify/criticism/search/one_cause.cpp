@@ -50,6 +50,7 @@ double parameters_of(const ModelState& state, const AddedEffect& added) {
          (family.scan.size() > 1 ? static_cast<double>(added.test.shape.size()) : 0.0);
 }
 
+/// What pairs are judged by: the prices of names and surfaces, and the best so far.
 class OneCauseSearch {
  public:
   explicit OneCauseSearch(const ModelState& state)
@@ -57,14 +58,23 @@ class OneCauseSearch {
         log_count_(std::log(static_cast<double>(state.projector().observations()))),
         log_families_(std::numbers::ln10 * state.setting().log10_families) {}
 
-  std::optional<OneCause> run() {
+  std::optional<OneCause> of_names() {
     for (std::size_t i = 0; i < state_.added().size(); ++i) {
       const auto finding = finding_of(state_, state_.added()[i]);
       if (!finding) continue;
       const std::vector<EffectSpec> specs = surfaces_for(state_.model(), *finding);
       if (specs.empty()) continue;
       for (std::size_t k = 0; k < state_.added().size(); ++k) {
-        if (k != i && may_be_one(i, k)) try_pair(i, k, specs.front(), *finding);
+        if (k != i && may_be_one(i, k)) try_names(i, k, specs.front(), *finding);
+      }
+    }
+    return std::move(best_);
+  }
+
+  std::optional<OneCause> of_surface_and_name() {
+    for (std::size_t s = 0; s < state_.surfaces().size(); ++s) {
+      for (std::size_t k = 0; k < state_.added().size(); ++k) {
+        if (const auto finding = wider(state_.surfaces()[s], state_.added()[k])) try_surface(s, k, *finding);
       }
     }
     return std::move(best_);
@@ -77,22 +87,66 @@ class OneCauseSearch {
     return !other.resolution && !is_part_of(one, other);
   }
 
+  /// What a surface of its own variable and those of the name would be drawn for.
+  std::optional<UnknownFinding> wider(const AddedSurface& surface, const AddedEffect& added) const {
+    const auto& options = surface.spec.options;
+    const EffectTarget& target = surface.effect->amplitudes().front().target;
+    if (target.kind != TargetKind::Motion || options.has("factor") || options.has("only"))
+      return std::nullopt;
+    std::vector<std::string> variables = names_of(scan_variables_of(surface.effect->name()));
+    const std::vector<std::string> of_name = names_of(scan_variables_of(state_.family_of(added).name()));
+    const auto among = [](const std::vector<std::string>& all, const std::string& one) {
+      return std::ranges::find(all, one) != all.end();
+    };
+    if (variables.size() != 1) return std::nullopt;
+    for (const std::string& one : of_name) {
+      if (!among(variables, one)) variables.push_back(one);
+    }
+    if (variables.size() != kVariablesTogether) return std::nullopt;
+    UnknownFinding finding = surface.finding;
+    finding.variables = std::move(variables);
+    finding.with_one_of.clear();
+    finding.rotation = target.symbol.name();
+    return finding;
+  }
+
   /// `spec`: of all drivers of the first.
-  void try_pair(std::size_t first, std::size_t second, const EffectSpec& spec,
-                const UnknownFinding& finding) {
-    std::shared_ptr<const Effect> effect = find_effect(spec.kind)->make(spec, {});
-    if (state_.has_surface(effect->name())) return;
+  void try_names(std::size_t first, std::size_t second, const EffectSpec& spec,
+                 const UnknownFinding& finding) {
     const auto without = state_.projector_without({first, second});
     const double lm = without->residual_squares() - state_.projector().residual_squares();
     const double parameters =
         parameters_of(state_, state_.added()[first]) + parameters_of(state_, state_.added()[second]);
     const double of_names = 0.5 * lm - 0.5 * parameters * log_count_ - 2.0 * log_families_;
-    const double evidence = surface_evidence(state_.model(), *without, *effect);
-    const double margin = evidence - log_families_ - of_names;
+    judge(*without, spec, finding, of_names, {first, second}, std::nullopt);
+  }
+
+  void try_surface(std::size_t surface, std::size_t name, const UnknownFinding& finding) {
+    const std::vector<EffectSpec> specs = surfaces_for(state_.model(), finding);
+    if (specs.empty()) return;
+    const AddedSurface& own = state_.surfaces()[surface];
+    const auto without = state_.projector_without_surface(own, {name});
+    const double lm =
+        state_.projector_without({name})->residual_squares() - state_.projector().residual_squares();
+    const double of_name =
+        0.5 * lm - 0.5 * parameters_of(state_, state_.added()[name]) * log_count_ - log_families_;
+    const double of_surface = surface_evidence(state_.model(), *without, *own.effect) - log_families_;
+    judge(*without, specs.front(), finding, of_surface + of_name, {name}, surface);
+  }
+
+  /// The surface over the model without the pair, against the evidence of the pair less its price.
+  void judge(const Projector& without, const EffectSpec& spec, const UnknownFinding& finding, double of_pair,
+             const std::set<std::size_t>& names, std::optional<std::size_t> surface) {
+    std::shared_ptr<const Effect> effect = find_effect(spec.kind)->make(spec, {});
+    if (state_.has_surface(effect->name())) return;
+    const double evidence = surface_evidence(state_.model(), without, *effect);
+    const double margin = evidence - log_families_ - of_pair;
     if (evidence < kThresholds.surface_evidence || margin <= best_margin_) return;
     best_margin_ = margin;
-    best_ = OneCause{{spec, std::move(effect), finding, evidence}, {first, second}};
+    best_ = OneCause{{spec, std::move(effect), finding, evidence}, names, surface};
   }
+
+  static constexpr std::size_t kVariablesTogether = 2;
 
   const ModelState& state_;
   double log_count_;
@@ -103,6 +157,10 @@ class OneCauseSearch {
 
 }  // namespace
 
-std::optional<OneCause> one_cause_of_two(const ModelState& state) { return OneCauseSearch(state).run(); }
+std::optional<OneCause> one_cause_of_two(const ModelState& state) { return OneCauseSearch(state).of_names(); }
+
+std::optional<OneCause> one_cause_of_surface_and_name(const ModelState& state) {
+  return OneCauseSearch(state).of_surface_and_name();
+}
 
 }  // namespace volcal

@@ -87,7 +87,9 @@ void Search::run() {
   explain();
   while (may_draw() && draw_one_cause()) explain();
   names_before_surfaces_ = state_->added().size();
-  while (may_draw() && draw_surface()) explain();
+  do {
+    while (may_draw() && draw_surface()) explain();
+  } while (widen_surface());
   replace_surfaces();
   if (!options_.climb) keep_one_step();
   recall_rejected();
@@ -136,13 +138,42 @@ bool Search::draw_one_cause() {
   const std::optional<OneCause> cause = one_cause_of_two(*state_);
   if (!cause) return false;
   rules().tell(SearchRule::OneCause);
+  in_place_of_names_.insert(cause->surface.effect->name());
+  draw(cause->surface, kept_beside(*cause));
+  return true;
+}
+
+/// Where a surface lacks a variable that a name took up. False: nowhere.
+bool Search::widen_surface() {
+  if (base_->surfaces().empty() || state_->added().empty() || !rules().follows(SearchRule::WiderSurface))
+    return false;
+  report("one surface in the place of one and a name", 0.9);
+  const std::optional<OneCause> cause = one_cause_of_surface_and_name(*state_);
+  if (!cause) return false;
+  rules().tell(SearchRule::WiderSurface);
+  in_place_of_names_.insert(cause->surface.effect->name());
+  std::vector<SurfaceTest> surfaces = surfaces_but(*cause->replaces_surface);
+  surfaces.push_back(cause->surface);
+  rebuild(surfaces, kept_beside(*cause));
+  explain();
+  return true;
+}
+
+std::vector<FamilyTest> Search::kept_beside(const OneCause& cause) const {
   std::vector<FamilyTest> kept;
   for (std::size_t i = 0; i < state_->added().size(); ++i) {
-    if (!cause->replaces.contains(i)) kept.push_back(state_->added()[i].test);
+    if (!cause.replaces.contains(i)) kept.push_back(state_->added()[i].test);
   }
-  in_place_of_names_.insert(cause->surface.effect->name());
-  draw(cause->surface, kept);
-  return true;
+  return kept;
+}
+
+std::vector<SurfaceTest> Search::surfaces_but(std::size_t place) const {
+  const std::vector<AddedSurface>& all = base_->surfaces();
+  std::vector<SurfaceTest> others;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k != place) others.push_back({all[k].spec, all[k].effect, all[k].finding, all[k].log_evidence});
+  }
+  return others;
 }
 
 void Search::draw(const SurfaceTest& surface, const std::vector<FamilyTest>& kept) {
@@ -165,12 +196,8 @@ void Search::replace_surfaces() {
     report("names in the place of " + effect_label(*all[i].effect), 0.9);
     const ModelState base = *base_, state = *state_;
     const Reasons rejected = rejected_;
-    std::vector<SurfaceTest> others;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      if (k != i) others.push_back({all[k].spec, all[k].effect, all[k].finding, all[k].log_evidence});
-    }
     rules().tell(SearchRule::ReplacedSurfaces);
-    rebuild(others, added_tests(state_->added()));
+    rebuild(surfaces_but(i), added_tests(state_->added()));
     explain();
     if (!something_exceeds() && unknown_findings(*state_, rejected_).empty()) continue;
     base_ = base;

@@ -5,17 +5,16 @@
 /// added and each effect's rivals, and what was rejected and why. SI; log10 p.
 ///
 ///   1. climb: the leading effect of the catalogue is added while it exceeds the noise and no scan does
-///   better;
-///      where a scan does, up to three names together; where nothing exceeds, what the noise may have
+///      better; where a scan does, up to three names together; where nothing exceeds, what the noise may have
 ///      absorbed (joint_noise.h),
 ///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
-///   leave,
+///      leave,
 ///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
 ///   4. where a curve of one name's drivers explains as much as that name and another together, the curve
-///   takes their place (one_cause.h),
+///      takes their place (one_cause.h),
 ///   5. while a scan exceeds, a surface or curve is drawn for it (surface_search.h), and the climb goes on
-///   with
-///      it in the model; in the end, where other surfaces or names came in, names are tried in its place.
+///      with it in the model; a surface of more variables may take its place and that of a name
+///      (one_cause.h); in the end, where other surfaces or names came in, names are tried in its place.
 ///
 /// A search for one step climbs as well, so that what it names stands beside all the rest, and then keeps the
 /// first. Margins: thresholds.h. Valid as long as effects act linearly about the fit. Results do not depend
@@ -30,6 +29,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/identify/criticism/search/one_cause.h"
 #include "volcal/identify/criticism/search/rejection.h"
 #include "volcal/identify/criticism/search/surface_search.h"
 
@@ -71,6 +71,9 @@ class Search {
   bool may_draw() const;
   bool draw_one_cause();
   bool draw_surface();
+  bool widen_surface();
+  std::vector<FamilyTest> kept_beside(const OneCause& cause) const;
+  std::vector<SurfaceTest> surfaces_but(std::size_t place) const;
   void draw(const SurfaceTest& surface, const std::vector<FamilyTest>& kept);
   void replace_surfaces();
   void begin_anew();

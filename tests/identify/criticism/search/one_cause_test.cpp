@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <optional>
+#include <set>
 #include <string>
 
 #include "tests/support/search_states.h"
+#include "volcal/model/effects/registry.h"
 
 namespace volcal {
 namespace {
@@ -29,6 +33,35 @@ sim::HiddenEffect squareness_that_drifts() {
   sim::HiddenEffect effect{.kind = "squareness-drift", .options = {}, .rms = 2.0e-6};
   effect.options.set("symbol", std::string("EC0Y"));
   return effect;
+}
+
+sim::HiddenEffect expansion_of_y() {
+  sim::HiddenEffect effect{.kind = "scale-expansion", .options = {}, .rms = 2.0e-6};
+  effect.options.set("axis", std::string("Y"));
+  effect.options.set("channel", std::string("column"));
+  return effect;
+}
+
+sim::HiddenEffect roll_along_y() {
+  sim::HiddenEffect effect{.kind = "cross-axis", .options = {}, .rms = 3.0e-6};
+  effect.options.set("symbol", std::string("EAZ"));
+  effect.options.set("by", std::string("Y"));
+  effect.options.set("power", 2.0);
+  return effect;
+}
+
+/// With a curve of EAZ by y and the expansion of Y by the column's temperature in the model.
+ModelState with_a_curve_and_a_name(const LinearModel& model) {
+  const ModelState given = ModelState(model, setting_of(model)).tested();
+  UnknownFinding finding;
+  finding.variables = {"y"};
+  finding.direction = "Z";
+  finding.rotation = "EAZ";
+  const EffectSpec spec = surfaces_for(model, finding).at(0);
+  const std::shared_ptr<const Effect> curve = find_effect(spec.kind)->make(spec, {});
+  const double evidence = surface_evidence(model, given.projector(), *curve);
+  const ModelState drawn = given.with_surface({spec, curve, finding, evidence}, {}).tested();
+  return drawn.with(test_of(drawn, {"scale-expansion", "EYY", "T_column", "linear"})).tested();
 }
 
 /// With the tilt by the temperature itself and the drift of a squareness in the model.
@@ -69,6 +102,28 @@ TEST(OneCause, TwoNamesOfOneFunctionStay) {
   const ModelState one = given.with(test_of(given, {"reversal", "EYY", "dir_y", "step"})).tested();
   const ModelState two = one.with(test_of(one, {"position-reversal", "EYY", "dir_y y", ""})).tested();
   EXPECT_FALSE(one_cause_of_two(two).has_value());
+}
+
+/// A roll that grows with y and with the temperature together: a curve by y leaves the temperature's part to
+/// the name that is most like it.
+TEST(OneCause, ASurfaceOfTwoVariablesTakesThePlaceOfACurveAndAName) {
+  sim::HiddenEffect tilt = tilt_by("thermal-tilt", 3.0e-6);
+  tilt.options.set("by", std::string("Y"));
+  const FittedStudy study(hiding({tilt}, kOneCauseGrid));
+  const ModelState state = with_a_curve_and_a_name(study.model);
+  const auto cause = one_cause_of_surface_and_name(state);
+  ASSERT_TRUE(cause.has_value());
+  EXPECT_EQ(cause->replaces, std::set<std::size_t>{0});
+  EXPECT_EQ(cause->replaces_surface, std::optional<std::size_t>(0));
+  EXPECT_EQ(cause->surface.effect->name().target, "EAZ");
+  EXPECT_EQ(cause->surface.effect->name().driver, "y T_column");
+  EXPECT_GT(cause->surface.log_evidence, state.surfaces()[0].log_evidence);
+}
+
+/// A roll by y alone, and an expansion: a surface of both variables does not do what they do together.
+TEST(OneCause, ACurveAndANameThatAreBothThereStay) {
+  const FittedStudy study(hiding({roll_along_y(), expansion_of_y()}, kOneCauseGrid));
+  EXPECT_FALSE(one_cause_of_surface_and_name(with_a_curve_and_a_name(study.model)).has_value());
 }
 
 }  // namespace

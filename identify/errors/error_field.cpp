@@ -30,8 +30,6 @@ PoseErrorVector motion_column(const JointLever& lever, Component component) {
   return column;
 }
 
-Component positioning_of(AxisName axis) { return kAllComponents[index_of(axis)]; }
-
 double temperature_excess_at(const Conditions& conditions, const std::string& channel) {
   const auto stated = conditions.temperature_degC.find(channel);
   return stated == conditions.temperature_degC.end() ? 0.0 : stated->second - kReferenceTemperature_degC;
@@ -113,7 +111,7 @@ PoseErrors<double> ErrorField::errors_at(const AxisPosition& position, const App
   for (const Expansion& expansion : expansions_) {
     const double deviation =
         expansion.parameter < 0 ? 0.0 : parameters_[expansion.parameter] * expansion.excess;
-    errors.motion[index_of(expansion.axis)][index_of(positioning_of(expansion.axis))] +=
+    errors.motion[index_of(expansion.axis)][index_of(positioning_component(expansion.axis))] +=
         (expansion.strain + deviation) * (position[index_of(expansion.axis)] - expansion.home);
   }
   if (!effects_.empty()) {
@@ -157,7 +155,7 @@ void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition
     if (expansion.parameter < 0) continue;
     const JointLever& lever = joint_lever(levers, chain_.joint_count(), expansion.axis);
     rows.col(place_of(expansion.parameter)) =
-        motion_column(lever, positioning_of(expansion.axis)) *
+        motion_column(lever, positioning_component(expansion.axis)) *
         (expansion.excess * (position[index_of(expansion.axis)] - expansion.home));
   }
 }
@@ -225,7 +223,7 @@ PoseErrorVector ErrorField::known_expansion(const AxisPosition& position,
   for (const Expansion& expansion : expansions_) {
     if (only && *only != expansion.axis) continue;
     error += motion_column(joint_lever(levers, chain_.joint_count(), expansion.axis),
-                           positioning_of(expansion.axis)) *
+                           positioning_component(expansion.axis)) *
              (expansion.strain * (position[index_of(expansion.axis)] - expansion.home));
   }
   return error;
@@ -322,7 +320,7 @@ struct LinearDisplacements::Parts {
   MeasuredTravel measured;
   /// Expansion of an axis' scale from its home.
   struct Strain {
-    std::size_t axis;
+    AxisName axis;
     double strain;  ///< m/m
     double home;    ///< m
   };
@@ -334,10 +332,16 @@ struct LinearDisplacements::Parts {
   /// Displacement by one unit of an amplitude's driver: linear in the positions of the linear axes.
   struct Lever {
     Vector3d at_zero;
-    Eigen::Matrix3d per_metre;
+    Eigen::Matrix3d per_metre;           ///< of X, Y, Z
+    Eigen::Matrix3d per_metre_parallel;  ///< of U, V, W; 0 where there are none
 
     Vector3d at(const AxisPosition& position) const {
-      return at_zero + per_metre * Vector3d(position[0], position[1], position[2]);
+      Vector3d lever = at_zero + per_metre * Vector3d(position[0], position[1], position[2]);
+      for (const AxisName axis : kParallelAxes) {
+        if (position[index_of(axis)] != 0.0)
+          lever += per_metre_parallel.col(direction_of(axis)) * position[index_of(axis)];
+      }
+      return lever;
     }
   };
   std::vector<Lever> coupled_levers, single_levers;  ///< by amplitude
@@ -360,12 +364,15 @@ std::vector<LinearDisplacements::Parts::Lever> LinearDisplacements::Parts::lever
   std::vector<Lever> levers;
   for (std::size_t c = 0; c < effects.amplitude_count(); ++c) {
     const EffectTarget& target = effects.columns()[c].target;
-    Lever lever{at(target, {}), Eigen::Matrix3d::Zero()};
-    for (const AxisName axis : kLinearAxes) {
+    Lever lever{at(target, {}), Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Zero()};
+    const auto per_metre_of = [&](AxisName axis) {
       AxisPosition a_metre_on{};
       a_metre_on[index_of(axis)] = 1.0;
-      lever.per_metre.col(direction_of(axis)) = at(target, a_metre_on) - lever.at_zero;
-    }
+      return Vector3d(at(target, a_metre_on) - lever.at_zero);
+    };
+    for (const AxisName axis : kLinearAxes) lever.per_metre.col(direction_of(axis)) = per_metre_of(axis);
+    for (const AxisName axis : kParallelAxes)
+      lever.per_metre_parallel.col(direction_of(axis)) = per_metre_of(axis);
     levers.push_back(lever);
   }
   return levers;
@@ -423,7 +430,7 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
     if (const ParameterBlock* block =
             result.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
       strain += result.parameters[block->offset] * excess;
-    if (strain != 0.0) parts->strains.push_back({index_of(axis.name), strain, axis.home});
+    if (strain != 0.0) parts->strains.push_back({axis.name, strain, axis.home});
   }
   parts->polynomials = LinearAxisErrors::make(result, tool.offset, parts->single);
   if (parts->polynomials) {
@@ -449,7 +456,7 @@ Vector3d LinearDisplacements::rigid(const AxisPosition& position, const Approach
     displacement = parts_->chain.first_order(linear, parts_->tool.offset, errors).displacement_w;
   }
   for (const Parts::Strain& each : parts_->strains)
-    displacement[static_cast<Eigen::Index>(each.axis)] += each.strain * (position[each.axis] - each.home);
+    displacement[direction_of(each.axis)] += each.strain * (position[index_of(each.axis)] - each.home);
   if (!parts_->single.empty())
     displacement +=
         parts_->of_effects(parts_->single, parts_->single_levers, without_rotary_axes(position), direction);

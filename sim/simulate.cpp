@@ -74,10 +74,11 @@ std::vector<SetupPlan> all_plans(const Study& study) {
   return plans;
 }
 
-bool moves_rotary_axes(const Machine& machine, const std::vector<SetupPlan>& plans) {
+template <class IsWanted>
+bool moves_axes(const Machine& machine, const std::vector<SetupPlan>& plans, const IsWanted& is_wanted) {
   return std::ranges::any_of(plans, [&](const SetupPlan& plan) {
     return std::ranges::any_of(machine.axes, [&](const Axis& axis) {
-      if (!is_rotary(axis.name)) return false;
+      if (!is_wanted(axis.name)) return false;
       const double first = plan.points.front().position[index_of(axis.name)];
       return std::ranges::any_of(plan.points, [&](const CommandedPoint& point) {
         return point.position[index_of(axis.name)] != first;
@@ -89,7 +90,8 @@ bool moves_rotary_axes(const Machine& machine, const std::vector<SetupPlan>& pla
 Campaign validation_campaign(const Study& study, const TruthMachine& truth, const Interference& known,
                              const std::vector<SetupPlan>& plans) {
   const RotaryMotion rotary =
-      moves_rotary_axes(study.machine, plans) ? RotaryMotion::Random : RotaryMotion::Home;
+      moves_axes(study.machine, plans, is_rotary) ? RotaryMotion::Random : RotaryMotion::Home;
+  const bool parallel_moves = moves_axes(study.machine, plans, is_parallel);
   Campaign campaign;
   campaign.machine = study.machine;
   std::vector<std::string> tools = study.validation.tools;
@@ -111,6 +113,10 @@ Campaign validation_campaign(const Study& study, const TruthMachine& truth, cons
     plan.tool = *index;
     RandomStream random(study.seed, "validation points " + tool);
     plan.points = random_points(study.machine, study.validation.points, random, rotary);
+    if (parallel_moves) {
+      RandomStream parallel(study.seed, "parallel axes at validation points " + tool);
+      add_parallel_motion(study.machine, false, parallel, plan.points);
+    }
     Setup setup = measure(plan, conditions, 0.0);
     setup.noise.set("constant", study.validation.stated_noise);
     campaign.setups.push_back(std::move(setup));

@@ -28,12 +28,14 @@ AxisPosition middle_of_travel(const Machine& machine) {
   AxisPosition middle{};
   for (const AxisName axis : linear_axes_of(machine))
     middle[index_of(axis)] = 0.5 * (machine.axis(axis).travel_min + machine.axis(axis).travel_max);
+  for (const AxisName axis : machine.parallel_axes()) middle[index_of(axis)] = machine.axis(axis).home;
   return middle;
 }
 
 AxisPosition home_of(const Machine& machine) {
   AxisPosition home{};
   for (const AxisName axis : linear_axes_of(machine)) home[index_of(axis)] = machine.axis(axis).home;
+  for (const AxisName axis : machine.parallel_axes()) home[index_of(axis)] = machine.axis(axis).home;
   return home;
 }
 

@@ -7,6 +7,7 @@
 
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parallel_axes.h"
 
 namespace volcal {
 namespace {
@@ -62,6 +63,7 @@ struct FiveAxisCompensation::Shares {
 FiveAxisCompensation::FiveAxisCompensation(const Machine& machine, const FiveAxisSettings& settings,
                                            JointErrorSource errors)
     : chain_(machine), settings_(settings), errors_(std::move(errors)) {
+  require_no_parallel_axes(machine, "compensation of rotary axes");
   centre_.fill(Vector3d::Zero());
   for (const Axis& axis : machine.axes) {
     if (is_rotary(axis.name)) centre_[rotary_index(axis.name)] = axis.centre;

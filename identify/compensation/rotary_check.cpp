@@ -12,7 +12,8 @@ namespace {
 JointErrorSource of_rotary_axes(const JointErrorSource& all) {
   return [all](const AxisPosition& position, const ApproachDirection& direction) {
     PoseErrors<double> errors = all(position, direction);
-    for (const AxisName axis : kLinearAxes) {
+    for (const AxisName axis : kAllAxes) {
+      if (is_rotary(axis)) continue;
       errors.motion[index_of(axis)] = {};
       errors.location[index_of(axis)] = {};
     }

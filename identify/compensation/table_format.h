@@ -69,6 +69,7 @@ struct TableFormat {
   CompensationType rotary = {};   ///< of the rotary axes' errors, where any were identified
   bool rigid = false;             ///< holds what single axes do, no error motion that depends on another axis
   bool indivisible = false;       ///< `supported` as a whole only, no part of it
+  bool parallel_axes = false;     ///< holds U, V, W: errors or corrections that depend on them
   bool positions_of_own = false;  ///< has positions of its own where neither a step nor a tolerance is given
   std::string_view refusal;       ///< why no other type can be had
   CompensationLimits limits;

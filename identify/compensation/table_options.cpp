@@ -5,6 +5,7 @@
 #include "volcal/identify/errors/volume/rigid_compromise.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parallel_axes.h"
 
 namespace volcal {
 namespace {
@@ -128,6 +129,11 @@ CompensationType default_type(const TableFormat& format, const FitResult& result
 
 void check_table_options(const TableFormat& format, const FitResult& result,
                          const TableFormatOptions& options) {
+  if (!format.parallel_axes)
+    require_no_parallel_axes(
+        result.machine, "the format " + std::string(format.name),
+        "write --format csv, which holds the errors of every axis; or leave the axis out "
+        "of the structure where it stands still");
   check_type(format, result, options.type);
   if (linear_axes_of(result.machine).empty())
     throw InputError({}, "the machine has no linear axis", "compensation tables are for linear axes");

@@ -40,7 +40,7 @@ DisplacementField part_of(const Compensation& type) {
 
 /// Middles of `cells` equal parts of every linear axis' travel, on request with its ends.
 std::vector<AxisPosition> cell_middles(const Machine& machine, int cells, bool with_ends) {
-  std::vector<AxisPosition> positions = {AxisPosition{}};
+  std::vector<AxisPosition> positions = {home_of(machine)};
   for (const AxisName name : linear_axes_of(machine)) {
     const Axis& axis = machine.axis(name);
     std::vector<double> places;

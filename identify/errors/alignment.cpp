@@ -7,6 +7,7 @@
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/reversal_label.h"
 #include "volcal/model/kinematics/rotary_datum.h"
@@ -460,6 +461,9 @@ Datum wished_datum(const Datum& former, std::optional<AxisName> primary, std::op
 }
 
 AlignedResult align_result(const FitResult& result, const Alignment& alignment) {
+  require_no_parallel_axes(
+      result.machine, "the alignment of a result",
+      "choose [datum] in the machine file and fit again, home_mm of every axis as the origin");
   if (alignment.datum.primary == alignment.datum.secondary)
     throw InputError({}, "primary and secondary axis are the same", "name two different axes");
   check_linear_axes(result.machine);

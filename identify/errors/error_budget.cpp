@@ -38,6 +38,24 @@ std::string cause_of(const Contribution& part) {
   return symbol.is_straightness() ? "straightness" : "angular errors";
 }
 
+/// Poses of the volume, each at several positions of U, V, W, whose errors are zero at home.
+std::vector<AxisPosition> with_parallel_positions(const Machine& machine, int per_axis) {
+  std::vector<AxisPosition> positions = axis_grid(machine, per_axis).positions();
+  for (const AxisName name : machine.parallel_axes()) {
+    const Axis& axis = machine.axis(name);
+    std::vector<AxisPosition> more;
+    for (const AxisPosition& position : positions) {
+      for (int i = 0; i < per_axis; ++i) {
+        more.push_back(position);
+        const double share = per_axis > 1 ? static_cast<double>(i) / (per_axis - 1) : 0.5;
+        more.back()[index_of(name)] = axis.travel_min + share * axis.travel();
+      }
+    }
+    positions = std::move(more);
+  }
+  return positions;
+}
+
 /// The displacements of every contribution at the poses of the volume.
 class VolumeOfParts {
  public:
@@ -48,10 +66,13 @@ class VolumeOfParts {
         parts_(field_.contributions()) {
     fields_.resize(parts_.size());
     VolumeMoments moments(result.parameters.size());
-    for (const AxisPosition& position : axis_grid(result.machine, per_axis).positions()) {
-      for (unsigned signs = 0; signs < 8; ++signs) {
+    std::vector<AxisName> axes(kLinearAxes.begin(), kLinearAxes.end());
+    for (const AxisName axis : result.machine.parallel_axes()) axes.push_back(axis);
+    for (const AxisPosition& position : with_parallel_positions(result.machine, per_axis)) {
+      for (unsigned signs = 0; signs < 1U << axes.size(); ++signs) {
         ApproachDirection direction{};
-        for (std::size_t i = 0; i < 3; ++i) direction[i] = ((signs >> i) & 1U) != 0 ? 1 : -1;
+        for (std::size_t i = 0; i < axes.size(); ++i)
+          direction[index_of(axes[i])] = ((signs >> i) & 1U) != 0 ? 1 : -1;
         add(position, direction, moments);
       }
     }

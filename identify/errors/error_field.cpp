@@ -26,8 +26,6 @@ PoseErrorVector motion_column(const JointLever& lever, Component component) {
   return column;
 }
 
-Component positioning_of(AxisName axis) { return kAllComponents[index_of(axis)]; }
-
 double temperature_excess_at(const Conditions& conditions, const std::string& channel) {
   const auto stated = conditions.temperature_degC.find(channel);
   return stated == conditions.temperature_degC.end() ? 0.0 : stated->second - kReferenceTemperature_degC;
@@ -109,7 +107,7 @@ PoseErrors<double> ErrorField::errors_at(const AxisPosition& position, const App
   for (const Expansion& expansion : expansions_) {
     const double deviation =
         expansion.parameter < 0 ? 0.0 : parameters_[expansion.parameter] * expansion.excess;
-    errors.motion[index_of(expansion.axis)][index_of(positioning_of(expansion.axis))] +=
+    errors.motion[index_of(expansion.axis)][index_of(positioning_component(expansion.axis))] +=
         (expansion.strain + deviation) * (position[index_of(expansion.axis)] - expansion.home);
   }
   if (!effects_.empty()) {
@@ -153,7 +151,7 @@ void ErrorField::add_expansion_rows(const JointLever* levers, const AxisPosition
     if (expansion.parameter < 0) continue;
     const JointLever& lever = joint_lever(levers, chain_.joint_count(), expansion.axis);
     rows.col(place_of(expansion.parameter)) =
-        motion_column(lever, positioning_of(expansion.axis)) *
+        motion_column(lever, positioning_component(expansion.axis)) *
         (expansion.excess * (position[index_of(expansion.axis)] - expansion.home));
   }
 }
@@ -221,7 +219,7 @@ PoseErrorVector ErrorField::known_expansion(const AxisPosition& position,
   for (const Expansion& expansion : expansions_) {
     if (only && *only != expansion.axis) continue;
     error += motion_column(joint_lever(levers, chain_.joint_count(), expansion.axis),
-                           positioning_of(expansion.axis)) *
+                           positioning_component(expansion.axis)) *
              (expansion.strain * (position[index_of(expansion.axis)] - expansion.home));
   }
   return error;
@@ -318,7 +316,7 @@ struct LinearDisplacements::Parts {
   MeasuredTravel measured;
   /// Expansion of an axis' scale from its home.
   struct Strain {
-    std::size_t axis;
+    AxisName axis;
     double strain;  ///< m/m
     double home;    ///< m
   };
@@ -373,7 +371,7 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
     if (const ParameterBlock* block =
             result.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
       strain += result.parameters[block->offset] * excess;
-    if (strain != 0.0) parts->strains.push_back({index_of(axis.name), strain, axis.home});
+    if (strain != 0.0) parts->strains.push_back({axis.name, strain, axis.home});
   }
   parts_ = std::move(parts);
 }
@@ -393,7 +391,7 @@ Vector3d LinearDisplacements::rigid(const AxisPosition& position, const Approach
     displacement = parts_->chain.first_order(linear, parts_->tool.offset, errors).displacement_w;
   }
   for (const Parts::Strain& each : parts_->strains)
-    displacement[static_cast<Eigen::Index>(each.axis)] += each.strain * (position[each.axis] - each.home);
+    displacement[direction_of(each.axis)] += each.strain * (position[index_of(each.axis)] - each.home);
   if (!parts_->single.empty()) displacement += parts_->of_effects(parts_->single, position, direction);
   return displacement;
 }

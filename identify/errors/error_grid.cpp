@@ -173,8 +173,8 @@ class CovarianceSums {
 /// Parameters of one axis' errors, in the order of their rows.
 struct ParametersOfAxis {
   std::vector<int> own;
-  std::vector<int> turning;   ///< of rotary axes nearer the workpiece, which turn this axis' travel
-  std::vector<int> constant;  ///< of rotary axes and the tool, with the first axis alone
+  std::vector<int> turning;   ///< of standing axes nearer the workpiece, which turn this axis' travel
+  std::vector<int> constant;  ///< of standing axes and the tool, with the first axis alone
 };
 
 /// Derivatives of the errors of functions, locations and the tool.
@@ -201,6 +201,8 @@ class RigidRows {
   const ParameterBlock* offset_;  ///< of the tool's estimated offset; null where it is none
 };
 
+bool stands_in_grids(AxisName axis) { return is_rotary(axis) || is_parallel(axis); }
+
 ParametersOfAxis parameters_of(const FitResult& result, AxisName name, bool is_first,
                                const Eigen::Matrix<double, 6, Eigen::Dynamic>& at_zero) {
   const auto owners = axes_of_parameters(result.layout);
@@ -208,7 +210,7 @@ ParametersOfAxis parameters_of(const FitResult& result, AxisName name, bool is_f
   for (int p = 0; p < result.layout.size; ++p) {
     const std::optional<AxisName> owner = owners[static_cast<std::size_t>(p)];
     if (owner == name) parameters.own.push_back(p);
-    if ((owner && !is_rotary(*owner)) || at_zero.col(p).isZero(0.0)) continue;
+    if ((owner && !stands_in_grids(*owner)) || at_zero.col(p).isZero(0.0)) continue;
     if (is_first) parameters.constant.push_back(p);
     if (owner && is_nearer_workpiece(result.machine.structure, *owner, name)) parameters.turning.push_back(p);
   }
@@ -219,7 +221,7 @@ ParametersOfAxis parameters_of(const FitResult& result, AxisName name, bool is_f
 
 std::vector<AxisPosition> AxisGrid::positions() const {
   std::vector<AxisPosition> all;
-  AxisPosition position{};
+  AxisPosition position = standing;
   for (const double first : nodes[0]) {
     position[index_of(axes[0])] = first;
     for (const double second : nodes[1]) {
@@ -244,6 +246,10 @@ AxisGrid axis_grid(const Machine& machine, int per_axis) {
   for (const Joint& joint : machine.structure.joints) {
     if (is_rotary(joint.axis)) continue;
     const Axis& axis = machine.axis(joint.axis);
+    if (is_parallel(axis.name)) {
+      grid.standing[index_of(axis.name)] = axis.home;
+      continue;
+    }
     grid.axes[place] = axis.name;
     for (int i = 0; i < per_axis; ++i) {
       const double share = per_axis > 1 ? static_cast<double>(i) / (per_axis - 1) : 0.5;
@@ -269,7 +275,7 @@ ErrorGrid::AxisErrors ErrorGrid::errors_of(std::size_t axis, const Tool& tool) c
   const AxisName name = grid_.axes[axis];
   const std::vector<double>& nodes = grid_.nodes[axis];
   const RigidRows rigid(result_, tool);
-  const auto at_zero = rigid.at({});
+  const auto at_zero = rigid.at(grid_.standing);
   const auto [own, turning, constant] = parameters_of(result_, name, axis == 0, at_zero);
   AxisErrors all;
   for (const auto& part : {own, turning, constant})
@@ -279,7 +285,7 @@ ErrorGrid::AxisErrors ErrorGrid::errors_of(std::size_t axis, const Tool& tool) c
   all.rotations = MatrixXd::Zero(size, index_at(nodes.size(), kRotationsOfNode));
   const Matrix3d crossed = crossed_with(name);
   for (std::size_t node = 0; node < nodes.size(); ++node) {
-    AxisPosition position{};
+    AxisPosition position = grid_.standing;
     position[index_of(name)] = nodes[node];
     const auto rows = rigid.at(position);
     auto errors = all.errors.middleCols<6>(index_at(node, kErrorsOfNode));

@@ -1,10 +1,11 @@
 #pragma once
-/// Volumetric errors and their covariances on a grid of the linear axes, rotary axes at 0.
+/// Volumetric errors and their covariances on a grid of the axes X, Y, Z, rotary axes at 0, U, V, W standing.
 ///
 /// With a, b, c the linear axes from the workpiece to the tool and u their directions, the first-order error
 /// (chain.h) is e = F(a, b) + q_c G(a, b) + D_c(q_c),
 ///   F = D_a + D_b + q_b e_a x u_b,   G = (e_a + e_b) x u_c,
 /// where D_i, e_i are linear in the parameters of one axis: displacement with the other axes at 0, rotation.
+/// An axis that stands, turned or moved, adds a constant and turns the travel of the axes behind it.
 /// Covariances of two axes' D and e are one block per pair of their nodes; everything on the grid is summed
 /// from these blocks. Effects and expansions of scales are added node by node: with J the derivatives of the
 /// errors to their parameters and C the covariance, cov e = cov e_0 + J C_e0 + C_0e J^T + J C_ee J^T, where
@@ -25,17 +26,19 @@
 
 namespace volcal {
 
-/// Positions of the linear axes; always three axes, those that a machine lacks first, with the one node 0.
+/// Positions of X, Y, Z; always three axes, those that a machine lacks first, with the one node 0. Parallel
+/// axes stand.
 struct AxisGrid {
   std::array<AxisName, 3> axes{};            ///< workpiece to tool
   std::array<std::vector<double>, 3> nodes;  ///< m
+  AxisPosition standing{};                   ///< of every other axis, m or rad
 
   std::array<std::size_t, 3> counts() const { return {nodes[0].size(), nodes[1].size(), nodes[2].size()}; }
   /// Of every node, the last axis fastest.
   std::vector<AxisPosition> positions() const;
 };
 
-/// `per_axis` nodes on each linear axis, ends of the travel included.
+/// `per_axis` nodes on each of X, Y, Z, ends of the travel included; U, V, W at home.
 AxisGrid axis_grid(const Machine& machine, int per_axis);
 
 /// Of a displacement, m^2.

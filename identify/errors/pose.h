@@ -12,7 +12,7 @@ namespace volcal {
 
 /// Direction of approach of every axis, by AxisName: -1, +1, 0 = mean of both.
 using ApproachDirection = std::array<std::int8_t, kAxisCount>;
-inline constexpr ApproachDirection kTowardsPlus = {1, 1, 1, 1, 1, 1};
+inline constexpr ApproachDirection kTowardsPlus = {1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 /// Displacement (ex, ey, ez) of the functional point at a commanded position, actual minus nominal, workpiece
 /// coordinates, m.
@@ -22,6 +22,7 @@ using DisplacementField = std::function<Eigen::Vector3d(const AxisPosition&, con
 inline AxisPosition without_rotary_axes(const AxisPosition& position) {
   AxisPosition linear{};
   for (const AxisName axis : kLinearAxes) linear[index_of(axis)] = position[index_of(axis)];
+  for (const AxisName axis : kParallelAxes) linear[index_of(axis)] = position[index_of(axis)];
   return linear;
 }
 

@@ -4,6 +4,7 @@
 
 #include "volcal/identify/planning/registry.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parallel_axes.h"
 #include "volcal/model/description/unknowns.h"
 
 namespace volcal {
@@ -31,6 +32,8 @@ ModelSpec with_known_linear_axes(ModelSpec model, const Machine& machine) {
 }
 
 void check_plan_settings(const PlanSettings& settings) {
+  require_no_parallel_axes(settings.machine, "a plan",
+                           "plan for a machine file without it, and add positions of it by hand");
   const auto fail = [&](const std::string& problem, const std::string& remedy) {
     throw InputError({settings.machine.file, 0}, problem, remedy);
   };

@@ -9,6 +9,7 @@
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parallel_axes.h"
 
 namespace volcal {
 namespace {
@@ -127,6 +128,7 @@ FunctionalPoint functional_point(const Machine& machine, const std::string& tool
 }
 
 NcSetup nc_setup(const Machine& machine) {
+  require_no_parallel_axes(machine, "the compensation of programs");
   NcSetup setup;
   for (const AxisName axis : kLinearAxes) {
     if (!machine.has_axis(axis))
@@ -139,6 +141,7 @@ NcSetup nc_setup(const Machine& machine) {
 
 ProgramErrors program_errors(const FitResult& result, const std::string& tool_name,
                              const Conditions& conditions) {
+  require_no_parallel_axes(result.machine, "the compensation of programs");
   auto identified = std::make_shared<FitResult>(result);  // what a field needs
   identified->covariance = {};
   identified->residuals.clear();

@@ -55,6 +55,7 @@ std::optional<AxisName> axis_at_few_positions(const Campaign& campaign, const st
 constexpr double kSidewaysTool = 0.06;  // m
 constexpr double kTurned = 1e-3;        // rad, from home
 constexpr std::size_t kEnoughSpheres = 3;
+constexpr double kTogether = 0.99;  // of the square of the correlation of two positions
 
 std::optional<AxisName> rotary_axis_of(const std::string& name) {
   if (const auto symbol = ErrorSymbol::parse(name); symbol && is_rotary(symbol->axis)) return symbol->axis;
@@ -75,6 +76,43 @@ bool turns_two_at_once(const Campaign& campaign, const std::vector<AxisName>& mo
     }
   }
   return false;
+}
+
+/// The axis with the same direction as that of an error among its partners.
+std::optional<AxisName> axis_beside(const std::string& name, const std::vector<std::string>& partners) {
+  const auto axis_of = [](const std::string& error) -> std::optional<AxisName> {
+    if (const auto symbol = ErrorSymbol::parse(error)) return symbol->axis;
+    if (const auto location = LocationSymbol::parse(error)) return location->axis;
+    return std::nullopt;
+  };
+  const auto own = axis_of(name);
+  if (!own || is_rotary(*own)) return std::nullopt;
+  for (const std::string& partner : partners) {
+    const auto other = axis_of(partner);
+    if (other && !is_rotary(*other) && *other != *own && main_axis_of(*other) == main_axis_of(*own))
+      return other;
+  }
+  return std::nullopt;
+}
+
+/// Whether the position of one axis follows from that of the other, as a straight line, in all readings.
+bool move_together(const Campaign& campaign, AxisName first, AxisName second) {
+  double count = 0.0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  for (const Setup& setup : campaign.setups) {
+    for (std::size_t row = 0; row < setup.readings.size(); ++row) {
+      const Eigen::Vector2d at(
+          setup.readings.position[index_of(first)][row] - campaign.machine.axis(first).home,
+          setup.readings.position[index_of(second)][row] - campaign.machine.axis(second).home);
+      count += 1.0;
+      sum += at;
+      squares += at * at.transpose();
+    }
+  }
+  const Eigen::Matrix2d spread = squares - sum * sum.transpose() / count;
+  const double product = spread(0, 0) * spread(1, 1);
+  return product > 0.0 && spread(0, 1) * spread(0, 1) > kTogether * product;
 }
 
 std::size_t spheres(const ParameterLayout& layout) {
@@ -150,6 +188,16 @@ Finding cause_exchangeable(const MeasurementModel& model, const std::string& nam
   if (const auto axis = axis_at_few_positions(model.campaign(), name)) {
     remedies.emplace_back("positions");
     cause.data["axis"] = letter(*axis);
+  }
+  if (const auto beside = axis_beside(name, partners)) {
+    const AxisName main = main_axis_of(*beside);
+    const AxisName parallel =
+        is_parallel(*beside) ? *beside : kParallelAxes[static_cast<std::size_t>(direction_of(main))];
+    if (move_together(model.campaign(), main, parallel)) {
+      remedies.emplace_back("one-axis-standing");
+      cause.data["standing"] = letter(main);
+      cause.data["moving"] = letter(parallel);
+    }
   }
   if (station_count > 0 && station_count < 3) remedies.emplace_back("stations");
   if (rotary_axis_of(name)) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -45,6 +46,30 @@ struct CommandedPoints {
       const AxisPosition position = axis_position(setup.readings, row);
       linear.emplace_back(position[0], position[1], position[2]);
     }
+    for (const AxisName axis : kParallelAxes) take_parallel(axis);
+  }
+
+  /// Where U, V or W moves, the position along its direction is its own, where the other moves too the sum.
+  void take_parallel(AxisName axis) {
+    Rows rows(setup.readings.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    if (rows.empty() || !moves(rows, axis, kPathTolerance)) return;
+    const bool alone = !moves(rows, main_axis_of(axis), kPathTolerance);
+    for (const std::size_t row : rows) {
+      double& along = linear[row][direction_of(axis)];
+      along = (alone ? 0.0 : along) + setup.readings.position[index_of(axis)][row];
+    }
+  }
+
+  /// X, Y, Z, then U, V, W.
+  std::vector<AxisName> moving_linear_axes(const Rows& rows) const {
+    std::vector<AxisName> moving;
+    for (const auto& axes : {kLinearAxes, kParallelAxes}) {
+      for (const AxisName axis : axes) {
+        if (moves(rows, axis, kPathTolerance)) moving.push_back(axis);
+      }
+    }
+    return moving;
   }
 
   bool moves(const Rows& rows, AxisName axis, double tolerance) const {
@@ -108,6 +133,13 @@ std::string signed_name(const std::vector<AxisName>& moving, const Vector3d& dir
   return name;
 }
 
+/// Of two axes with one direction no path of one axis or two can be told.
+bool share_a_direction(const std::vector<AxisName>& axes) {
+  std::array<int, 3> count{};
+  for (const AxisName axis : axes) ++count[static_cast<std::size_t>(direction_of(axis))];
+  return std::ranges::any_of(count, [](int axes_along) { return axes_along > 1; });
+}
+
 struct Line {
   AxisLine geometry;
   StraightPath path;
@@ -116,10 +148,9 @@ struct Line {
 PathOrReason<Line> recognise_line(const CommandedPoints& commanded, const Rows& rows) {
   if (commanded.turns(rows)) return FindingCode::NoTestRotaryAxisMoves;
   Line line;
-  for (const AxisName axis : kLinearAxes) {
-    if (commanded.moves(rows, axis, kPathTolerance)) line.path.moving.push_back(axis);
-  }
+  line.path.moving = commanded.moving_linear_axes(rows);
   if (line.path.moving.empty()) return FindingCode::NoTestNoAxisMoves;
+  if (share_a_direction(line.path.moving)) return FindingCode::NoTestNoStraightLine;
   const Vector3d& first = commanded.linear[rows.front()];
   const std::size_t far = farthest_from_first(rows, commanded.linear);
   line.geometry = {first, (commanded.linear[far] - first).normalized()};
@@ -216,14 +247,13 @@ std::optional<Vector3d> centre_and_radius(const std::vector<Vector2d>& points) {
 
 PathOrReason<PlannedCircle> recognise_circle(const CommandedPoints& commanded, const Rows& rows) {
   if (commanded.turns(rows)) return FindingCode::NoTestRotaryAxisMoves;
-  std::vector<AxisName> moving, still;
-  for (const AxisName axis : kLinearAxes) {
-    (commanded.moves(rows, axis, kPathTolerance) ? moving : still).push_back(axis);
-  }
-  if (moving.size() != 2) return FindingCode::NoTestNotTwoAxesMove;
+  const std::vector<AxisName> moving = commanded.moving_linear_axes(rows);
+  if (moving.size() != 2 || share_a_direction(moving)) return FindingCode::NoTestNotTwoAxesMove;
   PlannedCircle circle;
-  circle.path.first = kLinearAxes[(index_of(still.front()) + 1) % 3];
-  circle.path.second = kLinearAxes[(index_of(still.front()) + 2) % 3];
+  // In the order of the directions round the third.
+  const bool in_order = (direction_of(moving[0]) + 1) % 3 == direction_of(moving[1]);
+  circle.path.first = moving[in_order ? 0 : 1];
+  circle.path.second = moving[in_order ? 1 : 0];
   std::vector<Vector2d> points;
   for (const std::size_t row : rows) points.push_back(circle.in_plane(commanded.linear[row]));
   const auto fitted = centre_and_radius(points);

@@ -58,6 +58,9 @@ Explanation readings_too_few(const Finding&) {
 
 std::string remedy_in_words(const std::string& remedy, const Finding& finding) {
   if (remedy == "positions") return "add positions along axis " + finding.text("axis");
+  if (remedy == "one-axis-standing")
+    return fmt::format("move {} while {} stands, at several positions of {}: they move together only",
+                       finding.text("moving"), finding.text("standing"), finding.text("standing"));
   if (remedy == "stations") return "measure from more stations (four, well apart)";
   if (remedy == "second-tool") return "repeat with a second tool offset, sideways and of another length";
   if (remedy == "third-tool") {

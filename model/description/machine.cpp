@@ -29,6 +29,7 @@ class StructureReader {
     }
     if (!seen_tool_) fail("the code must end with t (tool)");
     if (structure.joints.empty()) fail("the code names no axis");
+    for (const Joint& joint : structure.joints) check_parallel(joint.axis, structure);
     return structure;
   }
 
@@ -51,11 +52,22 @@ class StructureReader {
       const auto axis = axis_from_letter(c);
       if (static_cast<unsigned char>(c) >= 0x80)
         fail("a character is not ASCII; the prime is the apostrophe '");
-      if (!axis) fail(std::string("'") + c + "' is not one of w b t X Y Z A B C");
+      if (!axis) fail(std::string("'") + c + "' is not one of w b t X Y Z A B C U V W");
       const auto same = [&](const Joint& joint) { return joint.axis == *axis; };
       if (std::ranges::any_of(structure.joints, same)) fail(std::string("axis ") + c + " appears twice");
       structure.joints.push_back({*axis, !seen_bed_});
     }
+  }
+
+  /// Of two linear axes with one direction the first is X, Y or Z.
+  void check_parallel(AxisName axis, const Structure& structure) const {
+    const char main = letter_of(main_axis_of(axis));
+    const auto is_main = [&](const Joint& joint) { return letter_of(joint.axis) == main; };
+    if (!is_parallel(axis) || std::ranges::any_of(structure.joints, is_main)) return;
+    throw InputError(place_,
+                     "structure \"" + code_ + "\": axis " + letter_of(axis) + " is parallel to " + main +
+                         ", which the structure has not",
+                     std::string("name the axis ") + main + ": U, V, W stand beside X, Y, Z (ISO 841)");
   }
 
   std::size_t skip_spindle(std::size_t open) {
@@ -107,6 +119,14 @@ const Axis& Machine::axis(AxisName wanted) const {
 
 bool Machine::has_axis(AxisName wanted) const {
   return std::ranges::any_of(axes, [&](const Axis& axis) { return axis.name == wanted; });
+}
+
+std::vector<AxisName> Machine::parallel_axes() const {
+  std::vector<AxisName> found;
+  for (const AxisName axis : kParallelAxes) {
+    if (has_axis(axis)) found.push_back(axis);
+  }
+  return found;
 }
 
 std::optional<std::size_t> Machine::tool_index(const std::string& wanted) const {

@@ -10,7 +10,8 @@
 
 namespace volcal {
 
-/// One joint of the structural code (ISO 10791-6), e.g. `w X' b Y Z t`; order runs from workpiece to tool.
+/// One joint of the structural code (ISO 10791-6), e.g. `w X' b Y Z t`, with a quill `w X' b Y Z W t`; order
+/// runs from workpiece to tool.
 struct Joint {
   AxisName axis = AxisName::X;
   bool workpiece_side = false;  ///< stands between w and b
@@ -53,7 +54,8 @@ struct Tool {
   double offset_sigma = 0.0;                         ///< per component, m; 0 = exact
 };
 
-/// Primary axis gives the direction, secondary the plane of the machine frame (ISO/TR 16907, 7.3).
+/// Primary axis gives the direction, secondary the plane of the machine frame (ISO/TR 16907, 7.3). Both are
+/// X, Y or Z: U, V, W never give the frame.
 struct Datum {
   AxisName primary = AxisName::X;
   AxisName secondary = AxisName::Y;
@@ -74,6 +76,7 @@ struct Machine {
 
   const Axis& axis(AxisName wanted) const;  ///< throws std::out_of_range
   bool has_axis(AxisName wanted) const;
+  std::vector<AxisName> parallel_axes() const;  ///< U, V, W, of which the machine has them
   std::optional<std::size_t> tool_index(const std::string& wanted) const;
 };
 

@@ -3,8 +3,9 @@
 namespace volcal {
 namespace {
 
-constexpr std::string_view kLetters = "XYZABC";
-constexpr std::string_view kLowerLetters = "xyzabc";
+constexpr std::string_view kLetters = "XYZABCUVW";
+constexpr std::string_view kLowerLetters = "xyzabcuvw";
+constexpr std::string_view kComponentLetters = "XYZABC";
 
 }  // namespace
 
@@ -22,23 +23,25 @@ std::optional<AxisName> axis_from_letter(char letter) {
   return kAllAxes[position];
 }
 
-std::string ErrorSymbol::name() const { return {'E', kLetters[index_of(component)], letter_of(axis)}; }
+std::string ErrorSymbol::name() const {
+  return {'E', kComponentLetters[index_of(component)], letter_of(axis)};
+}
 
 std::optional<ErrorSymbol> ErrorSymbol::parse(std::string_view name) {
   if (name.size() != 3 || name[0] != 'E') return std::nullopt;
-  const auto component = kLetters.find(name[1]);
+  const auto component = kComponentLetters.find(name[1]);
   const auto axis = axis_from_letter(name[2]);
   if (component == std::string_view::npos || !axis) return std::nullopt;
   return ErrorSymbol{kAllComponents[component], *axis};
 }
 
 std::string LocationSymbol::name() const {
-  return {'E', kLetters[index_of(component)], '0', letter_of(axis)};
+  return {'E', kComponentLetters[index_of(component)], '0', letter_of(axis)};
 }
 
 std::optional<LocationSymbol> LocationSymbol::parse(std::string_view name) {
   if (name.size() != 4 || name[0] != 'E' || name[2] != '0') return std::nullopt;
-  const auto component = kLetters.find(name[1]);
+  const auto component = kComponentLetters.find(name[1]);
   const auto axis = axis_from_letter(name[3]);
   if (component == std::string_view::npos || !axis) return std::nullopt;
   return LocationSymbol{kAllComponents[component], *axis};

@@ -11,17 +11,27 @@
 
 namespace volcal {
 
-enum class AxisName { X, Y, Z, A, B, C };
-inline constexpr std::size_t kAxisCount = 6;
+/// X, Y, Z move along the three directions, A, B, C turn about them, U, V, W are linear axes parallel to X,
+/// Y, Z (ISO 841), as a quill W in a head on Z.
+enum class AxisName { X, Y, Z, A, B, C, U, V, W };
+inline constexpr std::size_t kAxisCount = 9;
 inline constexpr std::array<AxisName, kAxisCount> kAllAxes = {AxisName::X, AxisName::Y, AxisName::Z,
-                                                              AxisName::A, AxisName::B, AxisName::C};
+                                                              AxisName::A, AxisName::B, AxisName::C,
+                                                              AxisName::U, AxisName::V, AxisName::W};
 
+/// The linear axes that give the three directions, in the order of these: index and direction are one number.
 inline constexpr std::array<AxisName, 3> kLinearAxes = {AxisName::X, AxisName::Y, AxisName::Z};
+/// The linear axes beside them.
+inline constexpr std::array<AxisName, 3> kParallelAxes = {AxisName::U, AxisName::V, AxisName::W};
 
 constexpr std::size_t index_of(AxisName axis) { return static_cast<std::size_t>(axis); }
-constexpr bool is_rotary(AxisName axis) { return index_of(axis) >= 3; }
+constexpr bool is_rotary(AxisName axis) { return index_of(axis) / 3 == 1; }
+/// U, V, W.
+constexpr bool is_parallel(AxisName axis) { return index_of(axis) / 3 == 2; }
 /// Coordinate direction 0..2 along which (linear) or about which (rotary) the axis moves.
 constexpr int direction_of(AxisName axis) { return static_cast<int>(index_of(axis) % 3); }
+/// X, Y or Z, along which or about which the axis moves.
+constexpr AxisName main_axis_of(AxisName axis) { return kLinearAxes[index_of(axis) % 3]; }
 char letter_of(AxisName axis);
 /// "XYZ"
 std::string letters_of(const std::vector<AxisName>& axes);
@@ -35,6 +45,10 @@ inline constexpr std::array<Component, 6> kAllComponents = {Component::X, Compon
 constexpr std::size_t index_of(Component component) { return static_cast<std::size_t>(component); }
 constexpr bool is_rotation(Component component) { return index_of(component) >= 3; }
 constexpr int direction_of(Component component) { return static_cast<int>(index_of(component) % 3); }
+/// The component that an axis moves along or about: Z of Z and W, C of C.
+constexpr Component positioning_component(AxisName axis) {
+  return kAllComponents[index_of(axis) % 3 + (is_rotary(axis) ? 3 : 0)];
+}
 
 /// One of the six error motions of an axis, e.g. {A, X} = EAX.
 struct ErrorSymbol {
@@ -42,8 +56,8 @@ struct ErrorSymbol {
   AxisName axis = AxisName::X;
 
   std::string name() const;
-  /// Positioning error: EXX, EYY, EZZ, EAA, EBB, ECC.
-  constexpr bool is_positioning() const { return index_of(component) == index_of(axis); }
+  /// Positioning error: EXX, EYY, EZZ, EAA, EBB, ECC, EXU, EYV, EZW.
+  constexpr bool is_positioning() const { return component == positioning_component(axis); }
   /// Displacement or tilt of a rotary axis across its line: EXC, EYC, EAC, EBC.
   constexpr bool is_transverse() const {
     return is_rotary(axis) && direction_of(component) != direction_of(axis);

@@ -37,9 +37,10 @@ bool is_along_axis(const LocationSymbol& symbol) {
 
 std::vector<AxisName> linear_axes(const Machine& machine) {
   std::vector<AxisName> axes;
-  for (const AxisName axis : {AxisName::X, AxisName::Y, AxisName::Z}) {
+  for (const AxisName axis : kLinearAxes) {
     if (machine.has_axis(axis)) axes.push_back(axis);
   }
+  for (const AxisName axis : machine.parallel_axes()) axes.push_back(axis);
   return axes;
 }
 
@@ -53,6 +54,11 @@ std::vector<LocationSymbol> squareness_errors(const Machine& machine) {
   std::vector<LocationSymbol> symbols;
   for (const LocationSymbol& symbol : machine.datum.squareness()) {
     if (machine.has_axis(symbol.axis)) symbols.push_back(symbol);
+  }
+  for (const AxisName axis : machine.parallel_axes()) {
+    for (const Component about : {Component::A, Component::B, Component::C}) {
+      if (direction_of(about) != direction_of(axis)) symbols.push_back({about, axis});
+    }
   }
   return symbols;
 }

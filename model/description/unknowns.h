@@ -11,14 +11,16 @@
 
 namespace volcal {
 
-/// X, Y, Z, of which the machine has them.
+/// X, Y, Z, U, V, W, of which the machine has them.
 std::vector<AxisName> linear_axes(const Machine& machine);
 /// The six error motions of every linear axis, of X first.
 std::vector<ErrorSymbol> linear_axis_motions(const Machine& machine);
-/// Squareness errors of the datum whose axes the machine has.
+/// Squareness errors of the datum whose axes the machine has, then the two angles of each of U, V, W: its
+/// direction against that of the frame, EA0W and EB0W of W. Its parallelism to Z is the difference from the
+/// angles of Z.
 std::vector<LocationSymbol> squareness_errors(const Machine& machine);
-/// Location errors that the machine can have: squareness, and of each rotary axis all but the displacement
-/// along it.
+/// Location errors that the machine can have: squareness_errors(), and of each rotary axis all but the
+/// displacement along it.
 std::vector<LocationSymbol> possible_locations(const Machine& machine);
 
 /// Rotary axes that the readings move by more than a thousandth of their travel; readings that are left out
@@ -42,8 +44,8 @@ ModelSpec with_rotary_errors(const Machine& machine, ModelSpec model, const std:
 /// Error motions with a function: of a linear axis all, of a rotary one those that the model names. The
 /// function may be the basis "zero", which has no parameters.
 std::vector<ErrorSymbol> modelled_motions(const Machine& machine, const ModelSpec& model);
-/// Location errors with a parameter: squareness that is not left out, and of rotary axes what the model
-/// names.
+/// Location errors with a parameter: squareness_errors() that are not left out, and of rotary axes what the
+/// model names.
 std::vector<LocationSymbol> modelled_locations(const Machine& machine, const ModelSpec& model);
 
 }  // namespace volcal

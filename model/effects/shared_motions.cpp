@@ -71,7 +71,7 @@ KeySchema shared_symbols_key(const std::string& help) {
 std::vector<ErrorSymbol> positioning_errors(const std::vector<AxisName>& axes) {
   std::vector<ErrorSymbol> symbols;
   symbols.reserve(axes.size());
-  for (const AxisName axis : axes) symbols.push_back({kAllComponents[index_of(axis)], axis});
+  for (const AxisName axis : axes) symbols.push_back({positioning_component(axis), axis});
   return symbols;
 }
 

@@ -96,7 +96,7 @@ double radical_inverse(int index, int base) {
 }
 
 std::vector<AxisPosition> spread_poses(const Machine& machine, int count) {
-  constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13};
+  constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13, 17, 19, 23};
   std::vector<AxisPosition> poses(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     for (const Axis& axis : machine.axes) {

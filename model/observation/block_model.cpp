@@ -157,7 +157,8 @@ void BlockModel::find_levers(const ReadingBlock& block, const Eigen::VectorXd& p
   if (!levers.rotation_wt.empty()) {
     AxisPosition at{};
     for (int i = 0; i < kLanes; ++i) {
-      for (std::size_t axis = 0; axis < kAxisCount; ++axis) at[axis] = levers.position[axis][i];
+      for (const Joint& joint : machine.structure.joints)
+        at[index_of(joint.axis)] = levers.position[index_of(joint.axis)][i];
       const Eigen::Matrix3d rotation_wt = model_.chain().nominal_rotation_wt(at);
       for (int k = 0; k < 9; ++k)
         levers.rotation_wt[static_cast<std::size_t>(k)][i] = rotation_wt(k / 3, k % 3);

@@ -142,7 +142,7 @@ class CampaignBinder {
 
   CampaignBinding bind() {
     for (const Axis& axis : machine_.axes) {
-      if (is_rotary(axis.name)) continue;
+      if (is_rotary(axis.name) || is_parallel(axis.name)) continue;
       binding_.floor_pivot_w[direction_of(axis.name)] = 0.5 * (axis.travel_min + axis.travel_max);
     }
     add_function_groups();
@@ -262,7 +262,7 @@ class CampaignBinder {
       parameter = add_block(std::move(block));
     }
     ExpansionBinding expansion;
-    expansion.term = motion_term({kAllComponents[index_of(axis.name)], axis.name}, parameter);
+    expansion.term = motion_term({positioning_component(axis.name), axis.name}, parameter);
     expansion.axis = axis.name;
     expansion.per_kelvin = axis.expansion->per_kelvin;
     expansion.home = axis.home;

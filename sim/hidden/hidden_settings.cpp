@@ -199,7 +199,7 @@ Eigen::Vector3d HiddenSettings::middle_of_travel() const {
 
 double hours(const MachineState& state) { return state.time / 3600.0; }
 
-ErrorSymbol positioning_of(AxisName axis) { return {kAllComponents[index_of(axis)], axis}; }
+ErrorSymbol positioning_of(AxisName axis) { return {positioning_component(axis), axis}; }
 
 KeySchema symbol_key() { return {"symbol", KeyType::Text, true, "error motion, such as EXX"}; }
 

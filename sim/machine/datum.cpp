@@ -60,15 +60,8 @@ double uniform_mean(const ErrorFunction& function, double low, double high) {
 TruthInDatum::TruthInDatum(const TruthMachine& truth) : TruthInDatum(truth, truth.machine().datum) {}
 
 TruthInDatum::TruthInDatum(const TruthMachine& truth, Datum datum) : truth_(truth), datum_(datum) {
-  for (const AxisName name : kLinearAxes) {
-    const Axis& axis = truth.machine().axis(name);
-    for (const Component component : {Component::X, Component::Y, Component::Z}) {
-      const ErrorSymbol symbol{component, name};
-      if (!symbol.is_straightness()) continue;
-      slope_[index_of(name)][index_of(component)] = least_squares_slope(
-          [&](double q) { return truth.function_value(symbol, q); }, axis.travel_min, axis.travel_max);
-    }
-  }
+  for (const AxisName name : kLinearAxes) find_slopes(truth.machine().axis(name));
+  for (const AxisName name : truth.machine().parallel_axes()) find_slopes(truth.machine().axis(name));
   for (const Axis& axis : truth.machine().axes) {
     for (const Component component : kAllComponents) {
       const ErrorSymbol symbol{component, axis.name};
@@ -87,7 +80,29 @@ TruthInDatum::TruthInDatum(const TruthMachine& truth, Datum datum) : truth_(trut
   const Eigen::Vector3d third = direction_error(datum_.third()) - frame_rotation_.cross(e_t);
   squareness_ = {secondary.dot(e_t.cross(e_s)), third.dot(e_p.cross(e_t)), third.dot(e_s.cross(e_t))};
   set_locations();
+  set_angles_of_parallel_axes();
   carry_linear_constants();
+}
+
+void TruthInDatum::find_slopes(const Axis& axis) {
+  for (const Component component : {Component::X, Component::Y, Component::Z}) {
+    const ErrorSymbol symbol{component, axis.name};
+    if (!symbol.is_straightness()) continue;
+    slope_[index_of(axis.name)][index_of(component)] = least_squares_slope(
+        [&](double q) { return truth_.function_value(symbol, q); }, axis.travel_min, axis.travel_max);
+  }
+}
+
+/// Of the mean direction in the frame of the datum, turns about both directions across the axis.
+void TruthInDatum::set_angles_of_parallel_axes() {
+  const Machine& machine = truth_.machine();
+  for (const AxisName axis : machine.parallel_axes()) {
+    const Eigen::Vector3d turned = direction_error(axis) - frame_rotation_.cross(unit(axis));
+    for (const LocationSymbol& symbol : linear_locations(machine, axis)) {
+      const Eigen::Vector3d about = Eigen::Vector3d::Unit(direction_of(symbol.component));
+      locations_[symbol] = turned.dot(about.cross(unit(axis)));
+    }
+  }
 }
 
 void TruthInDatum::set_locations() {
@@ -148,8 +163,7 @@ void TruthInDatum::carry_linear_constants() {
 Eigen::Vector3d TruthInDatum::direction_error(AxisName axis) const {
   const Machine& machine = truth_.machine();
   Eigen::Vector3d error = Eigen::Vector3d::Zero();
-  for (const LocationSymbol& symbol : machine.datum.squareness()) {
-    if (symbol.axis != axis) continue;
+  for (const LocationSymbol& symbol : linear_locations(machine, axis)) {
     error +=
         truth_.location(symbol) * Eigen::Vector3d::Unit(direction_of(symbol.component)).cross(unit(axis));
   }
@@ -182,7 +196,8 @@ double TruthInDatum::value(ErrorSymbol symbol, double position) const {
 double TruthInDatum::location(LocationSymbol symbol) const {
   const auto found = locations_.find(symbol);
   if (found == locations_.end())
-    throw std::invalid_argument(symbol.name() + " is no location error of a rotary axis of this machine");
+    throw std::invalid_argument(symbol.name() +
+                                " is no location error of a rotary or parallel axis of this machine");
   return found->second;
 }
 

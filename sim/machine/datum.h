@@ -5,10 +5,11 @@
 ///
 /// The slope is the continuous, uniformly weighted one over the travel, 12/L^3 int (q - centre) f dq, by
 /// Gauss-Legendre quadrature; smooth functions are integrated to rounding (tested to 1e-12 relative).
-/// Of the six slopes three become squareness and three rotate the frame: both of the primary axis and, of the
-/// secondary axis, the one about the primary direction. Functional points in the datum differ from the truth
-/// machine's by a rigid motion and, where the frame is rotated by phi or an angle is not zero at home, by a
-/// constant phi x offset per tool; to second order in the errors.
+/// Of the six slopes of X, Y, Z three become squareness and three rotate the frame: both of the primary axis
+/// and, of the secondary axis, the one about the primary direction. Those of U, V, W become their angles.
+/// Functional points in the datum differ from the truth machine's by a rigid motion and, where the frame is
+/// rotated by phi or an angle is not zero at home, by a constant phi x offset per tool; to second order in
+/// the errors.
 ///
 /// Rotary axes. The four transverse error motions (EXC, EYC, EAC, EBC) have zero mean over the travel,
 /// uniformly weighted; displacement along the axis (EZC) and positioning (ECC) are zero at home. What is
@@ -47,8 +48,8 @@ class TruthInDatum {
   double value(ErrorSymbol symbol, double position) const;
   /// In the order of Datum::squareness(), rad.
   const std::array<double, 3>& squareness() const { return squareness_; }
-  /// Location error of a rotary axis, its own rotation being the zero position. Throws std::invalid_argument
-  /// for a linear axis.
+  /// Location error of a rotary axis, its own rotation being the zero position, or angle of U, V or W. Throws
+  /// std::invalid_argument for X, Y, Z.
   double location(LocationSymbol symbol) const;
   /// Slope moved out of a straightness function, rad; 0 for other symbols.
   double removed_slope(ErrorSymbol symbol) const;
@@ -59,12 +60,14 @@ class TruthInDatum {
   /// Constant that leaves a function for the datum.
   double removed_constant(ErrorSymbol symbol) const;
   Eigen::Vector3d direction_error(AxisName axis) const;
+  void find_slopes(const Axis& axis);
   void set_locations();
+  void set_angles_of_parallel_axes();
   void carry_linear_constants();
 
   TruthMachine truth_;
   Datum datum_;
-  std::array<std::array<double, 3>, 3> slope_{};  ///< [axis][component]
+  std::array<std::array<double, 3>, kAxisCount> slope_{};  ///< [axis][component], of linear axes
   std::array<double, 3> squareness_{};
   Eigen::Vector3d frame_rotation_ = Eigen::Vector3d::Zero();
   std::map<ErrorSymbol, double> mean_;  ///< of transverse error motions of rotary axes

@@ -146,6 +146,18 @@ void draft_rotary_axis(const Axis& axis, std::uint64_t seed, const RandomTruthOp
   }
 }
 
+/// Angles of U, V, W, each with numbers of its own: other axes keep theirs.
+void draft_parallel_axes(const Machine& machine, std::uint64_t seed, const RandomTruthOptions& options,
+                         Draft& draft) {
+  for (const AxisName axis : machine.parallel_axes()) {
+    for (const LocationSymbol& symbol : linear_locations(machine, axis)) {
+      RandomStream random(seed, "truth angle " + symbol.name());
+      const double size = random.uniform(kSquarenessMin, kSquarenessMax) * options.squareness_scale;
+      draft.locations.emplace_back(symbol, random.sign() * size);
+    }
+  }
+}
+
 TruthMachine assemble(const Machine& machine, const Draft& draft, double scale) {
   TruthMachine truth(machine);
   for (const auto& [symbol, function] : draft.functions) {
@@ -204,6 +216,7 @@ TruthMachine random_truth(const Machine& machine, std::uint64_t seed, const Rand
       const double size = random.uniform(kSquarenessMin, kSquarenessMax) * options.squareness_scale;
       draft.locations.emplace_back(symbol, random.sign() * size);
     }
+    draft_parallel_axes(machine, seed, options, draft);
     Draft linear = draft;
     std::erase_if(linear.functions, [](const auto& entry) { return is_rotary(entry.first.axis); });
     std::erase_if(linear.locations, [](const auto& entry) { return is_rotary(entry.first.axis); });

@@ -16,6 +16,20 @@ LocationSymbol location_symbol(int component, AxisName axis) {
 
 }  // namespace
 
+std::vector<LocationSymbol> linear_locations(const Machine& machine, AxisName axis) {
+  std::vector<LocationSymbol> angles;
+  if (is_parallel(axis)) {
+    for (int about = 0; about < 3; ++about) {
+      if (about != direction_of(axis)) angles.push_back(location_symbol(3 + about, axis));
+    }
+    return angles;
+  }
+  for (const LocationSymbol& symbol : machine.datum.squareness()) {
+    if (symbol.axis == axis) angles.push_back(symbol);
+  }
+  return angles;
+}
+
 TruthMachine::TruthMachine(Machine machine) : machine_(std::move(machine)) {
   for (const Joint& joint : machine_.structure.joints) {
     if (!machine_.has_axis(joint.axis)) {
@@ -30,11 +44,11 @@ void TruthMachine::set_error(ErrorSymbol symbol, ErrorFunction function) {
 }
 
 void TruthMachine::require_location(LocationSymbol symbol) const {
-  const auto squareness = machine_.datum.squareness();
-  if (!is_rotary(symbol.axis) && std::ranges::find(squareness, symbol) == squareness.end()) {
-    throw std::invalid_argument(symbol.name() + " is not a squareness of this datum");
-  }
   machine_.axis(symbol.axis);
+  if (is_rotary(symbol.axis)) return;
+  const auto angles = linear_locations(machine_, symbol.axis);
+  if (std::ranges::find(angles, symbol) == angles.end())
+    throw std::invalid_argument(symbol.name() + " is not a squareness of this datum");
 }
 
 void TruthMachine::set_location(LocationSymbol symbol, double value) {
@@ -54,7 +68,7 @@ void TruthMachine::set_reversal(ErrorSymbol symbol, double reversal) {
 
 void TruthMachine::set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel) {
   const double home = machine_.axis(axis).home;
-  const ErrorSymbol positioning{kAllComponents[index_of(axis)], axis};
+  const ErrorSymbol positioning{positioning_component(axis), axis};
   add_state_error(positioning, [=](const MachineState& state) {
     const auto found = state.temperature.find(channel);
     if (found == state.temperature.end()) {
@@ -104,12 +118,9 @@ double TruthMachine::error(ErrorSymbol symbol, const MachineState& state) const 
 }
 
 Eigen::Vector3d TruthMachine::direction_of_travel(AxisName axis, const MachineState& state) const {
-  const auto symbols = machine_.datum.squareness();
   Eigen::Vector3d u = unit(axis);
-  for (const LocationSymbol& symbol : symbols) {
-    if (symbol.axis != axis) continue;
+  for (const LocationSymbol& symbol : linear_locations(machine_, axis))
     u += location(symbol, state) * Eigen::Vector3d::Unit(direction_of(symbol.component)).cross(unit(axis));
-  }
   return u.normalized();
 }
 
@@ -152,8 +163,11 @@ MachineState TruthMachine::corrected(const MachineState& state) const {
   MachineState actual = state;
   if (!correction_) return actual;
   const CommandMoves added = correction_(state);
-  for (const AxisName axis : kAllAxes)
+  for (const Joint& joint : machine_.structure.joints) {
+    const AxisName axis = joint.axis;
+    if (is_parallel(axis)) continue;
     actual.position[index_of(axis)] += (is_rotary(axis) ? added.rotary : added.linear)[direction_of(axis)];
+  }
   return actual;
 }
 

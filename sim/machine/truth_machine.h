@@ -60,6 +60,10 @@ using CommandCorrection = std::function<CommandMoves(const MachineState& state)>
 
 inline constexpr double kReferenceTemperature = 20.0;  ///< degC, ISO 1
 
+/// The angles that turn a linear axis' direction of travel: of X, Y, Z the squareness errors of the datum, of
+/// U, V, W both angles across it.
+std::vector<LocationSymbol> linear_locations(const Machine& machine, AxisName axis);
+
 class TruthMachine {
  public:
   /// A perfect machine. Throws std::invalid_argument when an axis of the structure is not described.
@@ -68,8 +72,8 @@ class TruthMachine {
   const Machine& machine() const { return machine_; }
 
   void set_error(ErrorSymbol symbol, ErrorFunction function);
-  /// Squareness (a symbol of the machine's datum) or location error of a rotary axis, its own rotation being
-  /// the zero position. Throws std::invalid_argument for any other symbol.
+  /// Squareness (a symbol of the machine's datum), angle of U, V or W, or location error of a rotary axis,
+  /// its own rotation being the zero position. Throws std::invalid_argument for any other symbol.
   void set_location(LocationSymbol symbol, double value);
   /// Adds +-reversal/2 by direction of approach of the moving axis; nothing where it is unknown.
   void set_reversal(ErrorSymbol symbol, double reversal);

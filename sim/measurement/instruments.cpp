@@ -252,7 +252,12 @@ SetupGeometry geometry_of(const SetupPlan& plan, const MeasuringConditions& cond
 }
 
 double feed_of(const CommandedPoint& point) {
-  return std::hypot(point.velocity[0], point.velocity[1], point.velocity[2]);
+  const auto& v = point.velocity;
+  const auto along = [&](AxisName main, AxisName parallel) {
+    return v[index_of(main)] + v[index_of(parallel)];
+  };
+  return std::hypot(along(AxisName::X, AxisName::U), along(AxisName::Y, AxisName::V),
+                    along(AxisName::Z, AxisName::W));
 }
 
 /// Columns that describe how a point was reached.

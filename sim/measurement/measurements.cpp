@@ -52,7 +52,8 @@ Plane parse_plane(const std::string& name, const PlanContext& context) {
   if (name.size() == 2) {
     const auto first = axis_from_letter(name[0]);
     const auto second = axis_from_letter(name[1]);
-    if (first && second && *first != *second && !is_rotary(*first) && !is_rotary(*second)) {
+    if (first && second && direction_of(*first) != direction_of(*second) && !is_rotary(*first) &&
+        !is_rotary(*second)) {
       return {*first, *second};
     }
   }
@@ -60,6 +61,12 @@ Plane parse_plane(const std::string& name, const PlanContext& context) {
 }
 
 LineEnds axis_line(const Machine& machine, AxisName axis, const Eigen::Vector3d& at) {
+  if (is_parallel(axis)) {
+    LineEnds ends{at_fraction(machine, at), at_fraction(machine, at)};
+    ends.start.position[index_of(axis)] = machine.axis(axis).travel_min;
+    ends.end.position[index_of(axis)] = machine.axis(axis).travel_max;
+    return ends;
+  }
   Eigen::Vector3d low = at;
   Eigen::Vector3d high = at;
   low[direction_of(axis)] = 0.0;

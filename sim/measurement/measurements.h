@@ -45,12 +45,13 @@ struct Tracking {
   /// with the table.
   RotaryMotion rotary = RotaryMotion::Home;
   RotaryGrid rotary_grid;
-  Eigen::Vector3i grid{9, 7, 6};             ///< positions per axis; readings per run are twice the product
-  double jitter = 0.3;                       ///< largest, as a share of a grid step
-  double station_guess_error = 5e-3;         ///< standard deviation per component of the campaign's guesses
-  std::optional<double> station_sigma;       ///< stated in the campaign; absent = free
-  double dead_path_spread = 1e-3;            ///< how far the readings' zero is from the first point
-  double station_rotation_spread = 1e-2;     ///< rad, of a tracker's frame
+  bool parallel_moves = false;            ///< U, V, W at random positions of their travel, otherwise at home
+  Eigen::Vector3i grid{9, 7, 6};          ///< positions per axis; readings per run are twice the product
+  double jitter = 0.3;                    ///< largest, as a share of a grid step
+  double station_guess_error = 5e-3;      ///< standard deviation per component of the campaign's guesses
+  std::optional<double> station_sigma;    ///< stated in the campaign; absent = free
+  double dead_path_spread = 1e-3;         ///< how far the readings' zero is from the first point
+  double station_rotation_spread = 1e-2;  ///< rad, of a tracker's frame
   std::optional<double> length_scale_sigma;  ///< stated and drawn, one for all runs; absent = exact
   NoiseLevel noise{0.25e-6, 0.3e-6, 1e-6, 0.6e-6};
   double seconds_per_reading = 4.0;
@@ -155,6 +156,7 @@ struct PointGrid {
   Eigen::Vector3i grid{5, 4, 3};
   RotaryMotion rotary = RotaryMotion::Home;
   RotaryGrid rotary_grid;
+  bool parallel_moves = false;  ///< U, V, W at random positions of their travel, otherwise at home
   std::string tool;
   bool rigid_alignment = true;
   double alignment_shift = 20e-6;

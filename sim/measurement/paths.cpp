@@ -73,9 +73,9 @@ CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fracti
   CommandedPoint point;
   point.direction.fill(1);
   for (const Axis& axis : machine.axes) {
-    const double share = is_rotary(axis.name) ? 0.0 : fraction[direction_of(axis.name)];
-    point.position[index_of(axis.name)] =
-        is_rotary(axis.name) ? axis.home : axis.travel_min + share * axis.travel();
+    const bool stands = is_rotary(axis.name) || is_parallel(axis.name);
+    const double share = stands ? 0.0 : fraction[direction_of(axis.name)];
+    point.position[index_of(axis.name)] = stands ? axis.home : axis.travel_min + share * axis.travel();
   }
   return point;
 }
@@ -231,6 +231,26 @@ std::vector<CommandedPoint> random_points(const Machine& machine, int count, Ran
     }
   }
   return points;
+}
+
+void add_parallel_motion(const Machine& machine, bool there_and_back, RandomStream& random,
+                         std::vector<CommandedPoint>& points) {
+  const std::size_t half = there_and_back ? points.size() / 2 : points.size();
+  for (const AxisName name : machine.parallel_axes()) {
+    const Axis& axis = machine.axis(name);
+    const std::size_t k = index_of(name);
+    for (std::size_t i = 0; i < half; ++i) {
+      CommandedPoint& point = points[i];
+      point.position[k] = std::clamp(programmed(random.uniform(axis.travel_min, axis.travel_max)),
+                                     axis.travel_min, axis.travel_max);
+      if (i > 0 && point.direction[k] != 0)
+        point.direction[k] = point.position[k] < points[i - 1].position[k] ? std::int8_t{-1} : std::int8_t{1};
+      if (!there_and_back) continue;
+      CommandedPoint& back = points[points.size() - 1 - i];
+      back.position[k] = point.position[k];
+      back.direction[k] = static_cast<std::int8_t>(-point.direction[k]);
+    }
+  }
 }
 
 }  // namespace volcal::sim

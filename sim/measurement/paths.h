@@ -18,7 +18,7 @@ enum class RotaryMotion {
   Grid     ///< one node of a grid of rotary positions after another
 };
 
-/// Position of all axes with X, Y, Z at `fraction` of their travel and rotary axes at home.
+/// Position of all axes with X, Y, Z at `fraction` of their travel, U, V, W and rotary axes at home.
 CommandedPoint at_fraction(const Machine& machine, const Eigen::Vector3d& fraction);
 
 /// `count` equally spaced points from start to end, `runs` times forward and, if bidirectional, back; each
@@ -49,10 +49,15 @@ std::vector<CommandedPoint> points_between(const std::vector<CommandedPoint>& po
 /// direction of approach: the machine overruns it from the same side.
 void shuffle_lines(RandomStream& random, SetupPlan& plan);
 
-/// Uniformly distributed over the travel of the linear axes, in whole micrometres; rotary axes at home or
-/// uniformly distributed too, direction not recorded. `rotary`: Home or Random.
+/// Uniformly distributed over the travel of X, Y, Z, in whole micrometres; rotary axes at home or
+/// uniformly distributed too, U, V, W at home, direction not recorded. `rotary`: Home or Random.
 std::vector<CommandedPoint> random_points(const Machine& machine, int count, RandomStream& random,
                                           RotaryMotion rotary = RotaryMotion::Home);
+
+/// U, V, W of points that stand for X, Y, Z: uniformly distributed over their travel, in whole micrometres.
+/// `there_and_back`: the second half of the points are the first in reverse order from the other side.
+void add_parallel_motion(const Machine& machine, bool there_and_back, RandomStream& random,
+                         std::vector<CommandedPoint>& points);
 
 /// Direction of approach of `to` after the move from `from`; where an axis rests, the last one stays.
 void approach(const CommandedPoint& from, CommandedPoint& to);

@@ -26,7 +26,8 @@ void check_line(const Settings& settings, const PlanContext& context) {
 }
 
 void require_linear_axis(AxisName axis, const PlanContext& context) {
-  if (is_rotary(axis)) context.fail(std::string("axis ") + letter_of(axis) + " is rotary", "use X, Y or Z");
+  if (is_rotary(axis))
+    context.fail(std::string("axis ") + letter_of(axis) + " is rotary", "use X, Y or Z, or U, V, W");
 }
 
 /// Start and end of a diagonal: each bit of `corner` says from which end its axis starts.
@@ -138,7 +139,7 @@ std::vector<SetupPlan> plan_straightness(const StraightnessLines& settings, cons
   for (const AxisName axis : settings.axes) {
     require_linear_axis(axis, context);
     for (const AxisName across : kLinearAxes) {
-      if (across == axis) continue;
+      if (across == main_axis_of(axis)) continue;
       const std::string name = std::string("straightness_") + letter_of(axis) + letter_of(across);
       RandomStream random(context.seed, "artefact " + context.prefix + name);
       const Eigen::Vector3d rotation = settings.rotation_spread * random.normal_vector();
@@ -207,6 +208,10 @@ std::vector<SetupPlan> plan_point_grid(const PointGrid& settings, const PlanCont
     require_rotary_axes(context);
     RandomStream random(context.seed, "rotary positions of " + plan.name);
     add_rotary_motion(context.machine, settings.rotary, settings.rotary_grid, false, random, plan.points);
+  }
+  if (settings.parallel_moves) {
+    RandomStream random(context.seed, "parallel axes of " + plan.name);
+    add_parallel_motion(context.machine, false, random, plan.points);
   }
   plan.options.set("alignment", std::string(settings.rigid_alignment ? "rigid" : "none"));
   if (settings.rigid_alignment) {

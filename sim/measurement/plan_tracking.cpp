@@ -90,6 +90,11 @@ class TrackingPlanner {
       const RotaryGrid& rotary = settings_.rotary_grid;
       add_rotary_motion(context_.machine, settings_.rotary, rotary, true, random, plan.points);
       add_rotary_motion(context_.machine, settings_.rotary, rotary, true, elsewhere, plan.unseen);
+      if (settings_.parallel_moves) {
+        RandomStream parallel(context_.seed, "parallel axes of " + plan.name);
+        add_parallel_motion(context_.machine, true, parallel, plan.points);
+        add_parallel_motion(context_.machine, true, parallel, plan.unseen);
+      }
     } else {
       plan.points = run.points;
       plan.unseen = points_between(run.points, elsewhere);

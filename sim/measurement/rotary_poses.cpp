@@ -57,21 +57,22 @@ double jittered(const RotaryNodes& nodes, int index, double jitter, RandomStream
   return std::clamp(q + jitter * nodes.step * random.uniform(-1.0, 1.0), nodes.range[0], nodes.range[1]);
 }
 
+/// Rotary and parallel axes at home.
 CommandedPoint rotary_home(const Machine& machine) {
   CommandedPoint point;
   for (const Axis& axis : machine.axes) {
-    if (is_rotary(axis.name)) point.position[index_of(axis.name)] = axis.home;
+    if (is_rotary(axis.name) || is_parallel(axis.name)) point.position[index_of(axis.name)] = axis.home;
   }
   return point;
 }
 
 /// Every combination, each axis there and back while the next moves on.
-void append_combined(const std::vector<RotaryNodes>& nodes, const RotaryGrid& grid, RandomStream& random,
-                     std::vector<CommandedPoint>& path) {
+void append_combined(const Machine& machine, const std::vector<RotaryNodes>& nodes, const RotaryGrid& grid,
+                     RandomStream& random, std::vector<CommandedPoint>& path) {
   int total = 1;
   for (const RotaryNodes& axis : nodes) total *= axis.count;
   for (int i = 0; i < total; ++i) {
-    CommandedPoint point;
+    CommandedPoint point = rotary_home(machine);
     int rest = i;
     for (const RotaryNodes& axis : nodes) {
       const int place = rest % axis.count;
@@ -142,7 +143,7 @@ std::vector<CommandedPoint> rotary_path(const Machine& machine, const RotaryGrid
   std::vector<CommandedPoint> path;
   if (nodes.empty()) return path;
   if (grid.combined) {
-    append_combined(nodes, grid, random, path);
+    append_combined(machine, nodes, grid, random, path);
   } else {
     append_singly(machine, nodes, grid, random, path);
   }

@@ -91,7 +91,7 @@ sim::HiddenEffect random_rotary_effect(const std::string& kind, const sim::Study
   const double turn = 2.0 * std::numbers::pi;
   if (kind == "worm") {
     const AxisName axis = any_of(random, axes);
-    set("symbol", ErrorSymbol{static_cast<Component>(index_of(axis)), axis}.name());
+    set("symbol", ErrorSymbol{positioning_component(axis), axis}.name());
     set("period", turn / any_of(random, std::array{36.0, 60.0, 72.0, 90.0, 120.0}));
     set("phase", random.uniform(0.0, turn));
   } else if (kind == "cradle-table") {

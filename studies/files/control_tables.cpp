@@ -12,6 +12,7 @@
 #include "volcal/identify/compensation/measurement_record.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/studies/files/control_words.h"
 #include "volcal/studies/files/rotary_control_tables.h"
 #include "volcal/studies/files/typed_control_tables.h"
@@ -91,7 +92,7 @@ sim::ControlTables csv_control(std::span<const TableFile> files) {
     const double value = std::stod(cells.at(5)) * kMicrometre;
     if (const auto location = LocationSymbol::parse(cells.at(0))) {
       if (is_rotary(location->axis) && !rotary) continue;
-      const auto squareness = metadata.machine.datum.squareness();
+      const auto squareness = squareness_errors(metadata.machine);
       const bool known =
           is_rotary(location->axis) || std::ranges::find(squareness, *location) != squareness.end();
       if (!known || !metadata.machine.has_axis(location->axis))

@@ -30,7 +30,7 @@ std::vector<PointColumn> point_columns(const CsvTable& table) {
                            point.position[k] = value * unit;
                            return std::abs(point.position[k]) <= kFurthest;
                          }});
-    } else if (!is_rotary(axis)) {
+    } else if (!is_rotary(axis) && !is_parallel(axis)) {
       throw InputError(table.header_place(), "column " + name + " is missing",
                        "give x_mm, y_mm and z_mm of every position");
     }

@@ -39,6 +39,10 @@ std::string truth_csv(const sim::TruthMachine& truth) {
   const auto symbols = tables.datum().squareness();
   for (std::size_t i = 0; i < symbols.size(); ++i) text += location_row(symbols[i], tables.squareness()[i]);
   for (const Axis& axis : truth.machine().axes) {
+    if (is_parallel(axis.name)) {
+      for (const LocationSymbol& symbol : sim::linear_locations(truth.machine(), axis.name))
+        text += location_row(symbol, tables.location(symbol));
+    }
     if (!is_rotary(axis.name)) continue;
     for (const Component component : kAllComponents) {
       const LocationSymbol symbol{component, axis.name};

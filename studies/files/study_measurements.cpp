@@ -184,6 +184,7 @@ sim::Tracking read_tracking(const TomlTable& table) {
                       static_cast<double>(std::max<std::size_t>(settings.runs.size(), 1)));
   if (const auto jitter = table.number("jitter", {0.0, 0.5})) settings.jitter = *jitter;
   read_rotary_motion(table, settings.rotary, settings.rotary_grid);
+  settings.parallel_moves = table.choice("parallel", {"home", "random"}).value_or("home") == "random";
   read(table, "guess_error_mm", settings.station_guess_error);
   read(table, "station_sigma_mm", settings.station_sigma);
   read(table, "scale_sigma_um_per_m", settings.length_scale_sigma);
@@ -303,6 +304,7 @@ sim::MeasurementSettings read_point_grid(const TomlTable& table) {
   sim::PointGrid settings;
   read_grid(table, settings.grid);
   read_rotary_motion(table, settings.rotary, settings.rotary_grid);
+  settings.parallel_moves = table.choice("parallel", {"home", "random"}).value_or("home") == "random";
   read(table, "tool", settings.tool);
   settings.rigid_alignment = table.choice("alignment", {"rigid", "none"}).value_or("rigid") == "rigid";
   read(table, "alignment_shift_um", settings.alignment_shift);

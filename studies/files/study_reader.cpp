@@ -10,6 +10,7 @@
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/unknowns.h"
 #include "volcal/studies/files/control_tables.h"
 
 namespace volcal {
@@ -44,7 +45,7 @@ void read_symbols(const TomlTable& parent, const std::string& name, bool rotatio
 
 void check_location(const TomlTable& truth, const std::string& table_name, LocationSymbol symbol,
                     const Machine& machine) {
-  const auto squareness = machine.datum.squareness();
+  const auto squareness = squareness_errors(machine);
   if (is_rotary(symbol.axis) || std::ranges::find(squareness, symbol) != squareness.end()) return;
   std::string names;
   for (const LocationSymbol& known : squareness) names += (names.empty() ? "" : ", ") + known.name();

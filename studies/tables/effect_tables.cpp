@@ -64,7 +64,7 @@ std::vector<EffectCase> all_cases() {
 ModelSpec model_with(const std::vector<EffectSpec>& effects) {
   ModelSpec model;
   for (const AxisName axis : kLinearAxes) {
-    const ErrorSymbol symbol{kAllComponents[index_of(axis)], axis};
+    const ErrorSymbol symbol{positioning_component(axis), axis};
     model.effects.push_back(effect_spec("reversal", {{"symbol", symbol.name()}}));
   }
   model.effects.insert(model.effects.end(), effects.begin(), effects.end());

@@ -40,10 +40,9 @@ inline Machine machine_of(const std::string& code) {
   return machine;
 }
 
-/// Axes X Y Z A B C in random order, each on a random side of the bed; reference points within +-0.5 m,
-/// centres within +-0.3 m.
-inline Machine random_machine(std::mt19937_64& random) {
-  std::string letters = "XYZABC";
+/// The axes in random order, each on a random side of the bed; reference points within +-0.5 m, centres
+/// within +-0.3 m.
+inline Machine random_machine(std::mt19937_64& random, std::string letters = "XYZABC") {
   std::ranges::shuffle(letters, random);
   const auto bed = std::uniform_int_distribution<std::size_t>(0, letters.size())(random);
   Machine machine = machine_of("w" + letters.substr(0, bed) + "b" + letters.substr(bed) + "t");
@@ -78,6 +77,12 @@ inline PoseErrors<double> random_errors(std::mt19937_64& random, const Machine& 
   }
   for (const LocationSymbol symbol : machine.datum.squareness()) {
     errors.location[index_of(symbol.axis)][index_of(symbol.component)] = uniform(random, rotation);
+  }
+  for (const AxisName axis : machine.parallel_axes()) {
+    for (const Component about : {Component::A, Component::B, Component::C}) {
+      if (direction_of(about) == direction_of(axis)) continue;
+      errors.location[index_of(axis)][index_of(about)] = uniform(random, rotation);
+    }
   }
   return errors;
 }

@@ -8,6 +8,7 @@
 #include "tests/support/identified_machines.h"
 #include "tests/support/machines.h"
 #include "tests/support/random_matrix.h"
+#include "volcal/model/description/unknowns.h"
 
 namespace volcal::testing_support {
 
@@ -38,9 +39,8 @@ inline FitResult random_result(Machine machine, std::mt19937_64& random) {
       given.locations[LocationSymbol{component, axis.name}.name()] = uniform(random, 1e-5);
     }
   }
-  for (const LocationSymbol symbol : machine.datum.squareness()) {
-    if (machine.has_axis(symbol.axis)) given.locations[symbol.name()] = uniform(random, 1e-5);
-  }
+  for (const LocationSymbol& symbol : squareness_errors(machine))
+    given.locations[symbol.name()] = uniform(random, 1e-5);
   FitResult result = testing::result_with(machine, given, 5);
   add_tool_block(result, "estimated", random);
   const Eigen::MatrixXd root = 1e-6 * test::random_matrix(random, result.layout.size, result.layout.size);

@@ -27,6 +27,12 @@ struct InitArguments {
 };
 
 std::string axis_table(AxisName axis) {
+  if (is_parallel(axis))
+    return fmt::format(
+        "[axes.{0}]  # beside {1}, as a quill: it stands at home where {1} moves over the volume\n"
+        "travel_mm = [0.0, 300.0]\nhome_mm = 0.0\nreference_point_mm = [0.0, 0.0, 0.0]  # where the scale "
+        "reads, all axes at 0\n",
+        letter_of(axis), letter_of(main_axis_of(axis)));
   return fmt::format(
       "[axes.{}]\ntravel_mm = [0.0, 500.0]\nhome_mm = 0.0\nreference_point_mm = [0.0, 0.0, 0.0]  # where the "
       "scale reads, all axes at 0\n",
@@ -67,7 +73,7 @@ std::string machine_toml(const Structure& structure) {
          "[tools.front]\noffset_mm = [0.0, 100.0, -200.0]\n";
 }
 
-/// Columns of the commanded positions, in the order X Y Z A B C.
+/// Columns of the commanded positions, in the order X Y Z A B C U V W.
 std::string position_columns(const Structure& structure) {
   std::string text;
   for (const AxisName axis : kAllAxes) {
@@ -200,7 +206,8 @@ std::function<int()> define_init(CLI::App& app) {
 const Command& init_command() {
   static const Command command = {"init", "write a commented machine, model and campaign to start from",
                                   "  volcal init \"w X' b Y Z t\" -o my-machine\n"
-                                  "  volcal init \"w C' A' b X Y Z t\" -o five-axis\n",
+                                  "  volcal init \"w C' A' b X Y Z t\" -o five-axis\n"
+                                  "  volcal init \"w X' b Y Z W t\" -o boring-mill\n",
                                   define_init};
   return command;
 }

@@ -22,11 +22,12 @@ ApproachDirection direction_of_row(const Readings& readings, std::size_t row) {
   return direction;
 }
 
-/// A correction as motions of the joints: of each axis along, or about, itself.
+/// A correction as motions of the joints: of each axis along, or about, itself; U, V, W get none.
 Eigen::VectorXd as_disturbance(const Correction& correction, const Structure& structure) {
   Eigen::VectorXd moves = Eigen::VectorXd::Zero(kDisturbances);
   for (std::size_t joint = 0; joint < structure.joints.size(); ++joint) {
     const AxisName axis = structure.joints[joint].axis;
+    if (is_parallel(axis)) continue;
     const int direction = direction_of(axis);
     moves[static_cast<Eigen::Index>(6 * joint + index_of(axis))] =
         is_rotary(axis) ? correction.rotary[direction] : correction.linear[direction];

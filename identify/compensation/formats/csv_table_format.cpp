@@ -151,6 +151,7 @@ const TableFormat& csv_table_format() {
       .rotary = CompensationType::rotary_volumetric(),
       .rigid = true,
       .indivisible = true,
+      .parallel_axes = true,
       .positions_of_own = true,
       .refusal = "its tables per error are the whole model",
       .limits = {.both_directions = true},

@@ -108,12 +108,12 @@ std::string any_instrument() {
 /// Pattern of a word; only what stands for something in the files varies.
 std::regex expression_of(std::string_view pattern) {
   const std::pair<std::string_view, std::string> places[] = {
-      {"dir_AXIS ...", "dir_[xyzabc]( dir_[xyzabc])*"},
-      {"AXIS ...", "[xyzabc]( [xyzabc])*"},
-      {"SYMBOL ...", "E[XYZABC]0?[XYZABC]( E[XYZABC]0?[XYZABC])*"},
-      {"SYMBOL", "E[XYZABC]0?[XYZABC]"},
-      {"AXIS", "[xyzabc]"},
-      {"PLANE", "[XYZABC]{2}"},
+      {"dir_AXIS ...", "dir_[xyzabcuvw]( dir_[xyzabcuvw])*"},
+      {"AXIS ...", "[xyzabcuvw]( [xyzabcuvw])*"},
+      {"SYMBOL ...", "E[XYZABC]0?[XYZABCUVW]( E[XYZABC]0?[XYZABCUVW])*"},
+      {"SYMBOL", "E[XYZABC]0?[XYZABCUVW]"},
+      {"AXIS", "[xyzabcuvw]"},
+      {"PLANE", "[XYZABCUVW]{2}"},
       {"RUN", "-?[0-9]+"},
       {"TOOL", ".+"},
       {"STATION", ".+"},

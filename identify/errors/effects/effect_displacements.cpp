@@ -39,7 +39,8 @@ EffectDisplacements::Lever EffectDisplacements::lever_of(const KinematicChain& c
                                           target.symbol.component);
   };
   Lever lever{at({}), {}};
-  for (const AxisName axis : kLinearAxes) {
+  for (const AxisName axis : kAllAxes) {
+    if (is_rotary(axis)) continue;
     AxisPosition a_metre_on{};
     a_metre_on[index_of(axis)] = 1.0;
     const Vector3d change = at(a_metre_on) - lever.at_zero;

@@ -51,8 +51,9 @@ class PoseReadings {
   Readings& readings() { return campaign_.setups.front().readings; }
 
   Eigen::Vector3d nominal_point(const AxisPosition& position) const {
-    const bool turned = position[3] != 0.0 || position[4] != 0.0 || position[5] != 0.0;
-    if (turned) return chain_.nominal_point_w(position, tool_offset_);
+    const bool beyond_main_axes =
+        std::any_of(position.begin() + 3, position.end(), [](double value) { return value != 0.0; });
+    if (beyond_main_axes) return chain_.nominal_point_w(position, tool_offset_);
     return tool_offset_ + Eigen::Vector3d(position[0], position[1], position[2]);
   }
 
@@ -86,14 +87,15 @@ bool acts_on_machine(const Effect& effect) {
 /// Poses that fill the travel, with both directions of approach.
 void probe_poses(const Machine& machine, std::vector<AxisPosition>& positions,
                  std::vector<ApproachDirection>& directions) {
-  constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13};
+  constexpr std::array<int, kAxisCount> kBases = {2, 3, 5, 7, 11, 13, 17, 19, 23};
+  constexpr std::array<int, kAxisCount> kBasesOfDirections = {3, 5, 7, 11, 13, 2, 19, 23, 17};
   for (int i = 1; i <= kProbes; ++i) {
     AxisPosition position{};
     ApproachDirection direction{};
     for (const Axis& axis : machine.axes) {
       const std::size_t a = index_of(axis.name);
       position[a] = axis.travel_min + axis.travel() * radical_inverse(i, kBases[a]);
-      direction[a] = radical_inverse(i, kBases[(a + 1) % kAxisCount]) < 0.5 ? -1 : 1;
+      direction[a] = radical_inverse(i, kBasesOfDirections[a]) < 0.5 ? -1 : 1;
     }
     positions.push_back(position);
     directions.push_back(direction);

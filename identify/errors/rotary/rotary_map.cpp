@@ -37,7 +37,8 @@ std::vector<int> rotary_parameters(const FitResult& result, const ErrorField& fi
 }
 
 PoseErrors<double> of_rotary_axes_alone(PoseErrors<double> errors) {
-  for (const AxisName axis : kLinearAxes) {
+  for (const AxisName axis : kAllAxes) {
+    if (is_rotary(axis)) continue;
     errors.motion[index_of(axis)] = {};
     errors.location[index_of(axis)] = {};
   }
@@ -78,13 +79,14 @@ class RotaryMapMaker {
   }
 
  private:
-  /// The linear axes bring the nominal tool point to the point, by least squares.
+  /// X, Y, Z bring the nominal tool point to the point, by least squares; U, V, W stand at home.
   AxisPosition followed(AxisPosition position) const {
     Eigen::MatrixXd moves(3, 0);
     std::vector<AxisName> axes;
+    for (const AxisName axis : machine_.parallel_axes()) position[index_of(axis)] = machine_.axis(axis).home;
     const Vector3d here = chain_.nominal_point_w(position, tool_.offset);
     for (const Axis& axis : machine_.axes) {
-      if (is_rotary(axis.name)) continue;
+      if (is_rotary(axis.name) || is_parallel(axis.name)) continue;
       AxisPosition moved = position;
       moved[index_of(axis.name)] += 1.0;
       moves.conservativeResize(Eigen::NoChange, moves.cols() + 1);
@@ -104,8 +106,9 @@ class RotaryMapMaker {
   }
 
   bool is_beyond(AxisPosition position) const {
-    for (const AxisName axis : kLinearAxes)
-      position[index_of(axis)] = field_.measured().held(position)[index_of(axis)];
+    for (const AxisName axis : kAllAxes) {
+      if (!is_rotary(axis)) position[index_of(axis)] = field_.measured().held(position)[index_of(axis)];
+    }
     return field_.measured().is_beyond(position);
   }
 

@@ -13,7 +13,7 @@ namespace {
 Eigen::Vector3d movable_of(const Machine& machine) {
   Eigen::Vector3d movable = Eigen::Vector3d::Zero();
   for (const Axis& axis : machine.axes) {
-    if (!is_rotary(axis.name)) movable[static_cast<Eigen::Index>(index_of(axis.name))] = 1.0;
+    if (!is_rotary(axis.name)) movable[direction_of(axis.name)] = 1.0;
   }
   return movable;
 }

@@ -29,8 +29,8 @@ bool differ_in_axis(const std::string& one, const std::string& other) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a[i] == b[i]) continue;
     ++differing;
-    axes = axes && std::string_view("xyzabc").find(a[i]) != std::string_view::npos &&
-           std::string_view("xyzabc").find(b[i]) != std::string_view::npos;
+    axes = axes && std::string_view("xyzabcuvw").find(a[i]) != std::string_view::npos &&
+           std::string_view("xyzabcuvw").find(b[i]) != std::string_view::npos;
   }
   return differing == 1 && axes;
 }

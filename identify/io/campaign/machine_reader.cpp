@@ -159,7 +159,7 @@ class MachineReader {
   void read_datum() {
     const auto table = root_.table("datum");
     const auto linear =
-        std::ranges::count_if(machine_.axes, [](const Axis& axis) { return !is_rotary(axis.name); });
+        std::ranges::count_if(kLinearAxes, [&](AxisName axis) { return machine_.has_axis(axis); });
     use_default_datum();
     if (table) {
       if (linear >= 1 || table->has("primary")) machine_.datum.primary = datum_axis(*table, "primary");
@@ -181,8 +181,8 @@ class MachineReader {
   static AxisName datum_axis(const TomlTable& table, const std::string& key) {
     const std::string name = table.required_text(key);
     const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
-    if (!axis || is_rotary(*axis)) {
-      table.fail(key, "datum." + key + " = \"" + printable(name) + "\" is not a linear axis",
+    if (!axis || is_rotary(*axis) || is_parallel(*axis)) {
+      table.fail(key, "datum." + key + " = \"" + printable(name) + "\" is not one of X, Y, Z",
                  "the machine frame follows linear axes: \"X\", \"Y\" or \"Z\"");
     }
     return *axis;

@@ -106,7 +106,7 @@ class LaserReadings {
               std::string("--measures E?") + letter_of(axis) +
                   ", as EYX (straightness of X along y) or ECX (rotation of X about z)");
     }
-    return {static_cast<Component>(index_of(axis)), axis};
+    return {positioning_component(axis), axis};
   }
 
   std::optional<LineReading> stated_kind() {

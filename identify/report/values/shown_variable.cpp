@@ -5,7 +5,7 @@
 namespace volcal::report {
 
 ShownVariable shown_variable(const std::string& name) {
-  if (name.size() == 1 && std::string("xyz").find(name) != std::string::npos) {
+  if (name.size() == 1 && std::string("xyzuvw").find(name) != std::string::npos) {
     return {"Position " + name, "mm", kPerMilli};
   }
   if (name.size() == 1) return {"Position " + name, "deg", 1.0 / kRadianPerDegree};

@@ -23,12 +23,13 @@ double max_norm(const std::vector<Eigen::Vector3d>& vectors) {
   return largest;
 }
 
-/// True when every linear axis stands at an end of its travel.
+/// True when X, Y, Z stand at an end of their travel.
 bool is_corner(const Machine& machine, const AxisPosition& position) {
   return std::ranges::all_of(machine.axes, [&](const Axis& axis) {
     const double from_start = position[index_of(axis.name)] - axis.travel_min;
     const double tolerance = 1e-9 * axis.travel();
-    return is_rotary(axis.name) || from_start < tolerance || from_start > axis.travel() - tolerance;
+    return is_rotary(axis.name) || is_parallel(axis.name) || from_start < tolerance ||
+           from_start > axis.travel() - tolerance;
   });
 }
 

@@ -50,6 +50,21 @@ TEST(ErrorGrid, IsTheVolumetricErrorAtEveryNodeOfAnyMachine) {
   for (int i = 0; i < 30; ++i) expect_same_as_plain(random_result(random_machine(random), random), 3);
 }
 
+TEST(ErrorGrid, ParallelAxesStandAtHome) {
+  std::mt19937_64 random(44);
+  for (const char* letters : {"XYZW", "XZW", "XYZUVW", "XYZWBC"}) {
+    for (int i = 0; i < 4; ++i) {
+      Machine machine = random_machine(random, letters);
+      for (Axis& axis : machine.axes) axis.home = is_parallel(axis.name) ? 0.3 : 0.0;
+      const FitResult result = random_result(machine, random);
+      for (const AxisPosition& position : grid_positions(machine, 2)) {
+        for (const AxisName axis : machine.parallel_axes()) EXPECT_EQ(position[index_of(axis)], 0.3);
+      }
+      expect_same_as_plain(result, 3);
+    }
+  }
+}
+
 TEST(ErrorGrid, AxesThatTheMachineLacksHaveOneNode) {
   std::mt19937_64 random(42);
   for (const char* code : {"wX'bZt", "wC'X'bYt", "wbAYt", "wZ'bt"})

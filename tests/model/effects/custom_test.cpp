@@ -213,7 +213,7 @@ TEST_F(Custom, SaysWhichColumnIsMissing) {
 TEST_F(Custom, SaysWhatIsWrongWithATarget) {
   const auto said = [&](const std::string& target) { return refusal(custom(target, "x")); };
   for (const char* wrong :
-       {"EXW", "tool", "tool w", "station x", "station P1", "reading", "length", "floor x"}) {
+       {"EXQ", "tool", "tool w", "station x", "station P1", "reading", "length", "floor x"}) {
     EXPECT_THAT(said(wrong), HasSubstr("is no target")) << wrong;
   }
   EXPECT_THAT(said("EXA"), HasSubstr("the machine has no axis A"));
@@ -244,7 +244,7 @@ TEST_F(Custom, TheTravelSinceTurningCountsFromTheReadingBefore) {
   EXPECT_NEAR(driver(since, "S1", 4), 15.0, 1e-9);
   EXPECT_NEAR(driver(since, "S1", 23), 34.0, 1e-9);
   EXPECT_NEAR(driver(since, "S1", 1), 34.0, 1e-9) << "as far as ever until it first turns";
-  EXPECT_THAT(refusal(custom("EXX", "since_w")), HasSubstr("since_x"));
+  EXPECT_THAT(refusal(custom("EXX", "since_q")), HasSubstr("since_x"));
 }
 
 /// Names of channels that are no names of variables.

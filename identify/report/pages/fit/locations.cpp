@@ -19,6 +19,9 @@ std::string meaning_of_location(LocationSymbol symbol) {
                              "xyz"[direction_of(symbol.component)])
                : fmt::format("location of the {} axis in {}", axis, "xyz"[direction_of(symbol.component)]);
   }
+  if (is_parallel(symbol.axis))
+    return fmt::format("direction of {} about {}; parallelism to {} is the difference", axis,
+                       "xyz"[direction_of(symbol.component)], letter_of(main_axis_of(symbol.axis)));
   const int other = 3 - direction_of(symbol.component) - direction_of(symbol.axis);
   return fmt::format("squareness of {} to {}", axis, "XYZ"[other]);
 }

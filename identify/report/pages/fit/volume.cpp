@@ -124,16 +124,19 @@ Json volume_page(const PageInput& input) {
   for (const Axis& axis : machine.axes) {
     if (is_rotary(axis.name)) {
       rotary = true;
-    } else {
+    } else if (!is_parallel(axis.name)) {
       linear_axes.push_back(axis_letter(axis.name));
     }
   }
-  return {{"linear_axes", std::move(linear_axes)},
-          {"has_rotary", rotary},
-          {"tools", std::move(tools)},
-          {"named_points", named_points(input.result)},
-          {"setups", std::move(setups)},
-          {"coverage", rounded(input.result.coverage_factor)}};
+  Json page = {{"linear_axes", std::move(linear_axes)},
+               {"has_rotary", rotary},
+               {"tools", std::move(tools)},
+               {"named_points", named_points(input.result)},
+               {"setups", std::move(setups)},
+               {"coverage", rounded(input.result.coverage_factor)}};
+  const std::string standing = letters_of(machine.parallel_axes());
+  if (!standing.empty()) page["at_home"] = standing;
+  return page;
 }
 
 }  // namespace volcal::report

@@ -51,8 +51,9 @@ bool moves(const Setup& setup, AxisName axis) {
     return *high - *low;
   };
   double largest = 0.0;
-  for (const AxisName each : {AxisName::X, AxisName::Y, AxisName::Z})
-    largest = std::max(largest, travel(each));
+  for (const AxisName each : kAllAxes) {
+    if (!is_rotary(each)) largest = std::max(largest, travel(each));
+  }
   return travel(axis) > 0.1 * largest;
 }
 
@@ -190,7 +191,7 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
   const AxisName axis = table.axis("axis");
   if (is_rotary(axis)) table.fail("circles move no rotary axis", "name a linear axis");
   const bool feed = by_feed(table);
-  const ErrorSymbol symbol{static_cast<Component>(direction_of(axis)), axis};
+  const ErrorSymbol symbol{positioning_component(axis), axis};
   const std::string label = std::string("following error ") + letter_of(axis) + (feed ? " by feed" : "");
   const std::string direction = std::string("dir_") + lower_letter_of(axis);
   auto effect = std::make_unique<FormulaEffect>(

@@ -34,11 +34,11 @@ std::unique_ptr<FormulaEffect> make_scale_expansion(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = "expansion " + linear_axis_text(axis) + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"scale-expansion", ErrorSymbol{kAllComponents[index_of(axis)], axis}.name(), "T_" + channel,
+      EffectName{"scale-expansion", ErrorSymbol{positioning_component(axis), axis}.name(), "T_" + channel,
                  "linear"},
       std::vector<EffectAmplitude>{
           {.label = label,
-           .target = {.kind = TargetKind::Motion, .symbol = {kAllComponents[index_of(axis)], axis}},
+           .target = {.kind = TargetKind::Motion, .symbol = {positioning_component(axis), axis}},
            .key = "amplitude_um_per_m_K",
            .guess = table.number("amplitude", 0.0)}},
       [axis, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
@@ -137,7 +137,7 @@ std::vector<EffectSpec> tool_expansions(const Campaign& campaign) {
 
 std::unique_ptr<FormulaEffect> make_screw_heating(const EffectTable& table) {
   const AxisName axis = table.axis("axis");
-  const ErrorSymbol symbol{kAllComponents[index_of(axis)], axis};
+  const ErrorSymbol symbol{positioning_component(axis), axis};
   const std::string label = "screw heating " + linear_axis_text(axis);
   auto effect = std::make_unique<FormulaEffect>(
       EffectName{"screw-heating", symbol.name(), std::string("time ") + lower_letter_of(axis),
@@ -201,7 +201,7 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
 
 std::vector<EffectSpec> squareness_drifts(const Campaign& campaign) {
   std::vector<EffectSpec> specs;
-  for (const LocationSymbol& symbol : campaign.machine.datum.squareness()) {
+  for (const LocationSymbol& symbol : squareness_errors(campaign.machine)) {
     if (has_time(campaign)) specs.push_back(effect_spec("squareness-drift", {{"symbol", symbol.name()}}));
     for (const std::string& channel : temperature_channels(campaign)) {
       specs.push_back(effect_spec("squareness-drift", {{"symbol", symbol.name()}, {"temperature", channel}}));

@@ -188,7 +188,7 @@ export function renderVolume(body, data) {
     el('div', { class: 'scenes' }, nodes.map((node, k) => el('figure', {}, [captions[k], node]))),
     el('div', { class: 'volume-foot' }, [tables, el('div', {}, [
     note('Left: identified error of the functional point, each line from the nominal point to the magnified actual one (dot). Right, at the same magnification and with the same shades: one of the error fields that the readings leave possible once the identified errors are corrected, drawn from their joint uncertainty; its direction is not known, its size is that of the uncertainty. It does not cover repeatability, temperature or effects that the model lacks. The best rigid motion is removed from both, as volcal validate does; volumetric_grid.csv has the errors relative to home.'),
-    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures; the buttons above a picture move and zoom it.`),
+    note(`Workpiece coordinates.${data.has_rotary ? ' Rotary axes at 0.' : ''}${data.at_home ? ` ${data.at_home} at home.` : ''} Point at a line to read its setup, click a name in the legend to show or hide what the instrument measured; drag to turn both pictures; the buttons above a picture move and zoom it.`),
     ])]),
   );
 }

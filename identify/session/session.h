@@ -51,6 +51,7 @@ struct SessionOptions {
   SessionProgress progress;
 };
 
+class KeptFigures;
 class Session;
 struct SessionModel;
 
@@ -228,6 +229,7 @@ class Session {
   struct Node;
   struct Fitting;
   struct FittedModel;
+  struct FiguresOfModel;
 
   Fitting fitting() const;
   static RefittedModel refitted(const Recipe& preview, const ModelState& state,
@@ -249,7 +251,8 @@ class Session {
                      const std::vector<EffectFinding>& effects, const std::string& change) const;
   static SessionChange appending(std::size_t parent, FittedModel fitted, std::vector<EffectFinding> effects,
                                  std::string change);
-  void describe(Node& made, SessionModel& shown) const;
+  void describe(Node& made, SessionModel& shown);
+  const KeptFigures& figures_of(const Recipe& recipe);
   std::size_t place_of(const EffectName& effect) const;
 
   SessionOptions options_;
@@ -261,6 +264,8 @@ class Session {
   std::size_t current_ = 0;
   std::vector<std::size_t> undone_;
   std::vector<std::size_t> recent_;  ///< models, the last one first
+  /// Of the models without added effects that were described last; at most kKeptFigures.
+  std::vector<std::shared_ptr<const FiguresOfModel>> kept_figures_;
 };
 
 }  // namespace volcal

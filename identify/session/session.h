@@ -187,7 +187,7 @@ class Session {
   /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
   SessionWork removal(const EffectName& effect) const;
   /// A linear preview with its noise found again, shapes of its effects moved to where readings want them,
-  /// and residuals of the exact model; 0.7 to 0.8 s of processor time at 6,720 readings. Nothing changes
+  /// and residuals of the exact model; 0.25 s of processor time at 6,720 readings. Nothing changes
   /// where it has been refitted or fitted. Throws std::out_of_range.
   SessionWork refit(std::size_t model) const;
   SessionWork refit() const { return refit(current_); }

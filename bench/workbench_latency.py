@@ -1,9 +1,11 @@
 """How long the workbench takes to answer, and from an input to the picture, beside what is wanted.
 
-Usage: workbench_latency.py PROGRAM [--readings 6048,100000] [--repeats N] [--browser CHROMIUM MODULES]
+Usage: workbench_latency.py PROGRAM [--session SESSION_BENCH] [--readings 6048,100000] [--repeats N]
+                            [--browser CHROMIUM MODULES]
 
 The campaigns are simulated by `volcal study criticism --one`. Times of the program are measured by a client on the
-same machine; those of the page by identify/workbench/web/check/times.mjs in headless Chromium.
+same machine; those of the page by identify/workbench/web/check/times.mjs in headless Chromium; processor times of
+the session behind it, which other programs disturb less, by session_bench.
 """
 import argparse
 import http.client
@@ -117,6 +119,7 @@ def main():
     parser.add_argument("program")
     parser.add_argument("--readings", default="6048,100000", help="of the campaigns, about")
     parser.add_argument("--repeats", type=int, default=20)
+    parser.add_argument("--session", metavar="SESSION_BENCH", help="also the processor time of the session alone")
     parser.add_argument("--browser", nargs=2, metavar=("CHROMIUM", "MODULES"), help="also from the input to the picture")
     arguments = parser.parse_args()
     program = os.path.abspath(arguments.program)
@@ -130,6 +133,10 @@ def main():
             for name, values in times.items():
                 wanted = WANTED[name][0 if observations < 20000 else 1]
                 print(f"  {name:9} {statistics.median(values):11.1f} {at_share(values, 0.95):10.1f} {wanted:12}")
+            if arguments.session:
+                print("  of the session alone:")
+                print(subprocess.run([arguments.session, campaign, "--repeats", str(min(9, arguments.repeats))],
+                                     check=True, stdout=subprocess.PIPE, text=True).stdout, end="")
             if arguments.browser:
                 print("  from the input to the picture:")
                 said = subprocess.run(["node", f"{ROOT}/identify/workbench/web/check/times.mjs", *arguments.browser, campaign,

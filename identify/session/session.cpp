@@ -27,6 +27,7 @@ namespace {
 constexpr double kContradiction = 0.25;       // of U95: a preview that is off by more was wrong
 constexpr double kShareOfSearch = 0.8;        // of the time of a climb
 constexpr std::size_t kPreviewedAtOnce = 12;  // of the ranking
+constexpr std::size_t kKeptFigures = 2;       // of models: 100 to 200 MB at 10^5 readings each
 constexpr std::size_t kKeptModels = 8;        // linear models in memory; those of previews share a full fit's
 
 void report(const SessionProgress& progress, const std::string& stage, double done) {
@@ -221,15 +222,16 @@ SessionChange Session::appending(std::size_t parent, FittedModel found, std::vec
   };
 }
 
-void Session::describe(Node& made, SessionModel& shown) const {
+void Session::describe(Node& made, SessionModel& shown) {
+  const KeptFigures& figures = figures_of(made.recipe);
   if (made.recipe.base == least_ && !made.recipe.refit) {
-    set_figures(last_step_of(made.state()), shown);
+    set_figures(figures.last_step(made.state(), made.state().projector()), shown);
   } else {
     if (made.least != least_) {
-      made.at_least = made.state().projector_at(least_->noise());
+      made.at_least = made.recipe.projector_at(*least_, made.state());
       made.least = least_;
     }
-    set_figures(last_step_at(made.state(), least_->noise(), *made.at_least), shown);
+    set_figures(figures.last_step(made.state(), *made.at_least), shown);
   }
   shown.effects.clear();
   for (std::size_t i = 0; i < made.in_base(); ++i)
@@ -237,6 +239,18 @@ void Session::describe(Node& made, SessionModel& shown) const {
   if (made.recipe.added.empty()) return;
   for (EffectFinding& added : added_findings(made.state(), *made.of_all_readings()))
     shown.effects.push_back(std::move(added));
+}
+
+/// Of the recipe's model without added effects, against the least noise.
+const KeptFigures& Session::figures_of(const Recipe& recipe) {
+  const auto known =
+      std::ranges::find_if(kept_figures_, [&](const auto& each) { return each->is_of(recipe, least_); });
+  auto found = known != kept_figures_.end() ? *known : nullptr;
+  std::erase(kept_figures_, found);
+  if (kept_figures_.size() >= kKeptFigures) kept_figures_.pop_back();
+  if (!found) found = FiguresOfModel::of(recipe, least_);
+  kept_figures_.insert(kept_figures_.begin(), found);
+  return found->figures;
 }
 
 /// With the effects that the user thought of meanwhile.

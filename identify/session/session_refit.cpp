@@ -39,14 +39,14 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
     if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
   };
   Recipe recipe = preview;
-  const auto make = [&recipe](Refit refit) {
-    refit.variance.clear();
-    recipe.refit = std::make_shared<const Refit>(std::move(refit));
-    const ModelState without = recipe.without_effects();
-    ModelState made = recipe.with_effects(without);
-    auto all = std::make_shared<Projector>(*without.projector_of_all_readings());
-    for (const AddedEffect& effect : made.added()) all->accept(effect.columns);
-    return RefittedModel{recipe, std::move(made), std::move(all)};
+  /// `plain`, `all`: without effects, with the residuals of the fit.
+  const auto make = [&recipe](const ModelState& plain, Projector all, const Refit& refit) {
+    recipe.refit = std::make_shared<const Refit>(refit);
+    const bool own = refit.residual.size() > 0;
+    ModelState made = recipe.with_effects(own ? plain.with_residual(refit.residual) : plain);
+    if (own) all = all.with_residual(refit.residual);
+    for (const AddedEffect& effect : made.added()) all.accept(effect.columns);
+    return RefittedModel{recipe, std::move(made), std::make_shared<const Projector>(std::move(all))};
   };
   const auto with_variance = [](RefittedModel made) {
     Refit refit = *made.recipe.refit;
@@ -62,7 +62,10 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
     refit.reinstated = preview.refit->reinstated;
   }
   tell("the model at this noise", 0.4);
-  RefittedModel found = make(refit);
+  recipe.refit = std::make_shared<const Refit>(refit);
+  const ModelState plain = recipe.with_residuals_of_fit();
+  const auto all = plain.projector_of_all_readings();
+  const RefittedModel found = make(plain, *all, refit);
   tell("the exact model", 0.6);
   const LinearModel& model = found.state.model();
   std::vector<FamilyTest> moved = found.state.moved_effects(*found.all_readings);
@@ -75,7 +78,10 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
   if (!is_linear) refit.residual = std::move(exact);
   refit.reinstated.insert(refit.reinstated.end(), explained.begin(), explained.end());
   recipe.added = std::move(moved);
-  return with_variance(make(std::move(refit)));
+  if (explained.empty()) return with_variance(make(plain, *all, refit));
+  recipe.refit = std::make_shared<const Refit>(refit);
+  const ModelState more_readings = recipe.with_residuals_of_fit();
+  return with_variance(make(more_readings, *more_readings.projector_of_all_readings(), refit));
 }
 
 }  // namespace volcal

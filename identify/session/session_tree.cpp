@@ -125,10 +125,16 @@ EffectFinding Session::Fitted::fitted(const EffectFinding& added) const {
 }
 
 ModelState Session::Recipe::without_effects() const {
-  ModelState state = base->state();
-  if (!refit) return state.shared_setting() == setting ? state : state.with_setting(setting);
-  LinearModel model = state.model();
-  if (refit->residual.size() > 0) model = model.with_residual(refit->residual);
+  if (refit) {
+    const ModelState state = with_residuals_of_fit();
+    return refit->residual.size() > 0 ? state.with_residual(refit->residual) : state;
+  }
+  const ModelState state = base->state();
+  return state.shared_setting() == setting ? state : state.with_setting(setting);
+}
+
+ModelState Session::Recipe::with_residuals_of_fit() const {
+  LinearModel model = base->state().model();
   if (!refit->reinstated.empty()) model = model.with_reinstated(refit->reinstated);
   return {std::move(model), setting, refit->noise};
 }
@@ -142,7 +148,38 @@ ModelState Session::Recipe::make() const { return with_effects(without_effects()
 
 std::shared_ptr<const Projector> Session::Recipe::projector_without_effects() const {
   if (!refit) return base->projector_of_all_readings();
-  return without_effects().projector_of_all_readings();
+  std::shared_ptr<const Projector> projector = with_residuals_of_fit().projector_of_all_readings();
+  if (refit->residual.size() == 0) return projector;
+  return std::make_shared<const Projector>(projector->with_residual(refit->residual));
+}
+
+/// A refit of the fit itself has other residuals, and the columns of the fit's own projector.
+std::shared_ptr<const Projector> Session::Recipe::projector_at(const Fitted& least,
+                                                               const ModelState& state) const {
+  if (base.get() != &least || !reinstated().empty()) return state.projector_at(least.noise());
+  auto projector =
+      std::make_shared<Projector>(base->state().projector().with_residual(state.model().problem().residual));
+  for (const AddedEffect& effect : state.added()) projector->accept(effect.columns);
+  return projector;
+}
+
+bool Session::FiguresOfModel::is_of(const Recipe& recipe,
+                                    const std::shared_ptr<const Fitted>& against) const {
+  return base == recipe.base && least == against && reinstated == recipe.reinstated();
+}
+
+/// Residuals count for nothing in them, nor does the noise of a refit: of one that uses the same readings
+/// they are those of the fit.
+std::shared_ptr<const Session::FiguresOfModel> Session::FiguresOfModel::of(
+    const Recipe& recipe, const std::shared_ptr<const Fitted>& against) {
+  const bool other_readings = !recipe.reinstated().empty();
+  const ModelState state = other_readings ? recipe.without_effects() : recipe.base->state();
+  const auto figures = [&](const Projector& projector) {
+    return std::make_shared<const FiguresOfModel>(FiguresOfModel{
+        recipe.base, against, recipe.reinstated(), KeptFigures(state, against->noise(), projector)});
+  };
+  if (!other_readings && recipe.base == against) return figures(state.projector());
+  return figures(*state.projector_at(against->noise()));
 }
 
 const CatalogueTests& Session::SharedTests::get() {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/criticism/search/model_tests.h"
 #include "volcal/identify/session/session.h"
@@ -69,11 +70,18 @@ struct Session::Recipe {
 
   ModelState make() const;
   ModelState without_effects() const;
+  /// At the noise and with the readings of the refit, residuals as those of the fit. Only of a refit.
+  ModelState with_residuals_of_fit() const;
   ModelState with_effects(ModelState state) const;
   /// From all readings, off the model without the effects that were added.
   std::shared_ptr<const Projector> projector_without_effects() const;
+  /// From readings that are not held out, at the noise of a fit, off this model, which is `state`.
+  std::shared_ptr<const Projector> projector_at(const Fitted& least, const ModelState& state) const;
   /// Of every reading by the model's noise; infinite: left out.
   const std::vector<double>& variance() const { return refit ? refit->variance : base->variance(); }
+  std::vector<std::size_t> reinstated() const {
+    return refit ? refit->reinstated : std::vector<std::size_t>{};
+  }
 };
 
 /// A refit with what was made on the way.
@@ -81,6 +89,18 @@ struct Session::RefittedModel {
   Recipe recipe;
   ModelState state;
   std::shared_ptr<const Projector> all_readings;
+};
+
+/// What the figures of a full fit's model stand on, against the noise of `least`.
+struct Session::FiguresOfModel {
+  std::shared_ptr<const Fitted> base, least;
+  std::vector<std::size_t> reinstated;  ///< readings that are in use against the fit
+  KeptFigures figures;
+
+  bool is_of(const Recipe& recipe, const std::shared_ptr<const Fitted>& against) const;
+  /// Makes them.
+  static std::shared_ptr<const FiguresOfModel> of(const Recipe& recipe,
+                                                  const std::shared_ptr<const Fitted>& against);
 };
 
 /// Tests of a model, made once by whoever asks first, in whichever thread; others wait for them.

@@ -19,6 +19,7 @@
 
 namespace volcal {
 
+class KeptHistories;
 class TensorBasis;
 
 enum class TargetKind { Motion, ToolOffset, Station, Floor, Reading };
@@ -76,6 +77,9 @@ struct SetupView {
   /// s, time of the first reading, from which growth and drift count; absent: of `campaign`.
   std::optional<double> clock_start = {};
   bool is_path = true;  ///< the rows were read one after another; false: poses that have no order
+  /// What lagged_excess() has found for these rows, kept for the next effect that asks; null: nothing is
+  /// kept.
+  std::shared_ptr<KeptHistories> histories = {};
 
   std::size_t rows() const { return setup.readings.size(); }
 };

@@ -61,16 +61,43 @@ void check_time_and_channel(const Campaign& campaign, const std::string& channel
   check_time(campaign, label, place);
 }
 
-Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel, double lag) {
-  Eigen::VectorXd excess = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
-  if (!has_time_and_channel(view.setup, channel)) return excess;
+KeptHistories::Values KeptHistories::find(const std::string& channel, double lag) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = known_.find({channel, lag});
+  return found == known_.end() ? nullptr : found->second;
+}
+
+void KeptHistories::keep(const std::string& channel, double lag, Values values) {
+  const std::lock_guard lock(mutex_);
+  if (known_.size() >= kMost) known_.clear();
+  known_[{channel, lag}] = std::move(values);
+}
+
+namespace {
+
+Eigen::VectorXd found_excess(const SetupView& view, const std::string& channel, double lag) {
   std::vector<Sample> samples = samples_of(view.campaign, channel);
   follow(samples, lag);
+  Eigen::VectorXd excess(static_cast<Eigen::Index>(view.rows()));
   for (std::size_t row = 0; row < view.rows(); ++row) {
     const auto at = std::ranges::lower_bound(samples, view.setup.readings.time[row], {}, &Sample::time);
     excess[static_cast<Eigen::Index>(row)] = at->temperature - kReferenceTemperature_degC;
   }
   return excess;
+}
+
+}  // namespace
+
+Eigen::VectorXd lagged_excess(const SetupView& view, const std::string& channel, double lag) {
+  if (!has_time_and_channel(view.setup, channel))
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(view.rows()));
+  if (!view.histories) return found_excess(view, channel, lag);
+  KeptHistories::Values known = view.histories->find(channel, lag);
+  if (!known) {
+    known = std::make_shared<const Eigen::VectorXd>(found_excess(view, channel, lag));
+    view.histories->keep(channel, lag, known);
+  }
+  return *known;
 }
 
 namespace {

@@ -2,8 +2,11 @@
 /// A temperature channel behind a lumped thermal mass: what follows it late.
 
 #include <Eigen/Core>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/model/effects/formula_effect.h"
@@ -14,6 +17,22 @@ bool has_time_and_channel(const Setup& setup, const std::string& channel);
 /// Throws InputError where the campaign lacks one of them.
 void check_time_and_channel(const Campaign& campaign, const std::string& channel, const std::string& label,
                             const SourcePlace& place);
+
+/// Lagged temperatures of one setup's rows by channel and lag: effects on several targets ask for the same
+/// ones, and each is made of the whole campaign's channel. For several threads at once. Memory: 8 bytes x
+/// rows x at most kMost.
+class KeptHistories {
+ public:
+  using Values = std::shared_ptr<const Eigen::VectorXd>;
+  static constexpr std::size_t kMost = 48;  ///< then it begins anew
+
+  Values find(const std::string& channel, double lag) const;
+  void keep(const std::string& channel, double lag, Values values);
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::pair<std::string, double>, Values> known_;
+};
 
 /// Per reading of a setup, the lagged temperature less 20 degC: y with lag y' = T - y from the first reading
 /// of the campaign's channel on, T linear between readings; 0 where time or channel were not recorded. `lag`:

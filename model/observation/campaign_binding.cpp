@@ -10,6 +10,7 @@
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/lagged_channel.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -376,6 +377,7 @@ std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBindi
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Setup& setup = campaign.setups[i];
     SetupView view{campaign, setup, {}, Eigen::VectorXd(static_cast<Eigen::Index>(setup.readings.size()))};
+    view.histories = std::make_shared<KeptHistories>();
     view.nominal_point_w.reserve(setup.readings.size());
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {
       view.nominal_point_w.push_back(chain.nominal_point_w(

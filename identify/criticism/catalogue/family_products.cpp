@@ -108,7 +108,7 @@ Eigen::MatrixXd cross_products(const CandidateColumns& columns, const std::vecto
     const Eigen::Index first = parts[part], count = parts[part + 1] - first;
     rows.resize(count, columns.count);
     columns.fill(part, rows);
-    sum.noalias() += rows.transpose() * weighed.middleRows(first, count);
+    add_transposed_product(rows, weighed.middleRows(first, count), sum);
   }
   return sum;
 }

@@ -2,6 +2,7 @@
 /// A shape that was looked for on a grid (period, time constant, time), between the grid's values.
 
 #include <optional>
+#include <vector>
 
 #include "volcal/identify/criticism/catalogue/families.h"
 
@@ -12,6 +13,11 @@ namespace volcal {
 /// with each other (a list of usual values) stay as they are.
 void refine_shape(const LinearModel& model, const Family& family, const Projector& projector,
                   FamilyTest& test);
+
+/// The same of several tests, in the families of their numbers: step by step together, since a projection
+/// takes as long for one column as for kColumnBlock. The same for any number of threads.
+void refine_shapes(const LinearModel& model, const std::vector<Family>& families, const Projector& projector,
+                   int threads, const std::vector<FamilyTest*>& tests);
 
 enum class ScanEnd { Lowest, Highest };
 /// The end of what was looked for at which a shape stands; none within the scan, or without one.

@@ -32,15 +32,17 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
                                    : Eigen::VectorXd(Eigen::VectorXd::Zero(base_parameters_));
   pull_ = precision_ * mean;
   prior_squares_ = mean.dot(pull_);
-  std::vector<Eigen::MatrixXd> whitened(part_count());
+  std::vector<Eigen::MatrixXd> whitened(part_count()), residual(part_count());
   run_parallel(part_count(), threads_, [&](std::size_t part) {
     Eigen::MatrixXd rows(part_rows(part), base_parameters_ + 1);
     rows << problem.jacobian.middleRows(parts_[part], part_rows(part)),
         problem.residual.segment(parts_[part], part_rows(part));
     whitened[part] = whitener_->whiten_part(static_cast<std::size_t>(parts_[part]), rows);
+    residual[part] = whitened[part].rightCols(1);
     accepted_[part].resize(whitened[part].rows(), 0);
   });
   whitened_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(whitened));
+  residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(residual));
   if (problem.local && problem.local->columns() > 0) {
     std::vector<std::vector<std::size_t>> order;
     for (std::size_t part = 0; part < part_count(); ++part)
@@ -49,6 +51,13 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
   }
   find_gram();
   factorise();
+}
+
+Projector Projector::with_residual(const Eigen::VectorXd& residual) const {
+  Projector other = *this;
+  other.replace_residual(residual);
+  other.rotate_residual();
+  return other;
 }
 
 /// Without accepted columns.
@@ -65,6 +74,27 @@ void Projector::find_gram() {
   residual_squares_ = gram_(count, count);
 }
 
+/// And its products with the columns of the model and those that were accepted.
+void Projector::replace_residual(const Eigen::VectorXd& residual) {
+  const Eigen::Index count = parameters();
+  std::vector<Eigen::MatrixXd> whitened(part_count()), products(part_count());
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    whitened[part] = whitened_part(part, residual);
+    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_, 1);
+    add_transposed_product(base_columns(part), whitened[part], with_base);
+    Eigen::MatrixXd with_accepted = Eigen::MatrixXd::Zero(accepted(), 1);
+    if (accepted() > 0) add_transposed_product(accepted_[part], whitened[part], with_accepted);
+    products[part].resize(count + 1, 1);
+    products[part] << with_base, with_accepted, whitened[part].squaredNorm();
+  });
+  Eigen::VectorXd sum = products[0];
+  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
+  gram_.col(count) = sum;
+  gram_.row(count) = sum.transpose();
+  residual_squares_ = sum[count];
+  residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(whitened));
+}
+
 /// Columns are scaled to unit diagonal of A first: they carry different units.
 void Projector::factorise() {
   const Eigen::Index count = parameters();
@@ -73,12 +103,18 @@ void Projector::factorise() {
   scale_ = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   normal = scale_.asDiagonal() * normal * scale_.asDiagonal();
   auto lower = cholesky_lower(normal);
+  is_regular_ = lower.has_value();
   if (!lower) {
     normal.diagonal().array() += 1e-12;  // what neither readings nor priors determine stays where it is
     lower = cholesky_lower(normal);
     if (!lower) throw std::runtime_error("the model's columns are not independent");
   }
   lower_ = std::move(*lower);
+  rotate_residual();
+}
+
+void Projector::rotate_residual() {
+  const Eigen::Index count = parameters();
   Eigen::MatrixXd right = gram_.col(count).head(count);
   right.col(0).head(base_parameters_) += pull_;
   right = scale_.asDiagonal() * right;
@@ -86,9 +122,35 @@ void Projector::factorise() {
   rotated_ = right;
 }
 
+/// The factor once the last columns were accepted: [C 0; c D] with c = (C^-1 b)^T and D D^T what they are
+/// apart from the model. False: nothing of them is, or the factor is none of A alone.
+bool Projector::extend_factor(Eigen::Index more) {
+  if (!is_regular_) return false;
+  const Eigen::Index before = lower_.cols(), count = before + more;
+  const Eigen::VectorXd scale =
+      gram_.diagonal().segment(before, more).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  Eigen::MatrixXd across = scale_.asDiagonal() * gram_.block(0, before, before, more) * scale.asDiagonal();
+  solve_lower(lower_, across);
+  Eigen::MatrixXd apart = scale.asDiagonal() * gram_.block(before, before, more, more) * scale.asDiagonal();
+  add_gram_upper(across, -1.0, apart);
+  symmetrise_from_upper(apart);
+  const auto own = cholesky_lower(apart);
+  if (!own) return false;
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(count, count);
+  lower.topLeftCorner(before, before) = lower_;
+  lower.bottomLeftCorner(more, before) = across.transpose();
+  lower.bottomRightCorner(more, more) = *own;
+  lower_ = std::move(lower);
+  scale_.conservativeResize(count);
+  scale_.tail(more) = scale;
+  rotate_residual();
+  return true;
+}
+
 Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const {
   PartialProducts products;
-  products.with_others.setZero(base_parameters_ + 1 - local_columns(), columns);
+  products.with_others.setZero(base_parameters_ - local_columns(), columns);
+  products.with_residual.setZero(1, columns);
   products.with_accepted.setZero(accepted(), columns);
   if (local_product_) {
     for (Eigen::Index column = 0; column < columns; column += kColumnBlock)
@@ -100,7 +162,7 @@ Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const 
 Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd& rows,
                                         PartialProducts& products) const {
   const auto first = static_cast<std::size_t>(parts_[part]);
-  const auto others = (*whitened_)[part].rightCols(base_parameters_ + 1 - local_columns());
+  const auto others = base_columns(part).rightCols(base_parameters_ - local_columns());
   Eigen::MatrixXd whitened;
   if (!local_product_) {
     whitened = whitener_->whiten_part(first, rows);
@@ -115,17 +177,17 @@ Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd&
                           products.with_local[static_cast<std::size_t>(column / kColumnBlock)]);
     }
   }
-  add_transposed_product(others, whitened, products.with_others);
+  if (others.cols() > 0) add_transposed_product(others, whitened, products.with_others);
+  add_transposed_product((*residual_)[part], whitened, products.with_residual);
   if (accepted() > 0) add_transposed_product(accepted_[part], whitened, products.with_accepted);
   return whitened;
 }
 
 Eigen::MatrixXd Projector::combined(const PartialProducts& products, Eigen::Index columns) const {
   Eigen::MatrixXd all(parameters() + 1, columns);
-  const Eigen::Index others = base_parameters_ - local_columns();
-  all.middleRows(local_columns(), others) = products.with_others.topRows(others);
+  all.middleRows(local_columns(), base_parameters_ - local_columns()) = products.with_others;
   all.middleRows(base_parameters_, accepted()) = products.with_accepted;
-  all.bottomRows(1) = products.with_others.bottomRows(1);
+  all.bottomRows(1) = products.with_residual;
   for (Eigen::Index column = 0; column < columns && local_product_; column += kColumnBlock) {
     const Eigen::Index count = std::min(kColumnBlock, columns - column);
     local_product_->combine(products.with_local[static_cast<std::size_t>(column / kColumnBlock)],
@@ -188,18 +250,21 @@ Eigen::MatrixXd Projector::whitened_part(std::size_t part, const Eigen::MatrixXd
 
 void Projector::accept(const Eigen::MatrixXd& columns) {
   const Eigen::Index before = parameters(), more = columns.cols();
+  if (more == 0) return;
   std::vector<Eigen::MatrixXd> products(part_count());  // with base columns, residual, accepted ones, own
   run_parallel(part_count(), threads_, [&](std::size_t part) {
     const Eigen::MatrixXd added = whitened_part(part, columns);
     Eigen::MatrixXd& all = accepted_[part];
     all.conservativeResize(Eigen::NoChange, all.cols() + more);
     all.rightCols(more) = added;
-    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_ + 1, more);
-    add_transposed_product((*whitened_)[part], added, with_base);
+    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_, more);
+    add_transposed_product(base_columns(part), added, with_base);
+    Eigen::MatrixXd with_residual = Eigen::MatrixXd::Zero(1, more);
+    add_transposed_product((*residual_)[part], added, with_residual);
     Eigen::MatrixXd with_accepted = Eigen::MatrixXd::Zero(all.cols(), more);
     add_transposed_product(all, added, with_accepted);
-    products[part].resize(with_base.rows() + with_accepted.rows(), more);
-    products[part] << with_base, with_accepted;
+    products[part].resize(with_base.rows() + 1 + with_accepted.rows(), more);
+    products[part] << with_base, with_residual, with_accepted;
   });
   Eigen::MatrixXd sum = std::move(products[0]);
   for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
@@ -214,7 +279,7 @@ void Projector::accept(const Eigen::MatrixXd& columns) {
   gram.col(count).segment(before, more) = sum.row(base_parameters_).transpose();
   symmetrise_from_upper(gram);
   gram_ = std::move(gram);
-  factorise();
+  if (!extend_factor(more)) factorise();
 }
 
 Eigen::VectorXd Projector::solution() const {
@@ -223,8 +288,7 @@ Eigen::VectorXd Projector::solution() const {
 
 Eigen::MatrixXd Projector::left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
                                         const Eigen::MatrixXd& at) const {
-  Eigen::MatrixXd left =
-      whitened - (*whitened_)[part].leftCols(base_parameters_) * at.topRows(base_parameters_);
+  Eigen::MatrixXd left = whitened - base_columns(part) * at.topRows(base_parameters_);
   if (accepted() > 0) left -= accepted_[part] * at.bottomRows(accepted());
   return left;
 }
@@ -239,7 +303,7 @@ Eigen::VectorXd Projector::weighed_residual() const {
   const Eigen::VectorXd at = solution();
   Eigen::MatrixXd whitened = Eigen::MatrixXd::Zero(parts_.back(), 1);
   for (std::size_t part = 0; part < part_count(); ++part)
-    put_in_place(part, left_of_part(part, (*whitened_)[part].rightCols(1), at), whitened);
+    put_in_place(part, left_of_part(part, (*residual_)[part], at), whitened);
   return whitener_->whiten_transposed(whitened.col(0));
 }
 
@@ -259,15 +323,27 @@ Eigen::MatrixXd Projector::rotated_rows(const Eigen::MatrixXd& rows) const {
   return rotated;
 }
 
+Eigen::MatrixXd Projector::last_rotated_rows(const Eigen::MatrixXd& rows, Eigen::Index count) const {
+  const Eigen::Index before = parameters() - count;
+  const Eigen::MatrixXd across = lower_.topLeftCorner(before, before)
+                                     .triangularView<Eigen::Lower>()
+                                     .transpose()
+                                     .solve(lower_.bottomLeftCorner(count, before).transpose());
+  Eigen::MatrixXd last = scale_.tail(count).asDiagonal() * rows.rightCols(count).transpose();
+  last.noalias() -=
+      (across.transpose() * scale_.head(before).asDiagonal()) * rows.leftCols(before).transpose();
+  return lower_.bottomRightCorner(count, count).triangularView<Eigen::Lower>().solve(last);
+}
+
 Eigen::VectorXd Projector::prediction_variance(const Eigen::MatrixXd& rows) const {
   return rotated_rows(rows).colwise().squaredNorm();
 }
 
 Eigen::MatrixXd Projector::accepted_covariance() const {
   const Eigen::Index count = accepted();
-  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(parameters(), count);
-  unit.bottomRows(count).setIdentity();
-  solve_lower(lower_, unit);
+  const Eigen::MatrixXd unit = lower_.bottomRightCorner(count, count)
+                                   .triangularView<Eigen::Lower>()
+                                   .solve(Eigen::MatrixXd::Identity(count, count));
   const Eigen::MatrixXd inverse = unit.transpose() * unit;
   const auto scale = scale_.tail(count).asDiagonal();
   return scale * inverse * scale;

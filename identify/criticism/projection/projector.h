@@ -58,9 +58,12 @@ class Projector {
   ProjectedColumns project(const Eigen::MatrixXd& columns) const;
   /// Parameters of the model, accepted columns last, with which it imitates columns best; parameters x k.
   Eigen::MatrixXd imitation(const Eigen::MatrixXd& columns) const;
-  /// Takes columns into the model, without prior: their products alone are made, and the factor anew. A copy
-  /// shares the rows of the model with its original.
+  /// Takes columns into the model, without prior: their products alone are made, and the rows that they add
+  /// to the factor. A copy shares the rows of the model with its original.
   void accept(const Eigen::MatrixXd& columns);
+  /// Of the same columns with other residuals, of all observations; equal to rounding to what is made of them
+  /// anew.
+  Projector with_residual(const Eigen::VectorXd& residual) const;
   /// Sigma^-1 (columns - J times their imitation), of all observations, 0 where they are left out: with
   /// columns g their products are g~^T times these columns after projection.
   Eigen::MatrixXd weighed_projection(const Eigen::MatrixXd& columns) const;
@@ -73,6 +76,8 @@ class Projector {
   /// C^-1 rows^T with A = C C^T, parameters x rows (derivatives to all parameters, accepted ones last): the
   /// products of its columns are rows A^-1 rows^T.
   Eigen::MatrixXd rotated_rows(const Eigen::MatrixXd& rows) const;
+  /// The last `count` rows of rotated_rows() alone: what columns that were accepted last add to products.
+  Eigen::MatrixXd last_rotated_rows(const Eigen::MatrixXd& rows, Eigen::Index count) const;
   /// Variance of predictions, one per row of `rows`.
   Eigen::VectorXd prediction_variance(const Eigen::MatrixXd& rows) const;
   /// Covariance of the accepted columns' amplitudes.
@@ -85,19 +90,25 @@ class Projector {
   double log_determinant() const { return whitener_->log_determinant(); }
   std::size_t observations() const { return whitener_->observations(); }
   Eigen::Index parameters() const { return base_parameters_ + accepted(); }
+  /// Readings and priors determine all parameters; else they are held where they are, weakly.
+  bool is_regular() const { return is_regular_; }
   int threads() const { return threads_; }
   Eigen::Index accepted() const { return accepted_.front().cols(); }
 
  private:
   /// Products of columns with the model's, while parts are added.
   struct PartialProducts {
-    Eigen::MatrixXd with_others;  ///< base columns that are not local, residual last
+    Eigen::MatrixXd with_others;  ///< base columns that are not local
+    Eigen::MatrixXd with_residual;
     Eigen::MatrixXd with_accepted;
     std::vector<Eigen::MatrixXd> with_local;  ///< of kColumnBlock columns each
   };
 
   void find_gram();
+  void replace_residual(const Eigen::VectorXd& residual);
   void factorise();
+  void rotate_residual();
+  bool extend_factor(Eigen::Index more);
   /// L^-1 (rows - rows of the model times `at`), whitened, of a part.
   Eigen::MatrixXd left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
                                const Eigen::MatrixXd& at) const;
@@ -112,6 +123,7 @@ class Projector {
   /// (parameters + 1) x columns, those with the residual last.
   Eigen::MatrixXd combined(const PartialProducts& products, Eigen::Index columns) const;
   Eigen::Index local_columns() const { return local_product_ ? local_product_->columns() : 0; }
+  auto base_columns(std::size_t part) const { return (*whitened_)[part].leftCols(base_parameters_); }
   std::size_t part_count() const { return parts_.size() - 1; }
   Eigen::Index part_rows(std::size_t part) const { return parts_[part + 1] - parts_[part]; }
 
@@ -120,15 +132,17 @@ class Projector {
   std::shared_ptr<const LocalProduct> local_product_;
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
-  /// Per part, (observations in use) x (base parameters + 1), residual last.
+  /// Per part, (observations in use) x (base parameters + 1), the residual that it was made with last.
   std::shared_ptr<const std::vector<Eigen::MatrixXd>> whitened_;
-  std::vector<Eigen::MatrixXd> accepted_;  ///< per part, the same of accepted columns
-  Eigen::MatrixXd precision_;              ///< of the base parameters, not scaled
-  Eigen::VectorXd pull_;                   ///< P m, base parameters
+  std::shared_ptr<const std::vector<Eigen::MatrixXd>> residual_;  ///< per part, one column
+  std::vector<Eigen::MatrixXd> accepted_;                         ///< per part, the same of accepted columns
+  Eigen::MatrixXd precision_;                                     ///< of the base parameters, not scaled
+  Eigen::VectorXd pull_;                                          ///< P m, base parameters
   double prior_squares_ = 0.0;
   double residual_squares_ = 0.0;
   Eigen::MatrixXd gram_;
   Eigen::VectorXd scale_;
+  bool is_regular_ = true;
   Eigen::MatrixXd lower_;    ///< C of the columns times scale_
   Eigen::VectorXd rotated_;  ///< C^-1 (J_w^T r_w + P m)
 };

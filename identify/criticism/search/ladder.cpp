@@ -63,9 +63,9 @@ Eigen::MatrixXd rows_of(const std::vector<Eigen::Index>& observations, const Noi
   return rows;
 }
 
-HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
-                                  std::span<const NoiseParameters> noise, const Projector& projector,
-                                  const Eigen::MatrixXd& effects, const Eigen::VectorXd& residual) {
+HeldoutErrors errors_of_heldout(const NoiseProblem& problem, const std::vector<bool>& heldout,
+                                std::span<const NoiseParameters> noise, const Projector& projector,
+                                const Eigen::MatrixXd& effects) {
   const RowsOf rows = [&](const std::vector<Eigen::Index>& observations) {
     return rows_of(observations, problem, effects);
   };
@@ -74,16 +74,21 @@ HeldoutFigures figures_of_heldout(const NoiseProblem& problem, const std::vector
     if (parameter < own) return problem.jacobian.col(parameter);
     return effects.col(parameter - own);
   };
-  const std::vector<HeldoutBlock> blocks =
-      heldout_errors(problem.data, heldout, noise, projector, rows, column, projector.threads());
-  return heldout_figures(blocks, residual);
+  return {problem.data, heldout, noise, projector, rows, column, projector.threads()};
 }
+
+/// What is known of a step before its residuals.
+struct StepParts {
+  double prior_rank;
+  const std::vector<HeldoutBlock>& heldout;
+};
 
 /// Figures of the model that `projector` holds, with columns of effects; `loglik` is the held-out
 /// log-likelihood of the step before, and becomes this one's.
-LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
-                       std::span<const NoiseParameters> noise, const Projector& projector,
-                       const Eigen::MatrixXd& effects, std::optional<double>& loglik) {
+LadderStep figures_of_step(const LinearModel& model, const std::vector<bool>& heldout,
+                           std::span<const NoiseParameters> noise, const Projector& projector,
+                           const Eigen::MatrixXd& effects, const StepParts& parts,
+                           std::optional<double>& loglik) {
   const NoiseProblem& problem = model.problem();
   const std::vector<double> variance = noise_variance(problem.data, noise);
   const Eigen::VectorXd solution = projector.solution();
@@ -91,24 +96,22 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   const Eigen::VectorXd residual =
       problem.residual - problem.jacobian * solution.head(own) - effects * solution.tail(effects.cols());
   double squares = 0.0, fitted = 0.0;
-  bool any_held = false;
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(variance[i])) continue;
-    any_held = any_held || heldout[i];
     if (heldout[i]) continue;
     squares += residual[static_cast<Eigen::Index>(i)] * residual[static_cast<Eigen::Index>(i)];
     fitted += 1.0;
   }
   LadderStep step;
   step.rms_fit = std::sqrt(squares / std::max(1.0, fitted));
-  const double dof = static_cast<double>(projector.observations()) + prior_rank(problem.prior_precision) -
+  const double dof = static_cast<double>(projector.observations()) + parts.prior_rank -
                      static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  if (!any_held) {
+  if (parts.heldout.empty()) {
     step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
     return step;
   }
-  const HeldoutFigures figures = figures_of_heldout(problem, heldout, noise, projector, effects, residual);
+  const HeldoutFigures figures = heldout_figures(parts.heldout, residual);
   const double excess = (figures.squares - figures.expected) / figures.count;
   const double spread = kCoverageFactor * figures.spread / figures.count;
   step.rms_heldout = std::sqrt(figures.squares / figures.count);
@@ -119,6 +122,14 @@ LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldou
   step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
   loglik = figures.log_likelihood;
   return step;
+}
+
+LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
+                       std::span<const NoiseParameters> noise, const Projector& projector,
+                       const Eigen::MatrixXd& effects, std::optional<double>& loglik) {
+  const HeldoutErrors errors = errors_of_heldout(model.problem(), heldout, noise, projector, effects);
+  return figures_of_step(model, heldout, noise, projector, effects,
+                         {prior_rank(model.problem().prior_precision), errors.blocks()}, loglik);
 }
 
 /// The last step: surfaces were added first, then effects.
@@ -204,12 +215,17 @@ std::vector<LadderStep> ladder_of(const ModelState& state) {
 
 namespace {
 
-LadderStep last_step(const ModelState& state, std::span<const NoiseParameters> noise,
-                     const Projector& projector) {
+Eigen::MatrixXd effects_of(const ModelState& state) {
   Eigen::MatrixXd effects(static_cast<Eigen::Index>(state.model().size()), 0);
   for (const AddedEffect& added : state.added()) append_columns(added.columns, effects);
+  return effects;
+}
+
+LadderStep last_step(const ModelState& state, std::span<const NoiseParameters> noise,
+                     const Projector& projector) {
   std::optional<double> no_step_before;
-  return ladder_step(state.model(), state.setting().heldout, noise, projector, effects, no_step_before);
+  return ladder_step(state.model(), state.setting().heldout, noise, projector, effects_of(state),
+                     no_step_before);
 }
 
 }  // namespace
@@ -225,6 +241,37 @@ LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParamete
 LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise,
                         const Projector& projector) {
   return last_step(state, noise, projector);
+}
+
+namespace {
+
+RowsOf rows_of_model(const NoiseProblem& problem) {
+  return [&problem](const std::vector<Eigen::Index>& observations) -> Eigen::MatrixXd {
+    return problem.jacobian(observations, Eigen::all);
+  };
+}
+
+}  // namespace
+
+KeptFigures::KeptFigures(const ModelState& without_effects, std::vector<NoiseParameters> noise,
+                         const Projector& projector)
+    : noise_(std::move(noise)),
+      prior_rank_(prior_rank(without_effects.model().problem().prior_precision)),
+      is_regular_(projector.is_regular()),
+      errors_(errors_of_heldout(without_effects.model().problem(), without_effects.setting().heldout, noise_,
+                                projector, effects_of(without_effects))) {}
+
+LadderStep KeptFigures::last_step(const ModelState& state, const Projector& projector) const {
+  if (projector.is_regular() != is_regular_) return last_step_at(state, noise_, projector);
+  const LinearModel& model = state.model();
+  const Eigen::MatrixXd effects = effects_of(state);
+  std::optional<double> no_step_before;
+  const auto figures = [&](const std::vector<HeldoutBlock>& blocks) {
+    return figures_of_step(model, state.setting().heldout, noise_, projector, effects, {prior_rank_, blocks},
+                           no_step_before);
+  };
+  if (effects.cols() == 0) return figures(errors_.blocks());
+  return figures(errors_.accepting(effects, projector, rows_of_model(model.problem()), projector.threads()));
 }
 
 namespace {

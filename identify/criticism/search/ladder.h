@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/search/heldout_errors.h"
 #include "volcal/identify/criticism/search/model_state.h"
 
 namespace volcal {
@@ -33,6 +34,24 @@ LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParamete
 /// With the projector at that noise at hand.
 LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParameters>& noise,
                         const Projector& projector);
+
+/// What the last step of a model stands on beside its residuals, kept: steps of the same model with effects,
+/// at the same noise and smoothing and of the same readings, follow from it (heldout_errors.h). Equal to
+/// rounding. Immutable.
+class KeptFigures {
+ public:
+  /// `projector`: of `without_effects` at `noise`.
+  KeptFigures(const ModelState& without_effects, std::vector<NoiseParameters> noise,
+              const Projector& projector);
+  /// last_step_at() the noise of `state`, the model with effects; its residuals may be others.
+  LadderStep last_step(const ModelState& state, const Projector& projector) const;
+
+ private:
+  std::vector<NoiseParameters> noise_;
+  double prior_rank_;
+  bool is_regular_;
+  HeldoutErrors errors_;
+};
 
 /// The last step with a further effect, at the same noise and smoothing.
 LadderStep ladder_step_beside(const ModelState& state, const FamilyTest& effect);

@@ -68,6 +68,15 @@ ModelState ModelState::with_at_this_noise(const FamilyTest& effect) const {
   return next;
 }
 
+ModelState ModelState::with_residual(Eigen::VectorXd residual) const {
+  if (!added_.empty()) throw std::logic_error("residuals of a model with added effects are not replaced");
+  ModelState other = *this;
+  other.tests_.reset();
+  other.projector_ = std::make_shared<const Projector>(projector_->with_residual(residual));
+  other.model_ = model_.with_residual(std::move(residual));
+  return other;
+}
+
 ModelState ModelState::with_setting(std::shared_ptr<const SearchSetting> setting) const {
   ModelState other = *this;
   other.setting_ = std::move(setting);

@@ -53,6 +53,9 @@ class ModelState {
   ModelState with(const FamilyTest& effect) const;
   /// With a further effect at the same noise and smoothing, its shape as tested: a first answer.
   ModelState with_at_this_noise(const FamilyTest& effect) const;
+  /// With other residuals of the linear model at the same noise and smoothing. Throws std::logic_error where
+  /// effects were added.
+  ModelState with_residual(Eigen::VectorXd residual) const;
   /// The same with more effects of the user's own in the catalogue.
   ModelState with_setting(std::shared_ptr<const SearchSetting> setting) const;
   /// With a further surface and none of the effects that were added. What `beside`, effects that are to be

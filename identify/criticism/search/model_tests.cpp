@@ -153,16 +153,18 @@ bool ModelTests::any_scan_exceeds() const { return std::ranges::any_of(scan_exce
 
 namespace {
 
-/// From one place on.
-void refine_shapes(const SearchSetting& setting, const LinearModel& model, const Projector& projector,
-                   std::size_t from, std::vector<FamilyTest>& tests) {
+/// Where they could matter, from one place on.
+void refine_shapes_of(const SearchSetting& setting, const LinearModel& model, const Projector& projector,
+                      std::size_t from, std::vector<FamilyTest>& tests) {
   double best = 0.0;
   for (const FamilyTest& test : tests) best = std::max(best, test.gain);
+  std::vector<FamilyTest*> worth;
   for (FamilyTest& test : std::span(tests).subspan(from)) {
     if (test.gain > best - kThresholds.worth_refining_gain &&
         test.log10_p < kThresholds.worth_refining_log10_p)
-      refine_shape(model, setting.families[test.family], projector, test);
+      worth.push_back(&test);
   }
+  refine_shapes(model, setting.families, projector, setting.threads, worth);
 }
 
 }  // namespace
@@ -170,14 +172,14 @@ void refine_shapes(const SearchSetting& setting, const LinearModel& model, const
 std::vector<FamilyTest> refined_tests(const SearchSetting& setting, const LinearModel& model,
                                       const Projector& projector) {
   std::vector<FamilyTest> tests = test_families(model, setting.families, projector, setting.threads);
-  refine_shapes(setting, model, projector, 0, tests);
+  refine_shapes_of(setting, model, projector, 0, tests);
   return tests;
 }
 
 CatalogueTests::CatalogueTests(FamilyProducts of, const ModelState& state)
     : products(std::move(of)),
       families(products.tests(state.setting().families, state.projector(), state.setting().threads)) {
-  refine_shapes(state.setting(), state.model(), state.projector(), 0, families);
+  refine_shapes_of(state.setting(), state.model(), state.projector(), 0, families);
 }
 
 CatalogueTests::CatalogueTests(const ModelState& state)
@@ -199,7 +201,7 @@ CatalogueTests CatalogueTests::with_more(const ModelState& with_them) const {
       products.with_more(with_them.model(), setting.families, with_them.projector(), setting.threads);
   std::ranges::move(all.products.tests(setting.families, with_them.projector(), setting.threads, known),
                     std::back_inserter(all.families));
-  refine_shapes(setting, with_them.model(), with_them.projector(), known, all.families);
+  refine_shapes_of(setting, with_them.model(), with_them.projector(), known, all.families);
   return all;
 }
 

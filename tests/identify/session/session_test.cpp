@@ -59,6 +59,19 @@ class SessionOfTwo : public ::testing::Test {
   }
   void TearDown() override { session().go_to(0); }
 
+  /// Of a ladder's step, but for its name.
+  static void expect_same_figures(const LadderStep& found, const LadderStep& expected) {
+    constexpr double kAlike = 1e-12;
+    EXPECT_NEAR(found.rms_fit, expected.rms_fit, kAlike * expected.rms_fit);
+    EXPECT_NEAR(found.rms_heldout, expected.rms_heldout, kAlike * expected.rms_heldout);
+    EXPECT_NEAR(found.noise_floor, expected.noise_floor, kAlike * expected.noise_floor);
+    EXPECT_NEAR(found.reduced_chi2, expected.reduced_chi2, kAlike * expected.reduced_chi2);
+    // A difference of squares, of which the larger counts.
+    const double squares = kAlike * expected.rms_heldout * expected.rms_heldout;
+    EXPECT_NEAR(std::pow(found.systematic, 2), std::pow(expected.systematic, 2), squares);
+    EXPECT_NEAR(std::pow(found.systematic_high, 2), std::pow(expected.systematic_high, 2), squares);
+  }
+
   static double rms(const Eigen::VectorXd& residual) {
     return std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
   }
@@ -154,6 +167,16 @@ TEST_F(SessionOfTwo, RanksAPreviewAsTestsMadeAnew) {
   };
   const std::vector<FamilyTest> before = refined_tests(given.setting(), model, given.projector());
   const ModelState next = given.with_at_this_noise(*std::ranges::find_if(before, is_it));
+  expect_same_figures(session().current().figures, last_step_of(next));
+  // As those of a refit, of which residuals and noise are others.
+  std::vector<NoiseParameters> noise = given.noise();
+  for (NoiseParameters& each : noise) each.white *= 1.2;
+  const KeptFigures kept(given, noise, *given.projector_at(noise));
+  const ModelState moved = given.with_residual(1.1 * model.problem().residual)
+                               .with_at_this_noise(*std::ranges::find_if(before, is_it));
+  expect_same_figures(kept.last_step(moved, *moved.projector_at(noise)), last_step_at(moved, noise));
+  EXPECT_GT(last_step_at(moved, noise).rms_fit, 1.01 * last_step_of(next).rms_fit);
+  EXPECT_THROW(static_cast<void>(moved.with_residual(model.problem().residual)), std::logic_error);
   std::map<EffectName, EffectFinding> found;
   for (const FamilyTest& test : refined_tests(next.setting(), next.model(), next.projector())) {
     EffectFinding each = finding(next.setting(), test);

@@ -12,6 +12,7 @@
 #include "tests/support/effect_campaign.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/effect_keys.h"
+#include "volcal/model/effects/lagged_channel.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/travel_since_turning.h"
 #include "volcal/model/observation/measurement_model.h"
@@ -90,6 +91,27 @@ TEST_F(Catalogue, ALaggedTemperatureSettles) {
   const Eigen::MatrixXd after = drivers(spec, "S3");
   EXPECT_EQ(after.cols(), 3);
   EXPECT_NEAR(after(static_cast<Eigen::Index>(kEffectRows) - 1, 2), 1.0, 1e-3);
+}
+
+/// What is kept for the next effect that asks is what is found without, also once it begins anew.
+TEST_F(Catalogue, LaggedTemperaturesAreKeptAsTheyAreFound) {
+  const MeasurementModel model(campaign_, model_);
+  for (const char* setup : {"S1", "S3"}) {
+    const SetupView view = setup_views(campaign_, model.binding(), model.chain())[index(setup)];
+    ASSERT_NE(view.histories, nullptr);
+    SetupView alone = view;
+    alone.histories = nullptr;
+    for (int round = 0; round < 2; ++round) {
+      for (std::size_t i = 0; i < KeptHistories::kMost + 4; ++i) {
+        const double lag = 300.0 + 10.0 * static_cast<double>(i);
+        EXPECT_EQ(lagged_excess(view, "spindle", lag), lagged_excess(alone, "spindle", lag));
+      }
+    }
+    EXPECT_NE(view.histories->find("spindle", 300.0 + 10.0 * (KeptHistories::kMost + 3)), nullptr);
+    EXPECT_EQ(view.histories->find("spindle", 299.0), nullptr);
+    EXPECT_EQ(view.histories->find("column", 300.0), nullptr);
+    EXPECT_GT(lagged_excess(alone, "spindle", 300.0).norm(), 0.0);
+  }
 }
 
 /// A tilt about y by a x: a tracer sees P move by a x (z, 0, -x) from the middle of the travel, a level on

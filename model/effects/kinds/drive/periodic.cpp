@@ -1,14 +1,12 @@
 // Periodic errors of drive and scale: ball-screw lead error, interpolation error of an encoder.
-#include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <vector>
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
+#include "volcal/model/effects/sines.h"
 
 namespace volcal {
 namespace {
@@ -50,56 +48,12 @@ std::vector<Eigen::VectorXd> usual_periods() {
   return values;
 }
 
-/// Values with every repetition counted once, and which of them each row has. A hash table of the values,
-/// open addressing.
-struct DistinctValues {
-  Eigen::ArrayXd of;
-  std::vector<double> values;
-  std::vector<std::size_t> place;
-
-  explicit DistinctValues(const Eigen::ArrayXd& rows)
-      : of(rows), place(static_cast<std::size_t>(rows.size())) {
-    constexpr std::uint64_t kMix = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio
-    constexpr std::size_t kFree = static_cast<std::size_t>(-1);
-    const int bits = std::bit_width(2 * place.size() + 1);
-    const std::size_t mask = (std::size_t{1} << bits) - 1;
-    std::vector<std::size_t> table(mask + 1, kFree);
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      const double value = rows[static_cast<Eigen::Index>(i)];
-      std::size_t slot = (std::bit_cast<std::uint64_t>(value) * kMix) >> (64 - bits);
-      while (table[slot] != kFree && values[table[slot]] != value) slot = (slot + 1) & mask;
-      if (table[slot] == kFree) {
-        table[slot] = values.size();
-        values.push_back(value);
-      }
-      place[i] = table[slot];
-    }
-  }
-};
-
-/// Of the rows of the last call in this thread where these are the same: a scan asks for the same positions
-/// at every period.
-const DistinctValues& distinct_values(const Eigen::ArrayXd& rows) {
-  thread_local DistinctValues last{Eigen::ArrayXd()};
-  if (last.of.size() != rows.size() || (last.of != rows).any()) last = DistinctValues(rows);
-  return last;
-}
-
-/// Cosine and sine at every position, rows x 2; computed once for positions that are visited again.
+/// Cosine and sine at every position, rows x 2.
 Eigen::MatrixXd waves(const Eigen::ArrayXd& position, double period) {
-  const DistinctValues& distinct = distinct_values(position);
-  const double frequency = 2.0 * std::numbers::pi / period;
-  std::vector<double> cosine, sine;
-  for (const double value : distinct.values) {
-    cosine.push_back(std::cos(value * frequency));
-    sine.push_back(std::sin(value * frequency));
-  }
+  const Eigen::ArrayXd angle = position * (2.0 * std::numbers::pi / period);
   Eigen::MatrixXd values(position.size(), 2);
-  for (Eigen::Index i = 0; i < position.size(); ++i) {
-    const std::size_t place = distinct.place[static_cast<std::size_t>(i)];
-    values(i, 0) = cosine[place];
-    values(i, 1) = sine[place];
-  }
+  write_cosines_and_sines(angle.data(), static_cast<std::size_t>(angle.size()), values.col(0).data(),
+                          values.col(1).data());
   return values;
 }
 

@@ -57,6 +57,31 @@ TEST(ShapeRefinement, FindsTheTimeConstant) {
   EXPECT_NEAR(test.shape[0], truth, 0.01 * truth);
 }
 
+/// Searched together, shapes are where each is found alone; known ones stay.
+TEST(ShapeRefinement, SeveralShapesAreThoseOfEachAlone) {
+  std::vector<Family> all;
+  for (const char* kind : {"lead-error", "growing-lead-error", "station-event", "reversal"}) {
+    for (Family& family : families_of(model(), kind)) all.push_back(std::move(family));
+  }
+  const std::vector<Family> lead = families_of(model(), "lead-error", "EXX");
+  Projector projector = moved_by(lead[0], between(lead[0], 0.37), Eigen::Vector2d(2e-6, 1e-6));
+  const std::vector<FamilyTest> before = test_families(model(), all, projector, 1);
+  std::vector<FamilyTest> alone = before, together = before;
+  std::vector<FamilyTest*> of_all;
+  for (FamilyTest& test : together) of_all.push_back(&test);
+  refine_shapes(model(), all, projector, 2, of_all);
+  std::size_t moved = 0, columns = 0;
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    refine_shape(model(), all[i], projector, alone[i]);
+    columns += 3 * static_cast<std::size_t>(all[i].amplitudes());
+    EXPECT_EQ(together[i].shape, alone[i].shape) << all[i].label();
+    EXPECT_NEAR(together[i].score.lm, alone[i].score.lm, 1e-11 * (1.0 + alone[i].score.lm)) << all[i].label();
+    moved += together[i].shape != before[i].shape ? 1 : 0;
+  }
+  EXPECT_GT(moved, 5U);
+  EXPECT_GT(columns, static_cast<std::size_t>(kColumnBlock)) << "more than are projected together";
+}
+
 TEST(ShapeRefinement, LeavesAKnownShape) {
   const std::vector<Family> reversal = families_of(model(), "reversal", "EXX");
   ASSERT_EQ(reversal.size(), 1U);

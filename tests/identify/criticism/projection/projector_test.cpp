@@ -255,6 +255,98 @@ TEST(Projector, AcceptedColumnsAreExplained) {
   EXPECT_EQ(after.dof, 0) << "nothing of them is visible beside themselves";
 }
 
+/// The model of a problem with further columns, without prior.
+NoiseProblem with_columns(const NoiseProblem& problem, const Eigen::MatrixXd& columns) {
+  NoiseProblem larger = problem;
+  const Eigen::Index before = problem.jacobian.cols(), count = before + columns.cols();
+  larger.jacobian.conservativeResize(Eigen::NoChange, count);
+  larger.jacobian.rightCols(columns.cols()) = columns;
+  larger.prior_precision = Eigen::MatrixXd::Zero(count, count);
+  larger.prior_precision.topLeftCorner(before, before) = problem.prior_precision;
+  larger.prior_mean = Eigen::VectorXd::Zero(count);
+  larger.prior_mean.head(before) = problem.prior_mean;
+  return larger;
+}
+
+void expect_same_model(const Projector& found, const Projector& expected, std::mt19937_64& random) {
+  constexpr double kAlike = 1e-12;
+  const Eigen::MatrixXd rows = random_matrix(random, 4, expected.parameters());
+  const Eigen::MatrixXd rotated = expected.rotated_rows(rows);
+  const Eigen::VectorXd solution = expected.solution();
+  EXPECT_LT((found.solution() - solution).norm(), kAlike * solution.norm());
+  EXPECT_LT((found.rotated_rows(rows) - rotated).norm(), kAlike * rotated.norm());
+  EXPECT_NEAR(found.residual_squares(), expected.residual_squares(), kAlike * expected.residual_squares());
+  EXPECT_LT((found.gram() - expected.gram()).norm(), kAlike * expected.gram().norm());
+  for (const Eigen::Index last : {1, 2, 3}) {
+    EXPECT_LT((found.last_rotated_rows(rows, last) - rotated.bottomRows(last)).norm(),
+              kAlike * rotated.norm());
+  }
+}
+
+/// Accepted one after another, columns give the factor of all, made anew.
+TEST(Projector, AcceptedColumnsGiveTheFactorOfAModelWithThem) {
+  std::mt19937_64 random(8);
+  const NoiseProblem problem = random_problem(random);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 3);
+  const NoiseProblem larger = with_columns(problem, columns);
+  const Projector expected(larger, larger.data, {&kProjectedNoise, 1}, 1);
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  projector.accept(columns.leftCols(1));
+  projector.accept(columns.rightCols(2));
+  expect_same_model(projector, expected, random);
+  EXPECT_TRUE(projector.is_regular());
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(expected.parameters(), expected.parameters());
+  const Eigen::MatrixXd rotated = expected.rotated_rows(unit);
+  const Eigen::MatrixXd covariance = (rotated.transpose() * rotated).bottomRightCorner(3, 3);
+  EXPECT_LT((projector.accepted_covariance() - covariance).norm(), 1e-12 * covariance.norm());
+}
+
+/// Where neither readings nor priors determine a parameter, or a column is the model's own, the factor is
+/// that of the whole, weakly held.
+TEST(Projector, AcceptsColumnsOfAModelThatIsNotDetermined) {
+  std::mt19937_64 random(9);
+  NoiseProblem problem = random_problem(random);
+  problem.prior_precision.setZero();
+  Projector own(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  EXPECT_TRUE(own.is_regular());
+  own.accept(problem.jacobian.col(2));
+  EXPECT_TRUE(own.solution().allFinite());
+  problem.jacobian.col(3).setZero();
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
+  const NoiseProblem larger = with_columns(problem, columns);
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  EXPECT_FALSE(projector.is_regular());
+  projector.accept(columns);
+  const Projector expected(larger, larger.data, {&kProjectedNoise, 1}, 1);
+  EXPECT_LT((projector.solution() - expected.solution()).norm(), 1e-10 * expected.solution().norm());
+}
+
+/// Other residuals of the same columns, before and after further ones are accepted.
+TEST(Projector, OtherResidualsAreThoseOfAProjectorMadeWithThem) {
+  std::mt19937_64 random(10);
+  const NoiseProblem problem = problem_in_two_parts(random);
+  NoiseProblem other = problem;
+  other.residual = random_matrix(random, kObservations, 1);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 3);
+  const std::vector<Eigen::Index> parts{0, kHalf, kObservations};
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 2, parts);
+  Projector expected(other, other.data, {&kProjectedNoise, 1}, 1, parts);
+  for (const bool accepted : {false, true}) {
+    if (accepted) {
+      projector.accept(columns);
+      expected.accept(columns);
+    }
+    const Projector found = projector.with_residual(other.residual);
+    const ProjectedColumns own = found.project(columns), anew = expected.project(columns);
+    EXPECT_LT((found.solution() - expected.solution()).norm(), 1e-12 * expected.solution().norm());
+    EXPECT_NEAR(found.residual_squares(), expected.residual_squares(), 1e-12 * expected.residual_squares());
+    EXPECT_LT((own.score - anew.score).norm(), 1e-11 * anew.norm.norm());
+    const Eigen::VectorXd weighed = expected.weighed_residual();
+    EXPECT_LT((found.weighed_residual() - weighed).norm(), 1e-12 * weighed.norm());
+    EXPECT_GT((projector.solution() - expected.solution()).norm(), 0.1 * expected.solution().norm());
+  }
+}
+
 TEST(ScoreTest, AColumnThatTheModelCanImitateIsInvisible) {
   std::mt19937_64 random(6);
   NoiseProblem problem = random_problem(random);

@@ -65,12 +65,19 @@ struct Example {
   Projector projector(const NoiseProblem& of) const {
     return {of, without(of.data, heldout), {&kHeldoutNoise, 1}, 1};
   }
-  std::vector<HeldoutBlock> blocks() const {
-    return heldout_errors(
-        problem.data, heldout, {&kHeldoutNoise, 1}, projector(problem),
-        [&](const std::vector<Eigen::Index>& at) { return problem.jacobian(at, Eigen::all).eval(); },
-        [&](Eigen::Index parameter) { return problem.jacobian.col(parameter).eval(); }, 1);
+  static RowsOf rows_of(const NoiseProblem& of) {
+    return [&of](const std::vector<Eigen::Index>& at) { return of.jacobian(at, Eigen::all).eval(); };
   }
+  HeldoutErrors errors(const NoiseProblem& of) const {
+    return {of.data,
+            heldout,
+            {&kHeldoutNoise, 1},
+            projector(of),
+            rows_of(of),
+            [&of](Eigen::Index parameter) { return of.jacobian.col(parameter).eval(); },
+            1};
+  }
+  std::vector<HeldoutBlock> blocks() const { return errors(problem).blocks(); }
 };
 
 TEST(SharedNoise, TimesWeightsIsTheProductWithItsCovariance) {
@@ -104,6 +111,33 @@ TEST(HeldoutErrors, CovarianceIsThatOfTheDefinition) {
                                      rows * inverse * rows.transpose() - rows * inverse * shared.transpose() -
                                      shared * inverse * rows.transpose();
     EXPECT_LT((block.covariance - expected).norm(), 1e-10 * expected.norm());
+  }
+}
+
+/// What follows for further columns is what is found of a model that has them.
+TEST(HeldoutErrors, AcceptedColumnsGiveThoseOfAModelWithThem) {
+  const Example example;
+  NoiseProblem larger = example.problem;
+  const Eigen::Index before = larger.jacobian.cols();
+  larger.jacobian.conservativeResize(Eigen::NoChange, before + 2);
+  for (Eigen::Index i = 0; i < larger.jacobian.rows(); ++i) {
+    larger.jacobian(i, before) = std::sin(0.7 * static_cast<double>(i));
+    larger.jacobian(i, before + 1) = i % 3 == 0 ? 1.0 : -0.4;
+  }
+  larger.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(before + 2, before + 2));
+  const Eigen::MatrixXd columns = larger.jacobian.rightCols(2);
+  Projector projector = example.projector(example.problem);
+  projector.accept(columns.leftCols(1));
+  projector.accept(columns.rightCols(1));
+  const std::vector<HeldoutBlock> expected = example.errors(larger).blocks(), without = example.blocks();
+  const std::vector<HeldoutBlock> found =
+      example.errors(example.problem).accepting(columns, projector, Example::rows_of(example.problem), 2);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const double size = expected[k].covariance.norm();
+    EXPECT_EQ(found[k].observation, expected[k].observation);
+    EXPECT_LT((found[k].covariance - expected[k].covariance).norm(), 1e-12 * size);
+    EXPECT_GT((found[k].covariance - without[k].covariance).norm(), 1e-3 * size);
   }
 }
 

@@ -9,9 +9,9 @@
 
 #include "volcal/identify/compensation/table_format.h"
 #include "volcal/identify/errors/design_stage.h"
-#include "volcal/identify/errors/error_budget.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/io/campaign/tolerance_reader.h"
 #include "volcal/identify/report/text/error_budget_text.h"
 #include "volcal/identify/report/text/field_text.h"

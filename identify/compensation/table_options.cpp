@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "volcal/identify/compensation/table_format.h"
-#include "volcal/identify/errors/volume/rigid_compromise.h"
+#include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/parallel_axes.h"

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "volcal/identify/errors/effects/effect_displacements.h"
+#include "volcal/identify/errors/effect_displacements.h"
 #include "volcal/identify/errors/linear_axis_errors.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"

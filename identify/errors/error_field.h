@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "volcal/identify/errors/conditions.h"
-#include "volcal/identify/errors/effects/machine_effects.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/kinematics/chain.h"

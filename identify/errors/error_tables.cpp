@@ -7,7 +7,7 @@
 
 #include "volcal/identify/errors/correction_positions.h"
 #include "volcal/identify/errors/error_grid.h"
-#include "volcal/identify/errors/volume/rigid_compromise.h"
+#include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"

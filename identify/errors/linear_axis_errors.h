@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/errors/effects/machine_effects.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/identify/errors/pose.h"
 #include "volcal/identify/result/result.h"
 

@@ -9,7 +9,7 @@
 
 #include "volcal/identify/criticism/catalogue/written_effect.h"
 #include "volcal/identify/criticism/data/effect_words.h"
-#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/report/rotary_json.h"
 #include "volcal/identify/report/values/volume_causes.h"
 #include "volcal/identify/session/proposed_measurements.h"

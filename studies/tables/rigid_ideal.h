@@ -1,7 +1,7 @@
 #pragma once
 /// The best that error motions of single axes can do about given errors in a volume: a least-squares fit of
 /// free values at every position of every axis (ISO/TR 16907:2015, 7.4.2). Apart from
-/// identify/errors/volume/rigid_compromise.h, whose tables it is compared with: dense normal equations over points,
+/// identify/errors/rigid_compromise.h, whose tables it is compared with: dense normal equations over points,
 /// each with its share of the volume, in place of moments over the travel.
 
 #include <functional>

@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/model/description/tolerances.h"
 
 namespace volcal {

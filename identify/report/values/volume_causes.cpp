@@ -4,8 +4,8 @@
 #include <functional>
 #include <utility>
 
-#include "volcal/identify/errors/error_budget.h"
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "tests/support/machines.h"
-#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/sim/machine/transforms.h"
 
 namespace volcal {

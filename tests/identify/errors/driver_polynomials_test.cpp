@@ -1,6 +1,6 @@
 // Drivers as polynomials of the positions against the drivers of the catalogue, pose by pose.
 
-#include "volcal/identify/errors/effects/driver_polynomials.h"
+#include "volcal/identify/errors/driver_polynomials.h"
 
 #include <gtest/gtest.h>
 

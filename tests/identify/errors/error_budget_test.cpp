@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/error_budget.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 
 #include <gtest/gtest.h>
 

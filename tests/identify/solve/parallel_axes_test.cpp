@@ -11,8 +11,8 @@
 #include <set>
 #include <string>
 
-#include "volcal/identify/errors/error_budget.h"
 #include "volcal/identify/errors/error_tables.h"
+#include "volcal/identify/errors/volume/error_budget.h"
 #include "volcal/identify/solve/evaluate.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/identify/words/sentences.h"

@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/effects/driver_polynomials.h"
+#include "volcal/identify/errors/driver_polynomials.h"
 
 #include <Eigen/LU>
 #include <algorithm>

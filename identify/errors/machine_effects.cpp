@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/effects/machine_effects.h"
+#include "volcal/identify/errors/machine_effects.h"
 
 #include <algorithm>
 #include <atomic>

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "volcal/identify/errors/effects/machine_effects.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/description/machine.h"
 
 namespace volcal {

@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/effects/effect_displacements.h"
+#include "volcal/identify/errors/effect_displacements.h"
 
 #include <algorithm>
 

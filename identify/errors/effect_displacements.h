@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "volcal/identify/errors/effects/driver_polynomials.h"
-#include "volcal/identify/errors/effects/machine_effects.h"
+#include "volcal/identify/errors/driver_polynomials.h"
+#include "volcal/identify/errors/machine_effects.h"
 #include "volcal/model/kinematics/chain.h"
 
 namespace volcal {

@@ -1,4 +1,4 @@
-#include "volcal/identify/errors/volume/rigid_compromise.h"
+#include "volcal/identify/errors/rigid_compromise.h"
 
 #include <algorithm>
 #include <array>

@@ -13,9 +13,14 @@ using Shape = std::vector<double>;
 
 constexpr int kPlaces = 9;  // of a kink or step along the range
 
+/// "y - 120", "y + 250" of -250.
+std::string variable_less(const std::string& variable, const std::string& value) {
+  return value.starts_with('-') ? variable + " + " + value.substr(1) : variable + " - " + value;
+}
+
 /// "y", or "(T_column - 20)".
 std::string from_zero(const std::string& variable, double zero) {
-  return zero == 0.0 ? variable : fmt::format("({} - {:g})", variable, zero);
+  return zero == 0.0 ? variable : "(" + variable_less(variable, fmt::format("{:g}", zero)) + ")";
 }
 
 /// Along the range, its ends left out.
@@ -28,7 +33,7 @@ std::vector<Shape> places(const DriverRange& driver) {
 
 ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
   return {[=, variable = driver.variable](const Names& names) {
-            const std::string base = fmt::format("({} - {})", variable, names[0]);
+            const std::string base = "(" + variable_less(variable, names[0]) + ")";
             return exponent == 1 ? base : fmt::format("{}^{}", base, exponent);
           },
           [=](double value, const Shape& shape) { return std::pow(value - shape[0], exponent); },
@@ -37,14 +42,17 @@ ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
 
 ElementaryFunction kink(const DriverRange& driver, const std::string& pattern, double (*at)(double beyond)) {
   return {[=, variable = driver.variable](const Names& names) {
-            return fmt::format(fmt::runtime(pattern), variable, names[0]);
+            return fmt::format(fmt::runtime(pattern), variable_less(variable, names[0]));
           },
           [=](double value, const Shape& shape) { return at(value - shape[0]); }, places(driver)};
 }
 
 ElementaryFunction step(const DriverRange& driver) {
-  ElementaryFunction function =
-      kink(driver, "({} > {})", [](double beyond) { return beyond > 0.0 ? 1.0 : 0.0; });
+  ElementaryFunction function{[variable = driver.variable](const Names& names) {
+                                return fmt::format("({} > {})", variable, names[0]);
+                              },
+                              [](double value, const Shape& shape) { return value > shape[0] ? 1.0 : 0.0; },
+                              places(driver)};
   function.smooth_in_shape = false;
   return function;
 }
@@ -55,7 +63,7 @@ ElementaryFunction saturation(const DriverRange& driver) {
     for (const double share : {0.05, 0.15}) starts.push_back({place[0], share * (driver.to - driver.from)});
   }
   return {[variable = driver.variable](const Names& names) {
-            return fmt::format("tanh(({} - {}) / {})", variable, names[0], names[1]);
+            return fmt::format("tanh(({}) / {})", variable_less(variable, names[0]), names[1]);
           },
           [](double value, const Shape& shape) { return std::tanh((value - shape[0]) / shape[1]); }, starts};
 }
@@ -67,7 +75,7 @@ ElementaryFunction wave(const DriverRange& driver) {
     for (const double phase : {0.0, 0.25}) starts.push_back({share * range, phase * share * range});
   }
   return {[variable = driver.variable](const Names& names) {
-            return fmt::format("sin(2 * pi * ({} - {}) / {})", variable, names[1], names[0]);
+            return fmt::format("sin(2 * pi * ({}) / {})", variable_less(variable, names[1]), names[0]);
           },
           [](double value, const Shape& shape) {
             return std::sin(2.0 * std::numbers::pi * (value - shape[1]) / shape[0]);
@@ -101,10 +109,9 @@ std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, 
   std::vector<ElementaryFunction> functions;
   for (const int exponent : {1, 2, 3}) functions.push_back(power_of(driver.variable, zero, exponent));
   for (const int exponent : {1, 2}) functions.push_back(shifted_power(driver, exponent));
-  functions.push_back(kink(driver, "abs({} - {})", [](double beyond) { return std::abs(beyond); }));
-  functions.push_back(kink(driver, "max(0, {} - {})", [](double beyond) { return std::max(0.0, beyond); }));
-  functions.push_back(
-      kink(driver, "max(0, -({} - {}))", [](double beyond) { return std::max(0.0, -beyond); }));
+  functions.push_back(kink(driver, "abs({})", [](double beyond) { return std::abs(beyond); }));
+  functions.push_back(kink(driver, "max(0, {})", [](double beyond) { return std::max(0.0, beyond); }));
+  functions.push_back(kink(driver, "max(0, -({}))", [](double beyond) { return std::max(0.0, -beyond); }));
   functions.push_back(step(driver));
   functions.push_back(saturation(driver));
   functions.push_back(wave(driver));

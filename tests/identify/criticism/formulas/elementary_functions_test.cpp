@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <set>
+#include <string>
 
 #include "volcal/model/effects/kinds/open/custom.h"
 
@@ -52,6 +53,21 @@ TEST(ElementaryFunctions, CountFromTheirZero) {
   const auto functions = elementary_functions({"T_column", 18.0, 26.0}, 20.0);
   EXPECT_EQ(functions.front().text({}), "(T_column - 20)");
   EXPECT_EQ(functions.front().at(20.0, {}), 0.0);
+}
+
+TEST(ElementaryFunctions, CountFromANegativePlaceByASum) {
+  EXPECT_EQ(power_of("y", -250.0, 1).text({}), "(y + 250)");
+  EXPECT_EQ(power_of("y", 120.0, 2).text({}), "(y - 120)^2");
+  const DriverRange driver{"x", -300.0, 300.0};
+  for (const ElementaryFunction& function : elementary_functions(driver, 0.0)) {
+    const std::string text = function.text({"-40.5", "-7"});
+    EXPECT_EQ(text.find("- -"), std::string::npos) << text;
+    if (function.shapes() != 1 || text.find("40.5") == std::string::npos) continue;
+    for (const double value : {-222.0, -40.0, 133.0}) {
+      const double expected = by_expression(text, "x", value, {});
+      EXPECT_NEAR(function.at(value, {-40.5}), expected, 1e-12 * std::max(1.0, std::abs(expected))) << text;
+    }
+  }
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ class MetadataReader {
   AxisName linear_axis(const std::string& key) const {
     const std::string& letter = text(key);
     const auto axis = letter.size() == 1 ? axis_from_letter(letter[0]) : std::nullopt;
-    if (!axis || is_rotary(*axis)) fail(key, "write X, Y or Z");
+    if (!axis || is_rotary(*axis) || is_parallel(*axis)) fail(key, "write X, Y or Z");
     return *axis;
   }
 

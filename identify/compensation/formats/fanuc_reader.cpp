@@ -94,7 +94,7 @@ class PitchReader {
       if (trimmed_text(lines_.current()) == kPitchRowsHeader) return;
       const auto axis =
           words_.size() == 3 && words_[1].size() == 1 ? axis_from_letter(words_[1][0]) : std::nullopt;
-      if (!axis)
+      if (!axis || is_parallel(*axis))
         lines_.fail("the line is no parameter of an axis", "write number, letter of the axis, value");
       const std::string key = std::string(words_[0]) + letter_of(*axis);
       if (!seen_.insert(key).second)

@@ -190,7 +190,8 @@ std::vector<AxisName> com_columns(const TableLines& lines, std::span<const std::
   std::vector<AxisName> axes;
   for (const std::string_view word : words) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
-    const bool right = axis && (!cause || *axis == *cause || (!is_rotary(*axis) && !is_rotary(*cause)));
+    const bool right = axis && !is_parallel(*axis) &&
+                       (!cause || *axis == *cause || (!is_rotary(*axis) && !is_rotary(*cause)));
     if (!right || std::ranges::find(axes, *axis) != axes.end())
       lines.fail("a column is named \"" + std::string(word.substr(0, 40)) + "\"",
                  "columns are for the axes X, Y and Z, each once; a rotary axis has its own alone");

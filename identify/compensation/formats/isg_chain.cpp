@@ -142,7 +142,7 @@ IsgChainReader::IsgChainReader(const std::string& chain, int workpiece_axes, boo
   for (std::size_t i = 0; i < chain.size(); ++i) {
     const auto axis = axis_from_letter(chain[i]);
     const bool again = chain.find(chain[i]) != i;
-    if (!axis || letter_of(*axis) != chain[i] || again)
+    if (!axis || is_parallel(*axis) || letter_of(*axis) != chain[i] || again)
       throw InputError(
           place, "chain is \"" + chain.substr(0, 40) + "\"",
           "write the letters X Y Z A B C of the axes, each once, from the workpiece to the tool");

@@ -208,9 +208,10 @@ class IsgBlock {
   void add_column(const TableLines& lines, std::string_view name) {
     const auto axis = name.size() == 1 ? axis_from_letter(name[0]) : std::nullopt;
     const auto symbol = ErrorSymbol::parse(name);
-    if (axis && !is_rotary(*axis) && parameters_.empty()) {
+    if (axis && !is_rotary(*axis) && !is_parallel(*axis) && parameters_.empty()) {
       arguments_.push_back(*axis);
-    } else if (symbol && !is_rotation(symbol->component) && !is_rotary(symbol->axis)) {
+    } else if (symbol && !is_rotation(symbol->component) && !is_rotary(symbol->axis) &&
+               !is_parallel(symbol->axis)) {
       parameters_.push_back(*symbol);
     } else {
       lines.fail(

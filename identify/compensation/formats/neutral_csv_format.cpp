@@ -64,7 +64,7 @@ std::string grid_file(const CorrectionGrid& grid) {
 AxisName linear_axis_in(const CsvRow& row, std::size_t column, std::string_view name) {
   const std::string& cell = row.cells[column];
   const auto axis = cell.size() == 1 ? axis_from_letter(cell[0]) : std::nullopt;
-  if (!axis || is_rotary(*axis) || cell[0] != letter_of(*axis))
+  if (!axis || is_rotary(*axis) || is_parallel(*axis) || cell[0] != letter_of(*axis))
     throw InputError(row.place, fmt::format("{} is \"{}\"", name, cell.substr(0, 40)), "write X, Y or Z");
   return *axis;
 }

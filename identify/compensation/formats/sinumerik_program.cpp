@@ -90,7 +90,7 @@ std::string sinumerik_axis_name(char letter) { return std::string(1, letter) + "
 
 AxisName sinumerik_axis(std::string_view name, const SourcePlace& place) {
   for (const AxisName axis : kAllAxes) {
-    if (name == sinumerik_axis_name(letter_of(axis))) return axis;
+    if (!is_parallel(axis) && name == sinumerik_axis_name(letter_of(axis))) return axis;
   }
   throw InputError(place, "the machine axis is \"" + std::string(name.substr(0, 40)) + "\"",
                    "write X1, Y1, Z1, A1, B1 or C1");

@@ -87,10 +87,10 @@ function panel(f, axis, view, functions, redraws) {
   return node;
 }
 
-/** Linear axes in one row, rotary axes in another, three at most. */
+/** Linear axes in one row, those parallel to them and rotary axes in others, three at most. */
 function rowsOf(all) {
   const rows = [];
-  for (const [kind, letters] of [['linear', 'XYZ'], ['rotary', 'ABC']]) {
+  for (const [kind, letters] of [['linear', 'XYZ'], ['linear', 'UVW'], ['rotary', 'ABC']]) {
     const axes = all.filter(({ name }) => letters.includes(name));
     for (let first = 0; first < axes.length; first += 3) rows.push([kind, axes.slice(first, first + 3)]);
   }

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 namespace volcal {
 namespace {
@@ -86,6 +88,39 @@ DriverPolynomials::DriverPolynomials(const MachineEffects& effects, const Machin
   for (const std::size_t effect : effects.numbers()) add(effects, effect);
 }
 
+/// Positions at all combinations of the nodes of these axes, the first fastest; other axes at 0.
+std::vector<AxisPosition> DriverPolynomials::node_positions(std::span<const std::size_t> axes) const {
+  std::vector<AxisPosition> positions = {AxisPosition{}};
+  for (const std::size_t axis : axes) {
+    const Scale& scale = *std::ranges::find(scales_, axis, &Scale::axis);
+    std::vector<AxisPosition> more;
+    for (const double node : kPolynomialNodes) {
+      for (AxisPosition position : positions) {
+        position[axis] = scale.origin + node / scale.per_unit;
+        more.push_back(position);
+      }
+    }
+    positions = std::move(more);
+  }
+  return positions;
+}
+
+/// The polynomial through the drivers at node_positions() of as many axes.
+void DriverPolynomials::add_terms(std::size_t axes, Eigen::VectorXd tensor) {
+  std::size_t stride = 1;
+  for (std::size_t i = 0; i < axes; ++i, stride *= kNodesOfAxis)
+    transform_index(coefficients_of_values(), stride, tensor);
+  const double least = kLeastTerm * tensor.cwiseAbs().maxCoeff();
+  for (Eigen::Index place = 0; place < tensor.size(); ++place) {
+    if (std::abs(tensor[place]) <= least) continue;
+    Term term{tensor[place], {}};
+    auto rest = static_cast<std::size_t>(place);
+    for (std::size_t i = 0; i < axes; ++i, rest /= kNodesOfAxis)
+      term.power[i] = static_cast<std::uint8_t>(rest % kNodesOfAxis);
+    terms_.push_back(term);
+  }
+}
+
 /// One effect's drivers, in the order of its amplitudes.
 void DriverPolynomials::add(const MachineEffects& all, std::size_t number) {
   const MachineEffects effect = all.subset({&number, 1});
@@ -93,46 +128,19 @@ void DriverPolynomials::add(const MachineEffects& all, std::size_t number) {
   Driver form;
   for (std::size_t i = 0; i < axes.size(); ++i) form.axes[i] = static_cast<std::uint8_t>(axes[i]);
   form.directions = directions_of(all.reach(number));
-
-  std::size_t nodes = 1, combinations = 1;
-  for (std::size_t i = 0; i < axes.size(); ++i) nodes *= kNodesOfAxis;
+  std::size_t combinations = 1;
   for (std::size_t i = 0; i < form.directions.size(); ++i) combinations *= 3;
-  std::vector<AxisPosition> positions(nodes, AxisPosition{});
-  for (std::size_t node = 0; node < nodes; ++node) {
-    std::size_t rest = node;
-    for (const std::size_t axis : axes) {
-      const Scale& scale = *std::ranges::find(scales_, axis, &Scale::axis);
-      positions[node][axis] = scale.origin + kPolynomialNodes[rest % kNodesOfAxis] / scale.per_unit;
-      rest /= kNodesOfAxis;
-    }
-  }
-
-  const std::size_t first = drivers_.size();
-  drivers_.resize(first + effect.amplitude_count(), form);
-  const Eigen::Matrix4d to_coefficients = coefficients_of_values();
+  const std::vector<AxisPosition> positions = node_positions(axes);
   std::vector<Eigen::MatrixXd> values;
   for (std::size_t combination = 0; combination < combinations; ++combination) {
     const ApproachDirection direction = directions_of_combination(form.directions, combination);
     values.push_back(effect.drivers(positions, {&direction, 1}));
   }
   for (std::size_t c = 0; c < effect.amplitude_count(); ++c) {
-    Driver& driver = drivers_[first + c];
+    Driver& driver = drivers_.emplace_back(form);
     for (const Eigen::MatrixXd& of_combination : values) {
       driver.first_term.push_back(static_cast<std::uint32_t>(terms_.size()));
-      Eigen::VectorXd tensor = of_combination.col(static_cast<Eigen::Index>(c));
-      std::size_t stride = 1;
-      for (std::size_t i = 0; i < axes.size(); ++i, stride *= kNodesOfAxis)
-        transform_index(to_coefficients, stride, tensor);
-      const double least = kLeastTerm * tensor.cwiseAbs().maxCoeff();
-      for (std::size_t node = 0; node < nodes; ++node) {
-        const double factor = tensor[static_cast<Eigen::Index>(node)];
-        if (std::abs(factor) <= least) continue;
-        Term term{factor, {}};
-        std::size_t rest = node;
-        for (std::size_t i = 0; i < axes.size(); ++i, rest /= kNodesOfAxis)
-          term.power[i] = static_cast<std::uint8_t>(rest % kNodesOfAxis);
-        terms_.push_back(term);
-      }
+      add_terms(axes.size(), of_combination.col(static_cast<Eigen::Index>(c)));
     }
     driver.first_term.push_back(static_cast<std::uint32_t>(terms_.size()));
   }

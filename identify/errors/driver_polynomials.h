@@ -3,12 +3,13 @@
 /// for one pose at a time: the same numbers as MachineEffects::drivers() but for rounding, without its
 /// matrices.
 ///
-/// The position of an axis is counted from its home in units of half its travel. With three other nodes an
-/// axis, a tensor of at most cubic polynomials is determined by the drivers at the nodes; what is below
-/// rounding there is left out, so that a product of two positions is one term.
+/// The position of an axis is counted from its home in units of half its travel. Four nodes an axis determine
+/// at most cubic polynomials; terms below rounding are left out, so that a product of two positions is one.
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "volcal/identify/errors/machine_effects.h"
@@ -52,6 +53,8 @@ class DriverPolynomials {
   };
 
   void add(const MachineEffects& effects, std::size_t effect);
+  std::vector<AxisPosition> node_positions(std::span<const std::size_t> axes) const;
+  void add_terms(std::size_t axes, Eigen::VectorXd tensor);
 
   std::vector<Scale> scales_;  ///< of the axes on which a driver depends
   std::vector<Driver> drivers_;

@@ -8,6 +8,10 @@ using Eigen::Vector3d;
 
 namespace {
 
+MachineEffects held_as_polynomials(const MachineEffects& effects) {
+  return effects.subset(DriverPolynomials::held_by(effects));
+}
+
 MachineEffects not_held(const MachineEffects& effects) {
   const std::vector<std::size_t> held = DriverPolynomials::held_by(effects);
   std::vector<std::size_t> others;
@@ -23,9 +27,9 @@ EffectDisplacements::EffectDisplacements(const FitResult& result, const Kinemati
                                          const Tool& tool, const MachineEffects& effects)
     : effects_(effects),
       others_(not_held(effects)),
-      polynomials_(effects.subset(DriverPolynomials::held_by(effects)), result.machine),
+      polynomials_(held_as_polynomials(effects), result.machine),
       parts_(parts_of(result, chain, tool, effects)),
-      polynomial_parts_(parts_of(result, chain, tool, effects.subset(DriverPolynomials::held_by(effects)))),
+      polynomial_parts_(parts_of(result, chain, tool, held_as_polynomials(effects))),
       other_parts_(parts_of(result, chain, tool, others_)) {}
 
 EffectDisplacements::Lever EffectDisplacements::lever_of(const KinematicChain& chain, const Tool& tool,

@@ -34,7 +34,8 @@ struct OwnParameter {
 /// when there is no interpreter left to free what is Python's.
 struct OwnEffect {
   EffectSchema schema;
-  std::vector<std::string> targets, variables;
+  std::vector<std::string> targets;
+  std::vector<Variable> variables;
   std::string shape;
   std::vector<OwnParameter> parameters;
   PyObject* driver = nullptr;
@@ -54,12 +55,13 @@ class ReadingsView {
     return *view_;
   }
   py::array_t<double> values(const std::string& name) const {
-    if (std::ranges::find(effect_.variables, name) == effect_.variables.end())
+    const auto variable = std::ranges::find(effect_.variables, name, &Variable::written);
+    if (variable == effect_.variables.end())
       throw py::key_error(name + " is not among the variables of " + effect_.what() + ": " +
-                          listed_names(effect_.variables));
-    return array_of(*recorded_variable(view(), name));
+                          listed_names(variables()));
+    return array_of(*recorded_variable(view(), *variable));
   }
-  const std::vector<std::string>& variables() const { return effect_.variables; }
+  std::vector<std::string> variables() const { return written_names(effect_.variables); }
 
  private:
   const SetupView* view_;
@@ -106,11 +108,13 @@ struct OwnFormula {
   WrittenTarget target;
 
   bool all_recorded(const Setup& setup) const {
-    return std::ranges::all_of(own->variables, [&](const auto& name) { return has_variable(setup, name); });
+    return std::ranges::all_of(own->variables,
+                               [&](const Variable& each) { return has_variable(setup, each); });
   }
   Eigen::MatrixXd values(const SetupView& view, const Eigen::VectorXd& shape) const {
     const auto rows = static_cast<Eigen::Index>(view.rows());
-    const bool uses_length = std::ranges::find(own->variables, "length") != own->variables.end();
+    const bool uses_length =
+        std::ranges::find(own->variables, Variable::Kind::Length, &Variable::kind) != own->variables.end();
     const bool measured = view.length.size() == rows || !uses_length;
     if (rows == 0 || !target.acts_on(view.campaign, view.setup) || !all_recorded(view.setup) || !measured)
       return Eigen::VectorXd::Zero(rows);
@@ -121,19 +125,13 @@ struct OwnFormula {
   }
   void check(const Campaign& campaign, const SourcePlace& place) const {
     target.check(campaign, own->what(), place);
-    for (const std::string& name : own->variables) {
+    for (const Variable& variable : own->variables) {
       check_variable(
-          campaign, name, [&](const Setup& setup) { return target.acts_on(campaign, setup); }, own->what(),
-          "its driver uses " + name, place);
+          campaign, variable, [&](const Setup& setup) { return target.acts_on(campaign, setup); },
+          own->what(), "its driver uses " + variable.written(), place);
     }
   }
 };
-
-std::string joined_words(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
 
 class OwnKind final : public EffectKind {
  public:
@@ -154,7 +152,7 @@ class OwnKind final : public EffectKind {
     const OwnFormula formula{own, written_target(table)};
     const std::string label = own->schema.kind + " " + formula.target.text;
     auto effect = std::make_unique<FormulaEffect>(
-        EffectName{own->schema.kind, formula.target.text, joined_words(own->variables), own->shape},
+        EffectName{own->schema.kind, formula.target.text, written_list(own->variables), own->shape},
         std::vector<EffectAmplitude>{{.label = label,
                                       .target = formula.target.target(),
                                       .key = formula.target.amplitude_key("amplitude"),
@@ -223,16 +221,17 @@ EffectSchema schema_of(const std::string& kind, const std::string& summary,
   return {.kind = kind, .summary = summary, .source = "the user, in Python", .keys = std::move(keys)};
 }
 
-void check_variables(const OwnEffect& effect) {
-  if (effect.variables.empty())
-    throw InputError({}, effect.what() + " depends on nothing",
-                     "name what its driver uses: variables=[\"x\"]");
-  for (const std::string& name : effect.variables) {
-    if (is_recorded_variable(name)) continue;
-    throw InputError({}, effect.what() + ": " + name + " is no variable",
-                     "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
-                         listed_names(plain_variables()));
+std::vector<Variable> checked_variables(const std::string& what, const std::vector<std::string>& names) {
+  if (names.empty())
+    throw InputError({}, what + " depends on nothing", "name what its driver uses: variables=[\"x\"]");
+  std::vector<Variable> variables;
+  for (const std::string& name : names) {
+    const auto variable = Variable::parse_written(name);
+    if (!variable)
+      throw InputError({}, what + ": " + name + " is no variable", "variables are " + listed_variables());
+    variables.push_back(*variable);
   }
+  return variables;
 }
 
 void register_own_effect(const std::string& kind, const py::object& target, const py::function& driver,
@@ -241,11 +240,10 @@ void register_own_effect(const std::string& kind, const py::object& target, cons
   auto own = std::make_unique<OwnEffect>();
   own->targets = py::isinstance<py::str>(target) ? std::vector{target.cast<std::string>()}
                                                  : target.cast<std::vector<std::string>>();
-  own->variables = variables;
   own->shape = py::str(py::getattr(driver, "__name__", py::str("driver"))).cast<std::string>();
   for (const auto& [key, values] : parameters) own->parameters.push_back(parameter_of(kind, key, values));
   own->schema = schema_of(kind, summary, own->parameters);
-  check_variables(*own);
+  own->variables = checked_variables(own->what(), variables);
   for (const std::string& each : own->targets)
     written_target(EffectTable(effect_spec(kind, {{"target", each}}), own->what()));
   const auto known = own_kinds().find(kind);

@@ -98,8 +98,8 @@ void add_run(MetadataWriter& out, const FitResult& result, const TableFormatOpti
   out.add("reference_temperature_is",
           result.temperature_is_campaign_mean ? "mean of the campaign" : "reduced by scale expansions");
   for (const StatedCondition& condition : list_conditions(result, conditions)) {
-    out.add_number("conditions." + condition.name, condition.value);
-    out.add("conditions." + condition.name + ".is", condition.origin);
+    out.add_number("conditions." + condition.name(), condition.value);
+    out.add("conditions." + condition.name() + ".is", condition.origin);
   }
 }
 

@@ -53,9 +53,10 @@ double root_mean_square(const Eigen::VectorXd& moved) {
 }
 
 std::string words_of(const GenericTest& test) {
-  std::string text = fmt::format("something that depends on {}, along {}",
-                                 fmt::join(names_of(test.variables), " and "), test.direction);
-  if (!test.rotation.empty()) text += ", as " + test.rotation;
+  std::string text =
+      fmt::format("something that depends on {}, along {}", fmt::join(names_of(test.variables), " and "),
+                  name_of(test.direction.value()));
+  if (test.rotation) text += ", as " + test.rotation->name();
   if (test.period > 0.0) text += fmt::format(", every {:.4g} mm", test.period * kPerMilli);
   return text;
 }

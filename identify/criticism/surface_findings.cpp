@@ -39,15 +39,17 @@ bool is_imitated(const Eigen::VectorXd& coefficients, const Eigen::MatrixXd& imi
 
 /// What the readings do not tell from the rest of the model, in words.
 std::vector<std::string> free_parts(const TensorBasis& basis, const Eigen::MatrixXd& imitated,
-                                    const std::vector<std::string>& drivers, bool has_factor) {
+                                    const std::vector<Variable>& drivers, bool has_factor) {
   if (imitated.cols() == 0 || has_factor) return {};
   std::vector<std::string> words;
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     if (is_imitated(coefficients_of_power(basis, i, 1), imitated) &&
         is_imitated(coefficients_of_power(basis, i, 2), imitated)) {
-      words.push_back(fmt::format("any function of {} alone: the error functions hold it", drivers[i]));
+      words.push_back(
+          fmt::format("any function of {} alone: the error functions hold it", drivers[i].written()));
     } else if (is_imitated(coefficients_of_power(basis, i, 1), imitated)) {
-      words.push_back(fmt::format("what is straight in {}: the rest of the model holds it", drivers[i]));
+      words.push_back(
+          fmt::format("what is straight in {}: the rest of the model holds it", drivers[i].written()));
     }
   }
   if (words.empty() && is_imitated(coefficients_of_power(basis, 0, 0), imitated))
@@ -115,7 +117,7 @@ class SurfaceSummary {
       const Eigen::MatrixXd rows = surface_.effect->drivers(view, surface_.effect->shape_values());
       if (rows.isZero(0.0)) continue;
       std::vector<Eigen::VectorXd> drivers;
-      for (const std::string& driver : out_.drivers) drivers.push_back(*recorded_variable(view, driver));
+      for (const Variable& driver : out_.drivers) drivers.push_back(*recorded_variable(view, driver));
       for (Eigen::Index row = 0; row < rows.rows(); ++row) {
         if (rows.row(row).isZero(0.0)) continue;
         const double value = rows.row(row).dot(coefficients_);

@@ -41,10 +41,11 @@ Finding named(const EffectFinding& effect) {
 
 Finding unnamed(FindingCode code, const UnknownFinding& unknown) {
   Finding finding{code,
-                  {{"direction", unknown.direction}, {"rms", FindingNumber{unknown.rms, "um", kMicro}}}};
-  if (!unknown.variables.empty()) finding.data["depends_on"] = unknown.variables;
-  if (!unknown.with_one_of.empty()) finding.data["and_one_of"] = unknown.with_one_of;
-  if (!unknown.rotation.empty()) finding.data["rotation"] = unknown.rotation;
+                  {{"direction", std::string(name_of(unknown.direction))},
+                   {"rms", FindingNumber{unknown.rms, "um", kMicro}}}};
+  if (!unknown.variables.empty()) finding.data["depends_on"] = names_of(unknown.variables);
+  if (!unknown.with_one_of.empty()) finding.data["and_one_of"] = names_of(unknown.with_one_of);
+  if (unknown.rotation) finding.data["rotation"] = unknown.rotation->name();
   if (unknown.period > 0.0) finding.data["period"] = FindingNumber{unknown.period, "mm", kMetrePerMillimetre};
   return finding;
 }
@@ -92,7 +93,7 @@ Finding drawn(const SurfaceFinding& surface) {
                   {{"effect", surface.label},
                    {"largest", value(surface.largest)},
                    {"U", value(kCoverageFactor * surface.largest_u)},
-                   {"drivers", surface.drivers},
+                   {"drivers", written_names(surface.drivers)},
                    {"at", std::vector<FindingNumber>(surface.at.size())}}};
   auto& at = std::get<std::vector<FindingNumber>>(finding.data["at"]);
   for (std::size_t i = 0; i < at.size(); ++i) at[i].si = surface.at[i];

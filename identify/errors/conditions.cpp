@@ -38,9 +38,9 @@ double number_of(const std::string& name, const std::string& text) {
 std::string recorded_names(const FitResult& result) {
   std::string names;
   const auto add = [&](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
-  for (const auto& [channel, range] : result.conditions.temperature_degC) add("T_" + channel);
-  if (result.conditions.time) add("time_s");
-  if (result.conditions.feed) add("feed_mm_min");
+  for (const auto& [channel, range] : result.conditions.temperature_degC) add(temperature_of(channel).name());
+  if (result.conditions.time) add(Variable{Variable::Kind::Time}.column());
+  if (result.conditions.feed) add(Variable{Variable::Kind::Feed}.column());
   return names.empty() ? "its campaign recorded none" : "its campaign recorded " + names;
 }
 
@@ -51,10 +51,11 @@ void require_plausible(const std::string& name, double value, double least, doub
                        std::to_string(static_cast<long>(most)));
 }
 
-std::string channel_named(const FitResult& result, const std::string& name) {
-  std::string channel = name.substr(2);
-  if (channel.ends_with("_degC")) channel.resize(channel.size() - 5);
-  return result.conditions.temperature_degC.contains(channel) ? channel : std::string();
+/// What a condition is of: a column, a temperature without its unit too.
+std::optional<Variable> variable_named(const std::string& name) {
+  if (const auto variable = Variable::parse_column(name)) return variable;
+  const auto variable = Variable::parse(name);
+  return variable && variable->kind == Variable::Kind::Temperature ? variable : std::nullopt;
 }
 
 }  // namespace
@@ -73,15 +74,17 @@ Conditions stated_conditions(const FitResult& result, const std::map<std::string
   Conditions conditions = default_conditions(result);
   for (const auto& [name, text] : given) {
     const double value = number_of(name, text);
-    if (name.starts_with("T_") && !channel_named(result, name).empty()) {
+    const Variable variable = variable_named(name).value_or(Variable{Variable::Kind::Run});
+    if (variable.kind == Variable::Kind::Temperature &&
+        conditions.temperature_degC.contains(variable.subject)) {
       require_plausible(name, value, -80.0, 200.0);
-      conditions.temperature_degC[channel_named(result, name)] = value;
-    } else if (name == "time_s" && conditions.time) {
+      conditions.temperature_degC[variable.subject] = value;
+    } else if (variable.kind == Variable::Kind::Time && conditions.time) {
       require_plausible(name, value, -1e9, 1e9);
       conditions.time = value;
-    } else if (name == "feed_mm_min" && conditions.feed) {
+    } else if (variable.kind == Variable::Kind::Feed && conditions.feed) {
       require_plausible(name, value, 0.0, 1e6);
-      conditions.feed = value * unit_of_key("feed_mm_min").si_per_unit;
+      conditions.feed = value * variable.unit().si_per_unit;
     } else {
       throw InputError({}, "--conditions " + name + ": the result does not know this condition",
                        recorded_names(result));
@@ -99,19 +102,22 @@ double stated_reference_temperature(const FitResult& result, const Conditions& c
 
 std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions) {
   const Conditions usual = default_conditions(result);
+  const Variable feed{Variable::Kind::Feed};
   std::vector<StatedCondition> list;
   for (const auto& [channel, value] : conditions.temperature_degC) {
     const auto otherwise = usual.temperature_degC.find(channel);
     const bool stated = otherwise == usual.temperature_degC.end() || otherwise->second != value;
-    list.push_back({"T_" + channel + "_degC", value,
+    list.push_back({temperature_of(channel), value,
                     stated                             ? kAsStated
                     : knows_expansion(result, channel) ? kReferenceTemperature
                                                        : kMeanOfCampaign});
   }
   if (conditions.time)
-    list.push_back({"time_s", *conditions.time, conditions.time == usual.time ? kMeanOfCampaign : kAsStated});
+    list.push_back({{Variable::Kind::Time},
+                    *conditions.time,
+                    conditions.time == usual.time ? kMeanOfCampaign : kAsStated});
   if (conditions.feed)
-    list.push_back({"feed_mm_min", *conditions.feed / unit_of_key("feed_mm_min").si_per_unit,
+    list.push_back({feed, *conditions.feed / feed.unit().si_per_unit,
                     conditions.feed == usual.feed ? kMeanOfCampaign : kAsStated});
   return list;
 }

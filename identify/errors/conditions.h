@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/identify/result/result.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 
@@ -32,9 +33,11 @@ double stated_reference_temperature(const FitResult& result, const Conditions& c
 
 /// One condition as headers and JSON state it.
 struct StatedCondition {
-  std::string name;  ///< "T_column_degC", "time_s", "feed_mm_min"
-  double value = 0.0;
+  Variable variable;        ///< a temperature, time or feed
+  double value = 0.0;       ///< in its unit
   std::string_view origin;  ///< "reference temperature", "mean of the campaign", "as stated"
+
+  std::string name() const { return variable.column(); }  ///< "T_column_degC", "time_s", "feed_mm_min"
 };
 std::vector<StatedCondition> list_conditions(const FitResult& result, const Conditions& conditions);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "volcal/identify/errors/stated_errors.h"
+#include "volcal/model/description/parameter_names.h"
 
 namespace volcal {
 namespace {
@@ -129,7 +130,7 @@ FitResult result_of_tolerances(const Machine& machine, const Tolerances& toleran
     layout.add_block(ParameterKind::Location, symbol.name(), band_uncertainty(width));
   for (const Axis& axis : machine.axes) {
     if (axis.expansion && axis.expansion->per_kelvin_sigma > 0.0)
-      layout.add_block(ParameterKind::Expansion, std::string("expansion ") + letter_of(axis.name),
+      layout.add_block(ParameterKind::Expansion, expansion_parameter(axis.name),
                        axis.expansion->per_kelvin_sigma);
   }
   layout.take(result);

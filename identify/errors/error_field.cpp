@@ -8,6 +8,7 @@
 
 #include "volcal/identify/errors/effect_displacements.h"
 #include "volcal/identify/errors/linear_axis_errors.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -78,7 +79,7 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
     Expansion expansion{axis.name, 0.0, temperature_excess_at(conditions, axis.expansion->channel), axis.home,
                         -1};
     expansion.strain = axis.expansion->per_kelvin * expansion.excess;
-    const std::string name = std::string("expansion ") + letter_of(axis.name);
+    const std::string name = expansion_parameter(axis.name);
     if (const ParameterBlock* block = layout_.find_block(name)) expansion.parameter = block->offset;
     expansions_.push_back(expansion);
   }
@@ -90,7 +91,7 @@ ErrorField::ErrorField(const FitResult& result, const Tool& tool, const Conditio
       condition_parameters_.push_back(column.parameter);
     places_of_columns_.push_back(place_of(column.parameter));
   }
-  if (const ParameterBlock* block = layout_.find_block("tool " + tool.name)) {
+  if (const ParameterBlock* block = layout_.find_block(tool_parameter(tool.name))) {
     tool_parameter_ = block->offset;
   } else {
     stated_tool_variance_ = tool.offset_sigma * tool.offset_sigma;
@@ -279,7 +280,7 @@ std::vector<Contribution> ErrorField::contributions() const {
   }
   for (const Expansion& expansion : expansions_) {
     Contribution part{ContributionKind::Expansion,
-                      std::string("expansion ") + letter_of(expansion.axis),
+                      expansion_parameter(expansion.axis),
                       joined_words(std::string(1, lower_letter_of(expansion.axis)), "temperature"),
                       {},
                       expansion.axis};
@@ -301,7 +302,7 @@ std::vector<Contribution> ErrorField::contributions() const {
   }
   if (tool_parameter_ >= 0)
     parts.push_back({ContributionKind::Tool,
-                     "tool " + tool_.name,
+                     tool_parameter(tool_.name),
                      {},
                      {tool_parameter_, tool_parameter_ + 1, tool_parameter_ + 2},
                      {}});
@@ -368,8 +369,7 @@ LinearDisplacements::LinearDisplacements(const FitResult& result, const Tool& to
     if (!axis.expansion || is_rotary(axis.name)) continue;
     const double excess = temperature_excess_at(conditions, axis.expansion->channel);
     double strain = axis.expansion->per_kelvin * excess;
-    if (const ParameterBlock* block =
-            result.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
+    if (const ParameterBlock* block = result.layout.find_block(expansion_parameter(axis.name)))
       strain += result.parameters[block->offset] * excess;
     if (strain != 0.0) parts->strains.push_back({axis.name, strain, axis.home});
   }
@@ -446,7 +446,8 @@ DisplacementField plain_displacement_field(const FitResult& result, const Tool& 
   }
   for (const ParameterBlock& block : linear.layout.blocks) {
     if (block.location && is_rotary(block.location->axis)) linear.parameters[block.offset] = 0.0;
-    if (block.name == "tool " + tool.name) linear.parameters.segment(block.offset, block.size()).setZero();
+    if (block.name == tool_parameter(tool.name))
+      linear.parameters.segment(block.offset, block.size()).setZero();
   }
   const MachineEffects effects(result, tool, conditions);
   for (const EffectColumn& column : effects.columns()) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/kinematics/vector_loops.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -185,7 +186,7 @@ class RigidRows {
         tool_(tool),
         chain_(result.machine),
         travel_(result),
-        offset_(layout_.find_block("tool " + tool.name)) {}
+        offset_(layout_.find_block(tool_parameter(tool.name))) {}
 
   PoseErrorRows at(const AxisPosition& position) const {
     PoseErrorRows rows = pose_error_rows(chain_, layout_, position, tool_.offset, travel_.held(position));

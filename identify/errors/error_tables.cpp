@@ -9,6 +9,7 @@
 #include "volcal/identify/errors/error_grid.h"
 #include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -165,8 +166,7 @@ class TableRows {
         row[parameters[c]] +=
             shares(static_cast<Eigen::Index>(index_of(symbol.component)), static_cast<Eigen::Index>(c));
     }
-    const ParameterBlock* expansion =
-        result_.layout.find_block(std::string("expansion ") + letter_of(symbol.axis));
+    const ParameterBlock* expansion = result_.layout.find_block(expansion_parameter(symbol.axis));
     if (is_expanding(symbol) && expansion != nullptr)
       row[expansion->offset] += excess_[index_of(symbol.axis)] * (q - result_.machine.axis(symbol.axis).home);
     return row;

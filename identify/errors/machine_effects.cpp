@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/kinematics/rotary_datum.h"
 
@@ -113,16 +114,16 @@ int EffectReach::positions() const { return static_cast<int>(std::ranges::count(
 
 std::string EffectReach::text() const {
   std::string names;
-  const auto add = [&names](const std::string& name) { names += (names.empty() ? "" : " ") + name; };
+  const auto add = [&names](const Variable& each) { names += (names.empty() ? "" : " ") + each.name(); };
   for (const AxisName axis : kAllAxes) {
-    if (position[index_of(axis)]) add(std::string(1, lower_letter_of(axis)));
+    if (position[index_of(axis)]) add(position_of(axis));
   }
   for (const AxisName axis : kAllAxes) {
-    if (direction[index_of(axis)]) add(std::string("dir_") + lower_letter_of(axis));
+    if (direction[index_of(axis)]) add(direction_of_approach(axis));
   }
-  for (const std::string& channel : temperature) add("T_" + channel);
-  if (time) add("time");
-  if (feed) add("feed");
+  for (const std::string& channel : temperature) add(temperature_of(channel));
+  if (time) add({Variable::Kind::Time});
+  if (feed) add({Variable::Kind::Feed});
   return names;
 }
 

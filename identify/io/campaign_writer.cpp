@@ -16,6 +16,7 @@
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
@@ -143,19 +144,17 @@ std::vector<ReadingColumn> reading_columns(const Setup& setup, const Machine& ma
   if (!readings.time.empty()) columns.push_back(measured_column("time_s", readings.time));
   if (!readings.line.empty()) columns.push_back(integer_column("line", readings.line));
   if (!readings.run.empty()) columns.push_back(integer_column("run", readings.run));
-  const auto letter = [](AxisName axis) {
-    return std::string(1, static_cast<char>(std::tolower(letter_of(axis))));
-  };
   for (const Axis& axis : machine.axes) {
     columns.push_back(measured_column(position_column(axis.name), readings.position[index_of(axis.name)]));
   }
   for (const Axis& axis : machine.axes) {
     const auto& direction = readings.direction[index_of(axis.name)];
-    if (!direction.empty()) columns.push_back(integer_column("dir_" + letter(axis.name), direction));
+    if (!direction.empty())
+      columns.push_back(integer_column(direction_of_approach(axis.name).column(), direction));
   }
   if (!readings.feed.empty()) columns.push_back(measured_column("feed_mm_min", readings.feed));
   for (const auto& [channel, values] : readings.temperature) {
-    columns.push_back(measured_column("T_" + channel + "_degC", values));
+    columns.push_back(measured_column(temperature_of(channel).column(), values));
   }
   if (!readings.sigma.empty()) columns.push_back(measured_column(sigma_column(schema), readings.sigma));
   const auto& set = schema.column_sets.at(readings.column_set);

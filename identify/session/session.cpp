@@ -577,9 +577,9 @@ namespace {
 /// readings decide.
 std::vector<UnknownFinding> along_and_as(const UnknownFinding& finding) {
   std::vector<UnknownFinding> both{finding};
-  if (finding.rotation.empty()) return both;
+  if (!finding.rotation) return both;
   both.push_back(finding);
-  both.back().rotation.clear();
+  both.back().rotation.reset();
   return both;
 }
 

@@ -8,6 +8,7 @@
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/tool_tips.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/unknowns.h"
 
 namespace volcal {
@@ -34,7 +35,8 @@ double largest_sideways_offset(const Campaign& campaign, int k) {
 std::set<std::string> stations(const ParameterLayout& layout) {
   std::set<std::string> names;
   for (const ParameterBlock& block : layout.blocks) {
-    if (block.name.starts_with("station ")) names.insert(block.name);
+    const auto point = named_point(block.name);
+    if (point && point->kind == NamedPoint::Kind::Station) names.insert(point->name);
   }
   return names;
 }
@@ -116,8 +118,10 @@ bool move_together(const Campaign& campaign, AxisName first, AxisName second) {
 }
 
 std::size_t spheres(const ParameterLayout& layout) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      layout.blocks, [](const ParameterBlock& block) { return block.name.starts_with("sphere "); }));
+  return static_cast<std::size_t>(std::ranges::count_if(layout.blocks, [](const ParameterBlock& block) {
+    const auto point = named_point(block.name);
+    return point && point->kind == NamedPoint::Kind::Sphere;
+  }));
 }
 
 /// What tells errors of rotary axes apart: poses of both, places on the table, tools to the side.

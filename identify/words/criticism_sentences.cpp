@@ -7,6 +7,7 @@
 
 #include "volcal/identify/words/sentence_lists.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
@@ -100,12 +101,11 @@ std::string laws(const Finding& finding) {
   return text;
 }
 
-/// As users write of a driver (model/effects/recorded_variable.h).
-const char* unit_of_driver(const std::string& name) {
-  if (name.size() == 1) return name == "t" ? " s" : (name < "d" ? " deg" : " mm");
-  if (name.starts_with("T_")) return " degC";
-  if (name.starts_with("dir_")) return "";
-  return name == "feed" ? " mm/min" : " mm";
+/// " mm": of a driver's values.
+std::string unit_of_driver(const std::string& written) {
+  const auto variable = Variable::parse_written(written);
+  const std::string unit = variable ? unit_text(variable->unit().suffix) : "";
+  return unit.empty() ? "" : " " + unit;
 }
 
 /// "Drawn for it: surface EAY by y z, up to 12.3 +- 0.8 urad at y = 310 mm, z = -120 mm; ..."

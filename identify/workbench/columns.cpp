@@ -43,9 +43,12 @@ std::string kind_of(const Variable& variable) {
     case Kind::Station:
       return "membership";
     case Kind::TravelSinceTurning:
+      return "travel";
+    case Kind::ToolLength:
+    case Kind::ToolOffset:
       break;
   }
-  return "travel";
+  return "tool";
 }
 
 template <class Value>
@@ -104,7 +107,7 @@ std::optional<Eigen::VectorXd> of_point(const Session& session, const std::strin
   const bool is_point = name.starts_with("point_"), is_along = name.starts_with("along_");
   const std::size_t axis = std::string("xyz").find(name.empty() ? ' ' : name.back());
   if ((!is_point && !is_along) || name.size() != 7 || axis == std::string::npos) return std::nullopt;
-  if (is_along) return session.linear().direction(static_cast<int>(axis));
+  if (is_along) return session.linear().direction(kScanDirections[axis]);
   return of_observations(session, [&](const LinearModel::Observation& at) {
     const Eigen::Vector3d& point = session.linear().views()[at.setup].nominal_point_w[at.row];
     return point[static_cast<Eigen::Index>(axis)] * kPerMilli;
@@ -135,7 +138,7 @@ std::optional<Eigen::VectorXd> of_session(const Session& session, const std::str
 std::optional<Eigen::VectorXd> of_variable(const Session& session, const std::string& name) {
   for (const ScanVariable& variable : scan_variables(session.linear())) {
     if (variable.name() != name) continue;
-    const double factor = report::shown_variable(name).factor;
+    const double factor = report::shown_variable(variable.variable).factor;
     return Eigen::VectorXd((variable.value.array() * variable.scale + variable.centre) * factor);
   }
   return std::nullopt;
@@ -146,7 +149,7 @@ std::optional<Eigen::VectorXd> of_variable(const Session& session, const std::st
 std::vector<ColumnInfo> recorded_columns(const Session& session) {
   std::vector<ColumnInfo> columns;
   for (const ScanVariable& variable : scan_variables(session.linear())) {
-    const report::ShownVariable shown = report::shown_variable(variable.name());
+    const report::ShownVariable shown = report::shown_variable(variable.variable);
     columns.push_back({variable.name(), shown.title, shown.unit, kind_of(variable.variable)});
   }
   return columns;

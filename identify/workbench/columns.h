@@ -13,7 +13,7 @@ namespace volcal::workbench {
 /// A recorded variable.
 struct ColumnInfo {
   std::string name;   ///< "x", "dir_x", "T_air"
-  std::string label;  ///< "Position x"
+  std::string label;  ///< "Position X"
   std::string unit;   ///< edge; empty: none
   std::string kind;   ///< "position", "direction", "time" ...
 };

@@ -19,6 +19,7 @@
 #include "volcal/identify/workbench/columns.h"
 #include "volcal/identify/workbench/session_json.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/expression.h"
 #include "volcal/model/effects/recorded_variable.h"
 
@@ -130,12 +131,14 @@ std::vector<std::pair<std::string, std::string>> formula_words(const Session& se
     const std::string letter(1, lower_letter_of(axis.name)),
         called = std::string("axis ") + letter_of(axis.name);
     words.emplace_back(letter, "position of " + called + (is_rotary(axis.name) ? ", deg" : ", mm"));
-    words.emplace_back("dir_" + letter, "direction of approach of " + called + ", -1 or +1");
+    words.emplace_back(direction_of_approach(axis.name).written(),
+                       "direction of approach of " + called + ", -1 or +1");
   }
   for (const ColumnInfo& column : recorded_columns(session)) {
     if (column.kind == "temperature") words.emplace_back(column.name, column.label + ", degC");
   }
-  for (const std::string& name : plain_variables()) words.emplace_back(name, "recorded with the readings");
+  for (const Variable& variable : plain_variables())
+    words.emplace_back(variable.written(), "recorded with the readings");
   for (const std::string& name : Expression::function_names()) words.emplace_back(name + "(", "function");
   return words;
 }
@@ -208,10 +211,10 @@ std::vector<EffectFinding> added_since_fit(const Session& session) {
 }
 
 bool changes_while_it_runs(const std::string& depends_on) {
-  for (const std::string& word : variables_in(depends_on)) {
-    if (word == "t" || word == "time" || word == "feed" || word.starts_with("T_")) return true;
-  }
-  return false;
+  return std::ranges::any_of(words_in(depends_on), [](const std::string& word) {
+    const auto variable = Variable::parse(word);
+    return variable && variable->changes_at_rest();
+  });
 }
 
 /// Of a machine that is compensated by the tables of the last full fit: how uncertain they are, and what none

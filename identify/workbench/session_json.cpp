@@ -175,9 +175,9 @@ Json models_json(const Session& session) {
 Json unknown_json(const UnknownFinding& finding, std::size_t number_of_it) {
   return {{"number", number_of_it},
           {"label", "something that depends on " + finding.dependence() + " along " + finding.action()},
-          {"variables", finding.variables},
-          {"with_one_of", finding.with_one_of},
-          {"direction", finding.direction},
+          {"variables", names_of(finding.variables)},
+          {"with_one_of", names_of(finding.with_one_of)},
+          {"direction", name_of(finding.direction)},
           {"rms_um", number(finding.rms * kPerMicro)},
           {"p", probability_text(finding.log10_p)},
           {"log10_p", number(finding.log10_p)},
@@ -192,7 +192,7 @@ Json surface_json(const SurfaceFinding& surface) {
   for (const auto& side : surface.figure.dots) dots.push_back(doubles_json(side));
   return {{"name", full_name(surface.name)},
           {"label", surface.label},
-          {"drivers", surface.drivers},
+          {"drivers", written_names(surface.drivers)},
           {"unit", surface.unit},
           {"log_evidence", number(surface.log_evidence)},
           {"largest", number(surface.largest * edge)},

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 
@@ -38,23 +37,10 @@ struct Recorded {
   Range range;
 };
 
-std::optional<Recorded> recorded_range(const Campaign& campaign, const std::string& variable) {
-  for (const AxisName axis : kAllAxes) {
-    const std::string letter(1, lower_letter_of(axis));
-    if (variable != letter && variable != "dir_" + letter) continue;
-    Recorded found{variable == letter ? position_column(axis) : variable, {}};
-    for (const Setup& setup : campaign.setups) {
-      if (variable == letter) {
-        found.range.add(setup.readings.position[index_of(axis)]);
-      } else {
-        found.range.add(setup.readings.direction[index_of(axis)]);
-      }
-    }
-    return found;
-  }
+std::optional<Recorded> range_of_channel(const Campaign& campaign, const Variable& variable) {
   for (const std::string& channel : temperature_channels(campaign)) {
-    if (variable != "T_" + channel && variable != channel_variable(channel)) continue;
-    Recorded found{"T_" + channel + "_degC", {}};
+    if (channel != variable.subject && channel_variable(channel) != variable.written()) continue;
+    Recorded found{temperature_of(channel).column(), {}};
     for (const Setup& setup : campaign.setups) {
       const auto values = setup.readings.temperature.find(channel);
       if (values != setup.readings.temperature.end()) found.range.add(values->second);
@@ -64,14 +50,30 @@ std::optional<Recorded> recorded_range(const Campaign& campaign, const std::stri
   return std::nullopt;
 }
 
+std::optional<Recorded> recorded_range(const Campaign& campaign, const Variable& variable) {
+  const bool is_position = variable.kind == Variable::Kind::Position;
+  if (variable.kind == Variable::Kind::Temperature) return range_of_channel(campaign, variable);
+  if (!is_position && variable.kind != Variable::Kind::Direction) return std::nullopt;
+  Recorded found{variable.column(), {}};
+  for (const Setup& setup : campaign.setups) {
+    const std::size_t axis = index_of(variable.axis);
+    if (is_position) {
+      found.range.add(setup.readings.position[axis]);
+    } else {
+      found.range.add(setup.readings.direction[axis]);
+    }
+  }
+  return found;
+}
+
 /// Columns without a change; of an expression only where no variable of it changes.
 std::vector<std::string> constant_columns(const Campaign& campaign, const Effect& effect) {
   std::vector<std::string> constant;
-  std::istringstream words(effect.name().driver);
-  for (std::string variable; words >> variable;) {
-    const auto found = recorded_range(campaign, variable);
-    const bool unknown_direction =
-        found && found->range.constant() && found->range.min == 0.0 && variable.starts_with("dir_");
+  for (const std::string& word : words_in(effect.name().driver)) {
+    const auto variable = Variable::parse(word);
+    const auto found = variable ? recorded_range(campaign, *variable) : std::nullopt;
+    const bool unknown_direction = found && found->range.constant() && found->range.min == 0.0 &&
+                                   variable->kind == Variable::Kind::Direction;
     if (found && found->range.constant() && !unknown_direction) {
       constant.push_back(found->column);
     } else if (effect.changes_with_any_driver()) {

@@ -89,14 +89,6 @@ std::vector<std::string> temperature_channels(const Campaign& campaign) {
   return channels;
 }
 
-std::string channel_variable(const std::string& channel) {
-  std::string name = "T_" + channel;
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return name;
-}
-
 std::string listed_names(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;

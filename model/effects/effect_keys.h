@@ -40,8 +40,6 @@ std::vector<KeySchema> joined(std::initializer_list<std::vector<KeySchema>> part
 
 /// Every temperature channel of the campaign, every station with more than one reading, every tool in use.
 std::vector<std::string> temperature_channels(const Campaign& campaign);
-/// Name of a channel in expressions: T_ and the channel, what is no letter or digit replaced by _.
-std::string channel_variable(const std::string& channel);
 std::vector<std::string> station_names(const Campaign& campaign);
 std::vector<std::string> tools_in_use(const Campaign& campaign);
 /// "a, b, c"; "none" when there are none.

@@ -1,9 +1,8 @@
 #include "volcal/model/effects/recorded_variable.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <sstream>
+#include <stdexcept>
 
 #include "volcal/model/description/units.h"
 #include "volcal/model/effects/travel_since_turning.h"
@@ -11,28 +10,16 @@
 namespace volcal {
 namespace {
 
-/// The channel that a variable T_... means.
-const std::vector<double>* temperature(const Readings& readings, const std::string& variable) {
+using Kind = Variable::Kind;
+
+/// The channel that a temperature means, by its own name before that in expressions.
+const std::vector<double>* temperature(const Readings& readings, const Variable& variable) {
+  const auto own = readings.temperature.find(variable.subject);
+  if (own != readings.temperature.end()) return &own->second;
   for (const auto& [channel, values] : readings.temperature) {
-    if (channel_variable(channel) == variable) return &values;
+    if (channel_variable(channel) == variable.written()) return &values;
   }
   return nullptr;
-}
-
-std::optional<AxisName> axis_of(const std::string& letter) {
-  if (letter.size() != 1 || letter[0] < 'a') return std::nullopt;
-  return axis_from_letter(static_cast<char>(std::toupper(letter[0])));
-}
-
-constexpr const char* kDirection = "dir_";
-constexpr const char* kSinceTurning = "since_";
-
-/// Of a position, direction or travel since turning.
-std::optional<AxisName> axis_in(const std::string& name) {
-  for (const std::string prefix : {kDirection, kSinceTurning}) {
-    if (name.starts_with(prefix)) return axis_of(name.substr(prefix.size()));
-  }
-  return axis_of(name);
 }
 
 template <class Values>
@@ -45,93 +32,110 @@ Eigen::VectorXd scaled(const Values& values, double unit) {
 }
 
 /// As far as ever until it first turns.
-Eigen::VectorXd since_turning(const Setup& setup, AxisName axis) {
+std::vector<double> since_turning(const Setup& setup, AxisName axis) {
   std::vector<double> travelled = travel_since_turning(setup, axis);
   double farthest = 0.0;
   for (const double each : travelled) farthest = std::isinf(each) ? farthest : std::max(farthest, each);
   for (double& each : travelled) each = std::min(each, farthest);
-  return scaled(travelled, position_unit(axis).si_per_unit);
+  return travelled;
+}
+
+/// In the variable's unit; nothing for a column that is not there.
+template <class Values>
+std::optional<Eigen::VectorXd> of_column(const Values& values, const Variable& variable) {
+  if (values.empty()) return std::nullopt;
+  return scaled(values, variable.unit().si_per_unit);
 }
 
 }  // namespace
 
-const std::vector<std::string>& plain_variables() {
-  static const std::vector<std::string> kNames = {"t",      "length", "feed",  "tool_length",
-                                                  "tool_x", "tool_y", "tool_z"};
-  return kNames;
+const std::vector<Variable>& plain_variables() {
+  static const std::vector<Variable> kVariables = {
+      {.kind = Kind::Time},
+      {.kind = Kind::Length},
+      {.kind = Kind::Feed},
+      {.kind = Kind::ToolLength},
+      {.kind = Kind::ToolOffset, .component = 0},
+      {.kind = Kind::ToolOffset, .component = 1},
+      {.kind = Kind::ToolOffset, .component = 2},
+  };
+  return kVariables;
 }
 
-bool is_recorded_variable(const std::string& name) {
-  if (name.starts_with("T_")) return name.size() > 2;
-  if (std::ranges::find(plain_variables(), name) != plain_variables().end()) return true;
-  return axis_in(name).has_value();
+std::string listed_variables() {
+  return "x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
+         listed_names(written_names(plain_variables()));
 }
 
-std::vector<std::string> variables_in(const std::string& list) {
-  std::istringstream stream(list);
-  std::vector<std::string> names;
-  for (std::string name; stream >> name;) names.push_back(name);
-  return names;
-}
-
-std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const std::string& name) {
+std::optional<Eigen::VectorXd> recorded_variable(const SetupView& view, const Variable& variable) {
   const Readings& readings = view.setup.readings;
-  const auto rows = static_cast<Eigen::Index>(view.rows());
-  if (name.starts_with("T_")) {
-    const std::vector<double>* values = temperature(readings, name);
-    if (values == nullptr) return std::nullopt;
-    return scaled(*values, 1.0);
+  const double unit = variable.unit().si_per_unit;
+  const Eigen::Vector3d& tool = view.campaign.machine.tools[view.setup.tool].offset;
+  const auto constant_of = [&](double value) {
+    return Eigen::VectorXd::Constant(static_cast<Eigen::Index>(view.rows()), value).eval();
+  };
+  switch (variable.kind) {
+    case Kind::Position:
+      return scaled(readings.position[index_of(variable.axis)], unit);
+    case Kind::Direction:
+      return of_column(readings.direction[index_of(variable.axis)], variable);
+    case Kind::TravelSinceTurning:
+      return scaled(since_turning(view.setup, variable.axis), unit);
+    case Kind::Time:
+      if (readings.time.empty()) return std::nullopt;
+      return times(view).array() - clock_start(view);
+    case Kind::Temperature: {
+      const std::vector<double>* values = temperature(readings, variable);
+      if (values == nullptr) return std::nullopt;
+      return scaled(*values, unit);
+    }
+    case Kind::Feed:
+      return of_column(readings.feed, variable);
+    case Kind::Length:
+      return view.length / unit;
+    case Kind::ToolLength:
+      return constant_of((tool / unit).norm());
+    case Kind::ToolOffset:
+      return constant_of(tool[variable.component] / unit);
+    case Kind::Speed:
+    case Kind::Elevation:
+    case Kind::Run:
+    case Kind::Instrument:
+    case Kind::Tool:
+    case Kind::Station:
+      break;
   }
-  if (name.starts_with(kSinceTurning)) return since_turning(view.setup, *axis_in(name));
-  if (name.starts_with(kDirection)) {
-    const auto& direction = readings.direction[index_of(*axis_in(name))];
-    if (direction.empty()) return std::nullopt;
-    return scaled(direction, 1.0);
-  }
-  if (const auto axis = axis_of(name)) {
-    return scaled(readings.position[index_of(*axis)], position_unit(*axis).si_per_unit);
-  }
-  if (name == "t") {
-    if (readings.time.empty()) return std::nullopt;
-    return times(view).array() - clock_start(view);
-  }
-  if (name == "feed") {
-    if (readings.feed.empty()) return std::nullopt;
-    return scaled(readings.feed, unit_of_key("feed_mm_min").si_per_unit);
-  }
-  if (name == "length") return view.length / kMetrePerMillimetre;
-  const Eigen::Vector3d offset = view.campaign.machine.tools[view.setup.tool].offset / kMetrePerMillimetre;
-  return Eigen::VectorXd::Constant(rows, name == "tool_length" ? offset.norm() : offset[name.back() - 'x']);
+  throw std::invalid_argument(variable.name() + " is no variable of expressions");
 }
 
-bool has_variable(const Setup& setup, const std::string& name) {
+bool has_variable(const Setup& setup, const Variable& variable) {
   const Readings& readings = setup.readings;
-  if (name.starts_with("T_")) return temperature(readings, name) != nullptr;
-  if (name.starts_with(kDirection)) return !readings.direction[index_of(*axis_in(name))].empty();
-  if (name == "t") return !readings.time.empty();
-  if (name == "feed") return !readings.feed.empty();
-  return true;
+  switch (variable.kind) {
+    case Kind::Temperature:
+      return temperature(readings, variable) != nullptr;
+    case Kind::Direction:
+      return !readings.direction[index_of(variable.axis)].empty();
+    case Kind::Time:
+      return !readings.time.empty();
+    case Kind::Feed:
+      return !readings.feed.empty();
+    default:
+      return true;
+  }
 }
 
-std::string column_of_variable(const std::string& variable) {
-  if (variable.starts_with("T_")) return variable + "_degC";
-  if (variable == "t") return "time_s";
-  if (variable == "feed") return "feed_mm_min";
-  return variable;
-}
-
-void check_variable(const Campaign& campaign, const std::string& name,
+void check_variable(const Campaign& campaign, const Variable& variable,
                     const std::function<bool(const Setup&)>& acts_on, const std::string& what,
                     const std::string& user, const SourcePlace& place) {
-  if (const auto axis = axis_in(name)) check_axis(campaign, *axis, what, place);
+  if (variable.has_axis()) check_axis(campaign, variable.axis, what, place);
   for (const Setup& setup : campaign.setups) {
-    if (acts_on(setup) && has_variable(setup, name)) return;
+    if (acts_on(setup) && has_variable(setup, variable)) return;
   }
-  std::string remedy = "add the column " + column_of_variable(name) + " or write another variable";
-  if (name.starts_with("T_")) {
+  const std::string column = variable.column();
+  std::string remedy = "add the column " + column + " or write another variable";
+  if (variable.kind == Kind::Temperature)
     remedy += "; channels of the campaign: " + listed_names(temperature_channels(campaign));
-  }
-  throw InputError(place, what + ": column " + column_of_variable(name) + " is missing, but " + user, remedy);
+  throw InputError(place, what + ": column " + column + " is missing, but " + user, remedy);
 }
 
 }  // namespace volcal

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/instruments/nuisance.h"
 
 namespace volcal {
@@ -34,8 +35,8 @@ class BallBarSetup final : public EquationBase<BallBarSetup> {
     const Setup& setup = context.setup;
     centre_guess_w_ = *setup.options.vector("centre");
     const auto centre_sigma = setup.options.number("centre_sigma");
-    NuisanceBlock centre =
-        point_nuisance(setup.name + ": centre", centre_guess_w_, centre_sigma.value_or(kDefaultCentreSigma));
+    NuisanceBlock centre = point_nuisance(centre_parameter(setup.name), centre_guess_w_,
+                                          centre_sigma.value_or(kDefaultCentreSigma));
     centre.weak_default_prior = !centre_sigma;
     add_nuisance(std::move(centre));
     const auto length_sigma = setup.options.number("length_sigma");

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <utility>
 
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/kinematics/vector_loops.h"
 
@@ -62,7 +63,7 @@ class LaserTracerSetup final : public EquationBase<LaserTracerSetup> {
   explicit LaserTracerSetup(SetupContext context) : nominal_point_w_(std::move(context.nominal_point_w)) {
     const Setup& setup = context.setup;
     station_guess_w_ = *setup.options.vector("station");
-    add_nuisance(point_nuisance("station " + setup.options.text("station").value_or(setup.name),
+    add_nuisance(point_nuisance(station_parameter(setup.options.text("station").value_or(setup.name)),
                                 station_guess_w_, setup.options.number("station_sigma").value_or(0.0)));
     add_nuisance(scalar_nuisance(setup.name + ": dead path", dead_path_guess(setup)));
     if (auto scale = length_scale_nuisance(setup)) {

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/kinematics/chain.h"
 
@@ -84,7 +85,7 @@ class LaserTrackerSetup final : public EquationBase<LaserTrackerSetup> {
     station_guess_w_ = *setup.options.vector("station");
     rotation_ws_ = rotation_guess(setup.readings, nominal_point_w_);
     azimuth_ = setup.readings.value[1];
-    add_nuisance(point_nuisance("station " + setup.options.text("station").value_or(setup.name),
+    add_nuisance(point_nuisance(station_parameter(setup.options.text("station").value_or(setup.name)),
                                 station_guess_w_, setup.options.number("station_sigma").value_or(0.0)));
     NuisanceBlock rotation = point_nuisance(setup.name + ": station rotation", Eigen::Vector3d::Zero(), 0.0);
     rotation.is_angle.assign(3, true);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "volcal/model/description/parameter_names.h"
+
 namespace volcal {
 
 NuisanceBlock scalar_nuisance(std::string name, double guess, double prior_sigma, bool is_angle) {
@@ -31,7 +33,7 @@ std::optional<NuisanceBlock> length_scale_nuisance(const Setup& setup) {
   const auto sigma = setup.options.number("scale_sigma");
   if (!sigma || *sigma == 0.0) return std::nullopt;
   const std::string group = setup.options.text("scale_group").value_or(setup.instrument);
-  NuisanceBlock block = scalar_nuisance("length scale " + group, 0.0, *sigma, true);
+  NuisanceBlock block = scalar_nuisance(length_scale_parameter(group), 0.0, *sigma, true);
   block.prior_mean.setZero();
   return block;
 }

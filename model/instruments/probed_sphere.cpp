@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/instruments/reading_frame.h"
 
@@ -105,7 +106,7 @@ std::optional<NuisanceBlock> radius_nuisance(const SetupContext& context) {
 }
 
 std::string sphere_name(const Setup& setup) {
-  return "sphere " + setup.options.text("sphere").value_or(setup.name);
+  return sphere_parameter(setup.options.text("sphere").value_or(setup.name));
 }
 
 class ProbedCentres final : public EquationBase<ProbedCentres> {

@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/instruments/nuisance.h"
 #include "volcal/model/instruments/reading_frame.h"
 
@@ -34,7 +35,7 @@ class RTestSetup final : public EquationBase<RTestSetup> {
     const Setup& setup = context.setup;
     set_channels(3);
     const std::string sphere = setup.options.text("sphere").value_or(setup.name);
-    add_nuisance(point_nuisance("sphere " + sphere, Eigen::Vector3d::Zero(), 0.0));
+    add_nuisance(point_nuisance(sphere_parameter(sphere), Eigen::Vector3d::Zero(), 0.0));
     has_zero_ = !reads_in_workpiece(setup);
     if (has_zero_)
       add_nuisance(point_nuisance(setup.name + ": zero of the sensors", Eigen::Vector3d::Zero(), 0.0));

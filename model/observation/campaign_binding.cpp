@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "volcal/model/description/errors.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/effects/lagged_channel.h"
@@ -69,7 +70,7 @@ ParameterBlock shape_block(const EffectShape& shape) {
 ParameterBlock tool_block(const Tool& tool) {
   ParameterBlock block;
   block.kind = ParameterKind::ToolOffset;
-  block.name = "tool " + tool.name;
+  block.name = tool_parameter(tool.name);
   block.labels = {"x", "y", "z"};
   block.units = {"um", "um", "um"};
   block.si_per_unit = {kMetrePerMicrometre, kMetrePerMicrometre, kMetrePerMicrometre};
@@ -88,7 +89,7 @@ ParameterBlock nuisance_block(const NuisanceBlock& nuisance) {
   block.prior_mean = nuisance.prior_mean;
   block.prior_sigma = nuisance.prior_sigma;
   block.weak_default_prior = nuisance.weak_default_prior;
-  const bool is_scale = block.name.starts_with("length scale");
+  const bool is_scale = is_length_scale(block.name);
   for (int k = 0; k < nuisance.size(); ++k) {
     const bool angle = nuisance.is_angle[static_cast<std::size_t>(k)];
     block.units.emplace_back(is_scale ? "ppm" : angle ? "urad" : "mm");
@@ -112,8 +113,7 @@ void merge_nuisance(ParameterBlock& block, const NuisanceBlock& other, int merge
                              " standard uncertainties apart",
                          "correct the positions or their sigma, or give the stations different names");
       }
-      if (block.name.starts_with("length scale"))
-        continue;  // one and the same statement, made in every setup
+      if (is_length_scale(block.name)) continue;  // one and the same statement, made in every setup
       const double weight = 1.0 / (sigma * sigma), other_weight = 1.0 / (other_sigma * other_sigma);
       block.prior_mean[k] =
           (weight * block.prior_mean[k] + other_weight * other.prior_mean[k]) / (weight + other_weight);
@@ -257,8 +257,8 @@ class CampaignBinder {
     if (!axis.expansion) return;
     int parameter = -1;
     if (axis.expansion->per_kelvin_sigma > 0.0) {
-      ParameterBlock block = scalar_block(ParameterKind::Expansion,
-                                          std::string("expansion ") + letter_of(axis.name), "um/m/K", kMicro);
+      ParameterBlock block =
+          scalar_block(ParameterKind::Expansion, expansion_parameter(axis.name), "um/m/K", kMicro);
       block.prior_sigma[0] = axis.expansion->per_kelvin_sigma;
       parameter = add_block(std::move(block));
     }

@@ -198,7 +198,8 @@ class CampaignRun {
       if (record_.ranking.size() < kKeptOfRanking) record_.ranking.push_back(answer(finding));
     }
     for (const UnknownFinding& unknown : diagnosis.unknown) {
-      record_.unknown.push_back({unknown.variables, unknown.direction, unknown.log10_p});
+      record_.unknown.push_back(
+          {names_of(unknown.variables), std::string(name_of(unknown.direction)), unknown.log10_p});
     }
     for (const EffectFinding& change : diagnosis.model_changes) record_.model_changes.push_back(change.label);
     for (const NoiseRow& row : diagnosis.noise) {

@@ -6,6 +6,7 @@
 
 #include "volcal/identify/text/csv_table.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
@@ -34,7 +35,7 @@ std::vector<PointColumn> point_columns(const CsvTable& table) {
       throw InputError(table.header_place(), "column " + name + " is missing",
                        "give x_mm, y_mm and z_mm of every position");
     }
-    const std::string direction = std::string("dir_") + lower_letter_of(axis);
+    const std::string direction = direction_of_approach(axis).column();
     if (const auto index = table.find(direction)) {
       columns.push_back({*index, direction, [k](sim::CommandedPoint& point, double value) {
                            if (value != -1.0 && value != 0.0 && value != 1.0) return false;

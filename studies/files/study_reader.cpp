@@ -9,6 +9,7 @@
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/text/text_file.h"
+#include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/studies/files/control_tables.h"
@@ -198,12 +199,12 @@ sim::TruthSettings known_truth(const std::string& path, const Machine& machine, 
   for (const Axis& axis : machine.axes) {
     if (!axis.expansion) continue;
     ScaleExpansion exact = *axis.expansion;
-    if (const auto* block = known.layout.find_block(std::string("expansion ") + letter_of(axis.name)))
+    if (const auto* block = known.layout.find_block(expansion_parameter(axis.name)))
       exact.per_kelvin += known.parameters[block->offset];
     truth.expansions[axis.name] = exact;
   }
   for (const Tool& tool : machine.tools) {
-    if (const auto* block = known.layout.find_block("tool " + tool.name))
+    if (const auto* block = known.layout.find_block(tool_parameter(tool.name)))
       truth.tools[tool.name] = known.parameters.segment<3>(block->offset);
   }
   return truth;

@@ -59,9 +59,10 @@ inline Diagnosis hand_made_diagnosis() {
   diagnosis.sets[1].matters = true;
   diagnosis.ranking = {other, finer, third};
   diagnosis.not_visible = {third};
-  diagnosis.unknown = {{{"x", "time"}, {}, "Z", "EBX", 0.3e-6, -6.5},
-                       {{"dir_y"}, {"T_air", "T_column"}, "Y", "", 0.2e-6, -5.0},
-                       {{"y"}, {}, "Y", "", 0.1e-6, -4.0, 10.02e-3}};
+  diagnosis.unknown = {
+      {variables_in("x t"), {}, ScanDirection::Z, ErrorSymbol{Component::B, AxisName::X}, 0.3e-6, -6.5},
+      {variables_in("dir_y"), variables_in("T_air T_column"), ScanDirection::Y, {}, 0.2e-6, -5.0},
+      {variables_in("y"), {}, ScanDirection::Y, {}, 0.1e-6, -4.0, 10.02e-3}};
   MeasurementProposal visit;
   visit.action = "revisit";
   visit.setup = "P1_short";

@@ -92,7 +92,7 @@ std::string effect_list_text(const std::vector<std::string>& testable) {
   for (const ModelChange& change : model_change_kinds())
     text += fmt::format("{}\n  {}\n", change.kind, change.summary);
   for (const WordList& list : word_lists()) text += words_text(list);
-  text += fmt::format("\nDirections of these scans: {}\n", fmt::join(kScanDirections, ", "));
+  text += fmt::format("\nDirections of these scans: {}\n", fmt::join(kScanDirectionNames, ", "));
   if (testable.empty()) return text;
   text += fmt::format("\nTested in this campaign: {} effects and changes of the model\n", testable.size());
   for (const std::string& name : testable) text += "    " + name + "\n";
@@ -113,7 +113,7 @@ std::string effect_list_json(const std::vector<std::string>& testable, const std
     json["model_changes"].push_back({{"kind", change.kind}, {"summary", change.summary}});
   }
   for (const WordList& list : word_lists()) json[list.key] = words_json(list.words);
-  json["directions"] = kScanDirections;
+  json["directions"] = kScanDirectionNames;
   if (!testable.empty()) json["testable"] = testable;
   add_notes(notes, json);
   return json_text(json, 2) + "\n";

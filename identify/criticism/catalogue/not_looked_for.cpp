@@ -7,6 +7,7 @@
 
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -29,7 +30,7 @@ std::set<std::string> unknown_directions(const Campaign& campaign) {
   std::set<std::string> names;
   for (const Axis& axis : campaign.machine.axes) {
     if (!moves_along(campaign, axis.name) || direction_is_known(campaign, axis.name)) continue;
-    names.insert(std::string("dir_") + static_cast<char>(std::tolower(letter_of(axis.name))));
+    names.insert(direction_of_approach(axis.name).name());
   }
   return names;
 }

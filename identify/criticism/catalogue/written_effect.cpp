@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/kinds/open/custom.h"
 #include "volcal/model/effects/recorded_variable.h"
@@ -125,9 +126,10 @@ EffectSpec written_surface(const std::string& option, const std::string& text) {
   if (colon == std::string::npos || target.text.empty())
     throw InputError({}, fmt::format("{} \"{}\": it names no target", option, text), form);
   std::string drivers, factor;
-  for (const std::string& name : variables_in(text.substr(colon + 1))) {
-    std::string& list = name.starts_with("dir_") ? factor : drivers;
-    list += (list.empty() ? "" : " ") + name;
+  for (const std::string& word : words_in(text.substr(colon + 1))) {
+    const auto variable = Variable::parse_written(word);
+    std::string& list = variable && variable->kind == Variable::Kind::Direction ? factor : drivers;
+    list += (list.empty() ? "" : " ") + word;
   }
   EffectSpec spec = effect_spec("empirical", {{"target", target.text}, {"drivers", drivers}});
   if (!factor.empty()) spec.options.set("factor", factor);

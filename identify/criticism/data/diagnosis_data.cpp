@@ -38,14 +38,15 @@ Verdict verdict_from(const std::string& text) {
 }
 
 std::string UnknownFinding::dependence() const {
-  std::string text = fmt::format("{}", fmt::join(variables, " and "));
-  if (!with_one_of.empty()) text += fmt::format(" and one of {}", fmt::join(with_one_of, ", "));
+  std::string text = fmt::format("{}", fmt::join(names_of(variables), " and "));
+  if (!with_one_of.empty()) text += fmt::format(" and one of {}", fmt::join(names_of(with_one_of), ", "));
   return text;
 }
 
 std::string UnknownFinding::action() const {
-  if (!rotation.empty()) return direction + ", as " + rotation;
-  return period > 0.0 ? fmt::format("{}, every {:.4g} mm", direction, period * kPerMilli) : direction;
+  std::string text(name_of(direction));
+  if (rotation) return text + ", as " + rotation->name();
+  return period > 0.0 ? text + fmt::format(", every {:.4g} mm", period * kPerMilli) : text;
 }
 
 std::size_t AskedLaws::sufficient() const {

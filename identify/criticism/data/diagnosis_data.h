@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/figure_data.h"
+#include "volcal/identify/criticism/data/scan_direction.h"
 #include "volcal/identify/noise/noise_estimate.h"
 #include "volcal/model/description/finding.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
@@ -53,13 +55,13 @@ struct EffectFinding {
 
 /// Something moves the readings, and no effect of the catalogue explains it better.
 struct UnknownFinding {
-  std::vector<std::string> variables;
-  std::vector<std::string> with_one_of;  ///< and one of these, which the readings do not separate; or empty
-  std::string direction;                 ///< of kScanDirections
-  std::string rotation;  ///< "EBX": with the arms of this error motion; empty: as a displacement
-  double rms = 0.0;      ///< SI
-  double log10_p = 0.0;  ///< family-wise
-  double period = 0.0;   ///< m: it repeats; 0: not found to
+  std::vector<Variable> variables;
+  std::vector<Variable> with_one_of;  ///< and one of these, which the readings do not separate; or empty
+  ScanDirection direction = ScanDirection::X;
+  std::optional<ErrorSymbol> rotation;  ///< with the arms of this error motion; absent: as a displacement
+  double rms = 0.0;                     ///< SI
+  double log10_p = 0.0;                 ///< family-wise
+  double period = 0.0;                  ///< m: it repeats; 0: not found to
 
   /// "x", "x and z", or "dir_x and one of T_air, T_column".
   std::string dependence() const;
@@ -109,7 +111,7 @@ struct SurfaceFinding {
   EffectName name;
   std::string label;
   EffectSpec spec;  ///< with its coefficients: can be put into a model file
-  std::vector<std::string> drivers;
+  std::vector<Variable> drivers;
   std::string unit;  ///< edge, of its values
   double si_per_unit = 1.0;
   double log_evidence = 0.0;          ///< natural, over the model without it

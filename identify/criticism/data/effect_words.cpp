@@ -69,6 +69,22 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"VARIABLES", "variables of the expression", "custom"},
 });
 
+/// In the order of Variable::Kind.
+constexpr auto kScanMeanings = std::to_array<std::string_view>({
+    "position of an axis",
+    "direction of approach of an axis",
+    "share of the feed along an axis, with its sign, of readings taken in motion",
+    "time since the first reading of the campaign",
+    "temperature of a channel",
+    "length that is measured",
+    "angle of the beam above the horizontal, at the nominal station",
+    "number of the run",
+    "feed rate",
+    "whether the reading is of this instrument",
+    "whether this tool is carried",
+    "whether the reading was taken from this station",
+});
+
 constexpr auto kShapes = std::to_array<EffectWord>({
     {"step", "on or off, or a change of sign: constant either side"},
     {"linear", "proportional to the driver"},
@@ -163,10 +179,7 @@ std::string full_name(const EffectName& name) {
 std::span<const ModelChange> model_change_kinds() { return kModelChanges; }
 
 std::vector<std::string> left_out_symbols(const EffectSpec& spec) {
-  std::istringstream words(spec.options.text("symbol").value_or(""));
-  std::vector<std::string> symbols;
-  for (std::string word; words >> word;) symbols.push_back(word);
-  return symbols;
+  return words_in(spec.options.text("symbol").value_or(""));
 }
 
 EffectName resolution_name(ErrorSymbol symbol) {
@@ -185,6 +198,16 @@ std::span<const EffectWord> effect_words(NamePart part) {
   return kShapes;
 }
 
+std::span<const EffectWord> scan_words() {
+  static const std::vector<EffectWord> kWords = [] {
+    std::vector<EffectWord> words;
+    for (std::size_t kind = 0; kind < kScanMeanings.size(); ++kind)
+      words.push_back({pattern_of(static_cast<Variable::Kind>(kind)), kScanMeanings[kind]});
+    return words;
+  }();
+  return kWords;
+}
+
 const EffectWord* find_word(NamePart part, const EffectName& name) {
   const std::string& text = part == NamePart::Target   ? name.target
                             : part == NamePart::Driver ? name.driver
@@ -192,12 +215,12 @@ const EffectWord* find_word(NamePart part, const EffectName& name) {
   return find_in(effect_words(part), name.kind, text);
 }
 
-int complexity_rank(const std::vector<Variable>& variables, const std::string& direction) {
+int complexity_rank(const std::vector<Variable>& variables, ScanDirection direction) {
   const auto holds = [&](Variable::Kind kind) {
     return std::ranges::find(variables, kind, &Variable::kind) != variables.end();
   };
   const bool station = holds(Variable::Kind::Station), temperature = holds(Variable::Kind::Temperature),
-             time = holds(Variable::Kind::Time), beam = direction == "beam";
+             time = holds(Variable::Kind::Time), beam = direction == ScanDirection::Beam;
   if (variables.size() < 2) return beam && station ? 1 : 0;
   if (time && temperature) return 3;
   return (beam ? time : station && temperature) ? 2 : 1;

@@ -11,10 +11,18 @@
 #include <string_view>
 #include <vector>
 
-#include "volcal/identify/criticism/data/variable.h"
+#include "volcal/identify/criticism/data/scan_direction.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect.h"
 
 namespace volcal {
+
+/// A pattern of a word and its meaning; what is in capitals stands for something of the user's files.
+struct EffectWord {
+  std::string_view pattern;  ///< "readings of SETUP"
+  std::string_view meaning;
+  std::string_view kind = {};  ///< the only one that has it; "common-": all that start so; empty: any
+};
 
 /// "kind:target:driver:shape"
 std::string full_name(const EffectName& name);
@@ -35,6 +43,8 @@ EffectName resolution_name(ErrorSymbol symbol);
 enum class NamePart { Target, Driver, Shape };
 
 std::span<const EffectWord> effect_words(NamePart part);
+/// Words for what scans without a catalogue go through, in the order of Variable::Kind.
+std::span<const EffectWord> scan_words();
 /// The word that this part of a name is; nullptr when there is none.
 const EffectWord* find_word(NamePart part, const EffectName& name);
 
@@ -42,6 +52,6 @@ const EffectWord* find_word(NamePart part, const EffectName& name);
 /// along its beam, which is a dead path and no parameter of the model where it shows; time before
 /// temperatures for a station, which is no part of the machine, and temperatures before time for a beam,
 /// whose wavelength follows the air's; and whatever depends on time and a temperature is a function of time.
-int complexity_rank(const std::vector<Variable>& variables, const std::string& direction);
+int complexity_rank(const std::vector<Variable>& variables, ScanDirection direction);
 
 }  // namespace volcal

@@ -11,9 +11,6 @@
 
 namespace volcal {
 
-/// Along which something may act: the workpiece axes, and the line of sight of an instrument.
-inline constexpr const char* kScanDirections[] = {"X", "Y", "Z", "beam"};
-
 /// Means of a value over bins of an abscissa. Empty bins are left out.
 struct BinnedMean {
   std::vector<double> centre;

@@ -137,7 +137,7 @@ class FigureMaker {
     }
     figures_.observation_count = used.size();
     for (const std::size_t k : even_sample(used.size(), kDrawn)) drawn_.push_back(used[k]);
-    for (int axis = 0; axis < 3; ++axis) direction_[static_cast<std::size_t>(axis)] = model_.direction(axis);
+    for (std::size_t axis = 0; axis < 3; ++axis) direction_[axis] = model_.direction(kScanDirections[axis]);
     for (const std::size_t i : drawn_) {
       const auto& [setup, row, channel] = model_.observations()[i];
       const auto at = static_cast<Eigen::Index>(i);
@@ -282,12 +282,10 @@ class FigureMaker {
     const auto count = static_cast<Eigen::Index>(place.size());
     const auto fill = [&](const std::vector<GenericTest>& tests, std::vector<Eigen::MatrixXd>& maps) {
       const double multiplicity = std::log10(static_cast<double>(std::max<std::size_t>(1, tests.size())));
-      maps.assign(std::size(kScanDirections), Eigen::MatrixXd::Zero(count, count));
+      maps.assign(kScanDirections.size(), Eigen::MatrixXd::Zero(count, count));
       for (const GenericTest& test : tests) {
-        const auto direction =
-            std::ranges::find(kScanDirections, test.direction) - std::begin(kScanDirections);
         const Eigen::Index a = place.at(test.variables.front()), b = place.at(test.variables.back());
-        double& cell = maps[static_cast<std::size_t>(direction)](std::max(a, b), std::min(a, b));
+        double& cell = maps[index_of(test.direction.value())](std::max(a, b), std::min(a, b));
         cell = std::min(cell, std::min(0.0, test.log10_p + multiplicity));
       }
     };

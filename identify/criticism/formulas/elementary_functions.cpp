@@ -32,7 +32,7 @@ std::vector<Shape> places(const DriverRange& driver) {
 }
 
 ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
-  return {[=, variable = driver.variable](const Names& names) {
+  return {[=, variable = driver.variable.written()](const Names& names) {
             const std::string base = "(" + variable_less(variable, names[0]) + ")";
             return exponent == 1 ? base : fmt::format("{}^{}", base, exponent);
           },
@@ -41,14 +41,14 @@ ElementaryFunction shifted_power(const DriverRange& driver, int exponent) {
 }
 
 ElementaryFunction kink(const DriverRange& driver, const std::string& pattern, double (*at)(double beyond)) {
-  return {[=, variable = driver.variable](const Names& names) {
+  return {[=, variable = driver.variable.written()](const Names& names) {
             return fmt::format(fmt::runtime(pattern), variable_less(variable, names[0]));
           },
           [=](double value, const Shape& shape) { return at(value - shape[0]); }, places(driver)};
 }
 
 ElementaryFunction step(const DriverRange& driver) {
-  ElementaryFunction function{[variable = driver.variable](const Names& names) {
+  ElementaryFunction function{[variable = driver.variable.written()](const Names& names) {
                                 return fmt::format("({} > {})", variable, names[0]);
                               },
                               [](double value, const Shape& shape) { return value > shape[0] ? 1.0 : 0.0; },
@@ -62,7 +62,7 @@ ElementaryFunction saturation(const DriverRange& driver) {
   for (const Shape& place : places(driver)) {
     for (const double share : {0.05, 0.15}) starts.push_back({place[0], share * (driver.to - driver.from)});
   }
-  return {[variable = driver.variable](const Names& names) {
+  return {[variable = driver.variable.written()](const Names& names) {
             return fmt::format("tanh(({}) / {})", variable_less(variable, names[0]), names[1]);
           },
           [](double value, const Shape& shape) { return std::tanh((value - shape[0]) / shape[1]); }, starts};
@@ -74,7 +74,7 @@ ElementaryFunction wave(const DriverRange& driver) {
   for (const double share : {0.25, 0.35, 0.5, 0.7, 1.0, 1.4}) {
     for (const double phase : {0.0, 0.25}) starts.push_back({share * range, phase * share * range});
   }
-  return {[variable = driver.variable](const Names& names) {
+  return {[variable = driver.variable.written()](const Names& names) {
             return fmt::format("sin(2 * pi * ({}) / {})", variable_less(variable, names[1]), names[0]);
           },
           [](double value, const Shape& shape) {
@@ -86,7 +86,7 @@ ElementaryFunction wave(const DriverRange& driver) {
 ElementaryFunction approach(const DriverRange& driver) {
   std::vector<Shape> starts;
   for (const double share : {0.05, 0.1, 0.2, 0.4, 0.8}) starts.push_back({share * (driver.to - driver.from)});
-  return {[variable = driver.variable](const Names& names) {
+  return {[variable = driver.variable.written()](const Names& names) {
             return fmt::format("(1 - exp(-{} / {}))", variable, names[0]);
           },
           [](double value, const Shape& shape) { return 1.0 - std::exp(-value / shape[0]); }, starts};
@@ -98,8 +98,8 @@ ElementaryFunction unity() {
   return {[](const Names&) { return std::string(); }, [](double, const Shape&) { return 1.0; }, {{}}};
 }
 
-ElementaryFunction power_of(const std::string& variable, double zero, int exponent) {
-  const std::string base = from_zero(variable, zero);
+ElementaryFunction power_of(const Variable& variable, double zero, int exponent) {
+  const std::string base = from_zero(variable.written(), zero);
   return {[=](const Names&) { return exponent == 1 ? base : fmt::format("{}^{}", base, exponent); },
           [=](double value, const Shape&) { return std::pow(value - zero, exponent); },
           {{}}};
@@ -115,7 +115,9 @@ std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, 
   functions.push_back(step(driver));
   functions.push_back(saturation(driver));
   functions.push_back(wave(driver));
-  if (driver.variable == "t" || driver.variable.starts_with("since_")) functions.push_back(approach(driver));
+  const Variable::Kind kind = driver.variable.kind;
+  if (kind == Variable::Kind::Time || kind == Variable::Kind::TravelSinceTurning)
+    functions.push_back(approach(driver));
   return functions;
 }
 

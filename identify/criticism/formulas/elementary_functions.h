@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "volcal/model/description/variable.h"
+
 namespace volcal {
 
 struct DriverRange {
-  std::string variable;  ///< "y", "T_column", "t"
+  Variable variable;
   double from = 0.0;
   double to = 1.0;
 };
@@ -31,7 +33,7 @@ struct ElementaryFunction {
 
 /// 1, whatever the variable: a law without it.
 ElementaryFunction unity();
-ElementaryFunction power_of(const std::string& variable, double zero, int exponent);
+ElementaryFunction power_of(const Variable& variable, double zero, int exponent);
 
 /// `zero`: from where the variable counts in a law: home, 20 degC, 0.
 std::vector<ElementaryFunction> elementary_functions(const DriverRange& driver, double zero);

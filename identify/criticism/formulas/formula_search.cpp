@@ -38,7 +38,7 @@ class FormulaSearch {
         measure_(*effect.surface(), projected_effect(model, projector, effect)),
         surface_evidence_(surface_evidence(model, projector, effect)),
         log_count_(std::log(static_cast<double>(projector.observations()))) {
-    const std::vector<std::string> drivers = variables_in(*surface.options.text("drivers"));
+    const std::vector<Variable> drivers = variables_in(*surface.options.text("drivers"));
     ranges_.reserve(drivers.size());
     for (std::size_t i = 0; i < drivers.size(); ++i) {
       const TensorBasis::Side& side = effect.surface()->sides()[i];
@@ -67,9 +67,7 @@ class FormulaSearch {
   std::size_t tried() const { return static_cast<std::size_t>(std::lround(std::exp(log_tried_))); }
 
  private:
-  std::vector<std::string> factors() const {
-    return variables_in(surface_.options.text("factor").value_or(""));
-  }
+  std::vector<Variable> factors() const { return variables_in(surface_.options.text("factor").value_or("")); }
 
   bool is_law(const Law& law) const { return law.depends() || !factors().empty(); }
 
@@ -230,7 +228,7 @@ class FormulaSearch {
   }
 
   EffectSpec spec_of(const Law& law) const {
-    std::vector<std::string> parts = factors();
+    std::vector<std::string> parts = written_names(factors());
     if (const std::string product = law.expression(); !product.empty()) parts.push_back(product);
     EffectSpec spec = effect_spec("custom", {{"target", *surface_.options.text("target")},
                                              {"expression", fmt::format("{}", fmt::join(parts, " * "))}});

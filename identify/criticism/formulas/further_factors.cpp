@@ -8,29 +8,32 @@
 #include "volcal/identify/criticism/projection/score_statistics.h"
 #include "volcal/identify/criticism/search/surface_search.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/recorded_variable.h"
 
 namespace volcal {
 namespace {
 
+using Kind = Variable::Kind;
+
 constexpr std::size_t kBestOfVariable = 2;
 
 /// Variables of a campaign that a law may have beside its own.
-std::vector<std::string> variables_of_campaign(const Campaign& campaign) {
-  std::vector<std::string> names;
+std::vector<Variable> variables_of_campaign(const Campaign& campaign) {
+  std::vector<Variable> variables;
   for (const Axis& axis : campaign.machine.axes) {
-    const std::string letter(1, lower_letter_of(axis.name));
-    names.insert(names.end(), {letter, "dir_" + letter, "since_" + letter});
+    for (const Kind kind : {Kind::Position, Kind::Direction, Kind::TravelSinceTurning})
+      variables.push_back({.kind = kind, .axis = axis.name});
   }
   for (const std::string& channel : temperature_channels(campaign))
-    names.push_back(channel_variable(channel));
-  names.insert(names.end(), {"t", "feed", "tool_length"});
-  return names;
+    variables.push_back(temperature_of(channel));
+  for (const Kind kind : {Kind::Time, Kind::Feed, Kind::ToolLength}) variables.push_back({.kind = kind});
+  return variables;
 }
 
 /// 0 where it was not recorded; nothing where it does not change.
-std::optional<Eigen::VectorXd> per_observation(const LinearModel& model, const std::string& variable) {
+std::optional<Eigen::VectorXd> per_observation(const LinearModel& model, const Variable& variable) {
   Eigen::VectorXd value = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model.size()));
   std::vector<std::optional<Eigen::VectorXd>> of_setups;
   for (const SetupView& view : model.views()) {
@@ -45,43 +48,41 @@ std::optional<Eigen::VectorXd> per_observation(const LinearModel& model, const s
   return value;
 }
 
-bool is_direction(const std::string& variable) { return variable.starts_with("dir_"); }
-
 /// The travel since turning says nothing without the direction.
-bool lacks_direction(const std::string& variable, const std::vector<std::string>& factors) {
-  return variable.starts_with("since_") &&
-         std::ranges::find(factors, "dir_" + variable.substr(6)) == factors.end();
+bool lacks_direction(const Variable& variable, const std::vector<Variable>& factors) {
+  return variable.kind == Kind::TravelSinceTurning &&
+         std::ranges::find(factors, direction_of_approach(variable.axis)) == factors.end();
 }
 
 }  // namespace
 
-double zero_of(const Machine& machine, const std::string& variable) {
-  if (variable.starts_with("T_")) return kReferenceTemperature_degC;
-  if (variable.size() != 1) return 0.0;
-  for (const Axis& axis : machine.axes) {
-    if (lower_letter_of(axis.name) == variable[0]) return axis.home / position_unit(axis.name).si_per_unit;
-  }
-  return 0.0;
+double zero_of(const Machine& machine, const Variable& variable) {
+  if (variable.kind == Kind::Temperature) return kReferenceTemperature_degC;
+  if (variable.kind != Kind::Position || !machine.has_axis(variable.axis)) return 0.0;
+  return machine.axis(variable.axis).home / variable.unit().si_per_unit;
 }
 
 FurtherFactors::FurtherFactors(const LinearModel& model, const Projector& projector,
                                const EffectSpec& surface)
     : model_(model), projector_(projector) {
-  std::vector<std::string> own = variables_in(*surface.options.text("drivers"));
-  const std::vector<std::string> factors = variables_in(surface.options.text("factor").value_or(""));
+  std::vector<Variable> own = variables_in(*surface.options.text("drivers"));
+  const std::vector<Variable> factors = variables_in(surface.options.text("factor").value_or(""));
   own.insert(own.end(), factors.begin(), factors.end());
-  for (const std::string& variable : variables_of_campaign(model.campaign())) {
-    if (std::ranges::find(own, variable) == own.end() && !lacks_direction(variable, factors)) add(variable);
+  const auto is_own = [&own](const Variable& variable) {
+    return std::ranges::find(own, variable.written(), &Variable::written) != own.end();
+  };
+  for (const Variable& variable : variables_of_campaign(model.campaign())) {
+    if (!is_own(variable) && !lacks_direction(variable, factors)) add(variable);
   }
 }
 
-void FurtherFactors::add(const std::string& variable) {
+void FurtherFactors::add(const Variable& variable) {
   std::optional<Eigen::VectorXd> value = per_observation(model_, variable);
   if (!value) return;
   Further& further = further_.emplace_back();
   further.range = {variable, value->minCoeff(), value->maxCoeff()};
   further.value = *std::move(value);
-  further.functions = is_direction(variable)
+  further.functions = variable.kind == Kind::Direction
                           ? std::vector{power_of(variable, 0.0, 1)}
                           : elementary_functions(further.range, zero_of(model_.campaign().machine, variable));
 }

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMostFactors = 3;    // of a law
 inline constexpr std::size_t kMostLawShapes = 2;  // p and q
 
 /// From where a variable counts in a law: home, 20 degC, 0.
-double zero_of(const Machine& machine, const std::string& variable);
+double zero_of(const Machine& machine, const Variable& variable);
 
 class FurtherFactors {
  public:
@@ -37,7 +37,7 @@ class FurtherFactors {
     Eigen::VectorXd value;  ///< per observation
     std::vector<ElementaryFunction> functions;
   };
-  void add(const std::string& variable);
+  void add(const Variable& variable);
 
   const LinearModel& model_;
   const Projector& projector_;

@@ -223,9 +223,9 @@ void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, st
   }
 }
 
-Eigen::VectorXd LinearModel::direction(int which) const {
-  if (which == 3) return fixed_->sensitivity.rightCols<kMaxChannels>().rowwise().sum();
-  return -fixed_->sensitivity.col(kStationDisturbance + which);
+Eigen::VectorXd LinearModel::direction(ScanDirection direction) const {
+  if (direction == ScanDirection::Beam) return fixed_->sensitivity.rightCols<kMaxChannels>().rowwise().sum();
+  return -fixed_->sensitivity.col(kStationDisturbance + static_cast<int>(index_of(direction)));
 }
 
 Eigen::VectorXd LinearModel::motion(ErrorSymbol symbol) const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "volcal/identify/criticism/data/scan_direction.h"
 #include "volcal/identify/noise/noise_model.h"
 #include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/result/result.h"
@@ -79,8 +80,8 @@ class LinearModel {
     return fixed_->sensitivity(observation, disturbance);
   }
   /// Derivative of every observation to the displacement of the functional point along a direction of the
-  /// workpiece (0..2), or to the reading itself (3).
-  Eigen::VectorXd direction(int which) const;
+  /// workpiece, or to the reading itself (the beam's).
+  Eigen::VectorXd direction(ScanDirection direction) const;
   /// The same to an error motion.
   Eigen::VectorXd motion(ErrorSymbol symbol) const;
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/travel_since_turning.h"
 
 namespace volcal {

@@ -9,13 +9,13 @@
 #include "volcal/identify/criticism/projection/score_statistics.h"
 #include "volcal/identify/criticism/scans/wave_scan.h"
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
 
 constexpr int kSingleWaves = 10;
 constexpr int kPairWaves = 4;
-constexpr std::size_t kBeam = 3;  // of kScanDirections
 
 /// What the columns of a variable are made of.
 struct Features {
@@ -26,16 +26,19 @@ struct Features {
 /// What a function of the variables may do.
 struct ScanAction {
   enum class Kind { Displacement, Beam, Rotation } kind = Kind::Displacement;
-  std::string direction;   ///< not of a rotation
-  ErrorSymbol rotation;    ///< of a rotation
-  Eigen::VectorXd column;  ///< derivative of every observation
+  std::optional<ScanDirection> direction;  ///< not of a rotation
+  std::optional<ErrorSymbol> rotation;     ///< of a rotation
+  Eigen::VectorXd column;                  ///< derivative of every observation
 };
 
 std::vector<ScanAction> scan_actions(const LinearModel& model) {
   std::vector<ScanAction> actions;
-  for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
-    const auto kind = k == kBeam ? ScanAction::Kind::Beam : ScanAction::Kind::Displacement;
-    actions.push_back({kind, kScanDirections[k], {}, model.direction(static_cast<int>(k))});
+  for (const ScanDirection direction : kScanDirections) {
+    const bool beam = direction == ScanDirection::Beam;
+    actions.push_back({beam ? ScanAction::Kind::Beam : ScanAction::Kind::Displacement,
+                       direction,
+                       {},
+                       model.direction(direction)});
   }
   for (const Axis& axis : model.campaign().machine.axes) {
     for (const Component component : {Component::A, Component::B, Component::C}) {
@@ -293,33 +296,28 @@ class GenericScanner {
   /// together, in the one that stands out most.
   static void find_directions(std::span<GenericTest> tests) {
     for (GenericTest& test : tests) {
-      if (!test.direction.empty()) continue;
+      if (test.direction) continue;
       const GenericTest* most = nullptr;
       for (const GenericTest& other : tests) {
-        if (other.direction.empty() || other.direction == kScanDirections[kBeam] || !other.rotation.empty())
-          continue;
-        if (!test.rotation.empty() && turns_about(test.rotation, other.direction)) continue;
+        if (!other.direction || other.direction == ScanDirection::Beam || other.rotation) continue;
+        if (test.rotation && turns_about(*test.rotation, *other.direction)) continue;
         if (most == nullptr || other.log10_p < most->log10_p) most = &other;
       }
       test.direction = most->direction;
     }
   }
 
-  static bool turns_about(const std::string& rotation, const std::string& direction) {
-    return kScanDirections[direction_of(ErrorSymbol::parse(rotation)->component)] == direction;
+  static bool turns_about(const ErrorSymbol& rotation, ScanDirection direction) {
+    return static_cast<std::size_t>(direction_of(rotation.component)) == index_of(direction);
   }
 
   double explained_rms(double lm) const { return volcal::explained_rms(lm, projector_, typical_sigma_); }
-
-  static std::string rotation_of(const ScanAction& action) {
-    return action.kind == ScanAction::Kind::Rotation ? action.rotation.name() : "";
-  }
 
   GenericTest polynomial(const std::vector<Variable>& names, const ScanAction& action,
                          const ScoreTest& score) const {
     return {names,
             action.direction,
-            rotation_of(action),
+            action.rotation,
             false,
             score.log10_p,
             score.lm,
@@ -333,7 +331,7 @@ class GenericScanner {
     const KernelTest test = kernel_test(projected, first, columns);
     return {names,
             action.direction,
-            rotation_of(action),
+            action.rotation,
             true,
             test.log10_p,
             test.lm,
@@ -354,9 +352,8 @@ class GenericScanner {
 
 Eigen::VectorXd wave_displacement(const LinearModel& model, const Projector& projector,
                                   const GenericTest& test) {
-  const auto direction = std::ranges::find(kScanDirections, test.direction) - std::begin(kScanDirections);
   const Eigen::MatrixXd columns =
-      wave_columns(model, test.variables.front().axis, static_cast<int>(direction), test.period);
+      wave_columns(model, test.variables.front().axis, test.direction.value(), test.period);
   return columns * score_test(projector.project(columns), 0, columns.cols()).amplitude;
 }
 
@@ -381,8 +378,8 @@ std::vector<GenericTest> wave_tests(const LinearModel& model, const Projector& p
   for (const WaveTest& wave : wave_scan(model, projector, threads)) {
     // The period counts as one degree of freedom in the gain, as that of a name does.
     tests.push_back({{{Variable::Kind::Position, wave.axis}},
-                     kScanDirections[wave.direction],
-                     "",
+                     wave.direction,
+                     {},
                      false,
                      wave.log10_p,
                      wave.lm,

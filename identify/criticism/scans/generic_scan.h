@@ -11,9 +11,10 @@
 /// and temperatures; what changes the reading of a beam, in all that is not the machine's: length, elevation,
 /// instrument, station, time, temperatures.
 
-#include <string>
+#include <optional>
 #include <vector>
 
+#include "volcal/identify/criticism/data/scan_direction.h"
 #include "volcal/identify/criticism/projection/linear_model.h"
 #include "volcal/identify/criticism/projection/projector.h"
 #include "volcal/identify/criticism/scans/scan_variables.h"
@@ -21,9 +22,9 @@
 namespace volcal {
 
 struct GenericTest {
-  std::vector<Variable> variables;  ///< one or two
-  std::string direction;            ///< of kScanDirections; of a rotation, where it shows most
-  std::string rotation;             ///< "EBX" if looked for with the arms of this error motion, else empty
+  std::vector<Variable> variables;         ///< one or two
+  std::optional<ScanDirection> direction;  ///< of a rotation, where it shows most; set in every finished test
+  std::optional<ErrorSymbol> rotation;     ///< if looked for with the arms of this error motion
   bool kernel = false;
   double log10_p = 0.0;  ///< for this test alone
   double lm = 0.0;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <sstream>
 #include <utility>
 
 #include "volcal/model/description/units.h"
@@ -15,6 +14,9 @@ namespace volcal {
 namespace {
 
 using Kind = Variable::Kind;
+
+/// Scans go through it, or through the direction that it starts from.
+bool is_scanned(Kind kind) { return kind != Kind::ToolLength && kind != Kind::ToolOffset; }
 
 /// Share of the path that an axis moves along, with its sign, from the neighbouring readings of the run; 0 at
 /// rest.
@@ -190,22 +192,26 @@ Eigen::MatrixXd scan_waves(const ScanVariable& variable, int count) {
 
 std::vector<Variable> scan_variables_of(const EffectName& name) {
   std::vector<Variable> variables;
-  const auto add = [&variables](const std::string& word) {
-    if (auto variable = Variable::parse(word)) variables.push_back(*std::move(variable));
-  };
   for (const std::string& text : {name.target, name.driver}) {
-    if (text.starts_with("tool ") || text.starts_with("station ")) add(text);
+    const auto variable = Variable::parse(text);
+    if (variable && (variable->kind == Kind::Tool || variable->kind == Kind::Station))
+      variables.push_back(*variable);
   }
-  if (name.driver == "dir" || name.driver.starts_with("dir ")) {  // the sense of a circle in a plane
-    for (const char letter : name.target) variables.push_back({Kind::Direction, *axis_from_letter(letter)});
-    if (name.driver.ends_with(" feed")) variables.push_back({Kind::Feed});
-  } else if (name.driver.starts_with("run ")) {
+  const std::vector<std::string> words = words_in(name.driver);
+  const std::string first = words.empty() ? "" : words.front();
+  if (first == "dir") {  // the sense of a circle in a plane
+    for (const char letter : name.target)
+      variables.push_back(direction_of_approach(*axis_from_letter(letter)));
+    if (words.back() == "feed") variables.push_back({Kind::Feed});
+  } else if (first == "run") {
     variables.push_back({Kind::Run});
   } else if (find_instrument(name.driver) != nullptr) {
     variables.push_back({.kind = Kind::Instrument, .subject = name.driver});
-  } else if (!name.driver.starts_with("tool")) {
-    std::istringstream drivers(name.driver);
-    for (std::string word; drivers >> word;) add(word);
+  } else if (first != "tool") {
+    for (const std::string& word : words) {
+      const auto variable = Variable::parse(word);
+      if (variable && is_scanned(variable->kind)) variables.push_back(*variable);
+    }
   }
   return variables;
 }

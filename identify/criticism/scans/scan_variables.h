@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "volcal/identify/criticism/data/variable.h"
 #include "volcal/identify/criticism/projection/linear_model.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 

@@ -159,7 +159,8 @@ WaveTest best_wave(const Projector& projector, const Eigen::VectorXd& q, const E
 std::vector<WaveTest> wave_scan(const LinearModel& model, const Projector& projector, int threads) {
   const Eigen::VectorXd weighed = projector.weighed_residual();
   Eigen::MatrixXd along(weighed.size(), kDirections);
-  for (int k = 0; k < kDirections; ++k) along.col(k) = model.direction(k);
+  for (int k = 0; k < kDirections; ++k)
+    along.col(k) = model.direction(kScanDirections[static_cast<std::size_t>(k)]);
   const Eigen::MatrixXd score = along.array().colwise() * weighed.array();
   std::vector<AxisName> axes;
   for (const Axis& axis : model.campaign().machine.axes) {
@@ -180,13 +181,14 @@ std::vector<WaveTest> wave_scan(const LinearModel& model, const Projector& proje
       test = best_wave(projector, q, along.col(direction), band, peaks(spectrum, band, of_imaginary),
                        mean_power(spectrum, band, of_imaginary));
       test.axis = axes[i];
-      test.direction = direction;
+      test.direction = kScanDirections[static_cast<std::size_t>(direction)];
     }
   });
   return tests;
 }
 
-Eigen::MatrixXd wave_columns(const LinearModel& model, AxisName axis, int direction, double period) {
+Eigen::MatrixXd wave_columns(const LinearModel& model, AxisName axis, ScanDirection direction,
+                             double period) {
   return wave(positions(model, axis), model.direction(direction), 1.0 / period);
 }
 

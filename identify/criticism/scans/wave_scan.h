@@ -33,8 +33,8 @@ inline constexpr double kWavesOfKernels = 5;  ///< over the measured range: coar
 /// The best wave of an axis along a direction.
 struct WaveTest {
   AxisName axis = AxisName::X;
-  int direction = 0;           ///< X, Y, Z of the workpiece
-  double period = 0.0;         ///< m
+  ScanDirection direction = ScanDirection::X;  ///< of the workpiece
+  double period = 0.0;                         ///< m
   double lm = 0.0;             ///< against the mean of all periods, if that is above the noise
   double projected_lm = 0.0;   ///< against the noise
   int dof = 0;                 ///< 0: no wave of this axis is visible
@@ -47,6 +47,6 @@ struct WaveTest {
 std::vector<WaveTest> wave_scan(const LinearModel& model, const Projector& projector, int threads);
 
 /// Cosine and sine along a direction, all observations.
-Eigen::MatrixXd wave_columns(const LinearModel& model, AxisName axis, int direction, double period);
+Eigen::MatrixXd wave_columns(const LinearModel& model, AxisName axis, ScanDirection direction, double period);
 
 }  // namespace volcal

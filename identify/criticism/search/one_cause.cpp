@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 
 namespace volcal {
@@ -24,11 +25,11 @@ std::optional<UnknownFinding> finding_of(const ModelState& state, const AddedEff
   if (target.kind != TargetKind::Motion) return std::nullopt;
   const Eigen::VectorXd moved = displacement(state.model(), family, added.test);
   UnknownFinding finding;
-  finding.variables = names_of(scan_variables_of(family.name()));
-  const auto is_direction = [](const std::string& name) { return name.starts_with("dir_"); };
+  finding.variables = scan_variables_of(family.name());
+  const auto is_direction = [](const Variable& each) { return each.kind == Variable::Kind::Direction; };
   if (std::ranges::all_of(finding.variables, is_direction)) return std::nullopt;
   finding.direction = direction_of_change(state.model(), moved);
-  finding.rotation = target.symbol.name();
+  finding.rotation = target.symbol;
   finding.rms = moved.norm() / std::sqrt(static_cast<double>(moved.size()));
   finding.log10_p = state.setting().family_wise_log10_p(added.test);
   return finding;
@@ -93,20 +94,16 @@ class OneCauseSearch {
     const EffectTarget& target = surface.effect->amplitudes().front().target;
     if (target.kind != TargetKind::Motion || options.has("factor") || options.has("only"))
       return std::nullopt;
-    std::vector<std::string> variables = names_of(scan_variables_of(surface.effect->name()));
-    const std::vector<std::string> of_name = names_of(scan_variables_of(state_.family_of(added).name()));
-    const auto among = [](const std::vector<std::string>& all, const std::string& one) {
-      return std::ranges::find(all, one) != all.end();
-    };
+    std::vector<Variable> variables = scan_variables_of(surface.effect->name());
     if (variables.size() != 1) return std::nullopt;
-    for (const std::string& one : of_name) {
-      if (!among(variables, one)) variables.push_back(one);
+    for (const Variable& one : scan_variables_of(state_.family_of(added).name())) {
+      if (std::ranges::find(variables, one) == variables.end()) variables.push_back(one);
     }
     if (variables.size() != kVariablesTogether) return std::nullopt;
     UnknownFinding finding = surface.finding;
     finding.variables = std::move(variables);
     finding.with_one_of.clear();
-    finding.rotation = target.symbol.name();
+    finding.rotation = target.symbol;
     return finding;
   }
 

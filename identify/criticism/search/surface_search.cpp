@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "volcal/identify/criticism/data/thresholds.h"
-#include "volcal/identify/criticism/data/variable.h"
 #include "volcal/identify/solve/priors/evidence.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -20,25 +20,29 @@ constexpr const char* kEmpirical = "empirical";
 
 /// What variables of a scan are in the table of an empirical effect.
 struct Table {
-  std::vector<std::string> drivers;
-  std::string factor;
+  std::vector<Variable> drivers;
+  std::vector<Variable> factors;
   std::string only;
   std::string station;   ///< that moves
   bool complete = true;  ///< every variable has its place
 
+  /// The station itself moves, and not what is measured from it.
+  bool moves_station(const UnknownFinding& finding) const {
+    return !station.empty() && !finding.rotation && finding.direction != ScanDirection::Beam;
+  }
   void add(const Variable& variable) {
     switch (variable.kind) {
       case Variable::Kind::Position:
       case Variable::Kind::Length:
       case Variable::Kind::Feed:
-        return drivers.push_back(variable.name());
-      case Variable::Kind::Direction:
-        factor += (factor.empty() ? "" : " ") + variable.name();
-        return;
       case Variable::Kind::Time:
-        return drivers.push_back("t");
       case Variable::Kind::Temperature:
-        return drivers.push_back(channel_variable(variable.subject));
+      case Variable::Kind::TravelSinceTurning:
+      case Variable::Kind::ToolLength:
+      case Variable::Kind::ToolOffset:
+        return drivers.push_back(variable);
+      case Variable::Kind::Direction:
+        return factors.push_back(variable);
       case Variable::Kind::Tool:
         only = variable.name();
         return;
@@ -51,9 +55,6 @@ struct Table {
       case Variable::Kind::Run:
       case Variable::Kind::Instrument:
         complete = false;
-        return;
-      case Variable::Kind::TravelSinceTurning:
-        drivers.push_back(std::string("since_") + lower_letter_of(variable.axis));
     }
   }
 };
@@ -70,30 +71,23 @@ std::string beam_column(const Campaign& campaign) {
 /// What moves along the direction of a finding: the error motion along it of the axis of that name, a station
 /// against it, or the reading itself.
 std::string target_of(const Campaign& campaign, const UnknownFinding& finding, const Table& table) {
-  if (!finding.rotation.empty()) return finding.rotation;
-  if (finding.direction == kScanDirections[3]) return beam_column(campaign);
-  const char letter = finding.direction.front();
-  if (!table.station.empty())
-    return "station " + table.station + " " + std::string(1, static_cast<char>(letter - 'X' + 'x'));
-  const auto axis = axis_from_letter(letter);
-  if (!axis || !campaign.machine.has_axis(*axis)) return {};
-  return std::string("E") + letter + letter;
+  if (finding.rotation) return finding.rotation->name();
+  if (finding.direction == ScanDirection::Beam) return beam_column(campaign);
+  const AxisName axis = kLinearAxes[index_of(finding.direction)];
+  if (table.moves_station(finding)) return "station " + table.station + " " + lower_letter_of(axis);
+  if (!campaign.machine.has_axis(axis)) return {};
+  return ErrorSymbol{positioning_component(axis), axis}.name();
 }
 
 std::optional<EffectSpec> spec_for(const LinearModel& model, const UnknownFinding& finding,
-                                   const std::vector<std::string>& variables) {
+                                   const std::vector<Variable>& variables) {
   Table table;
-  for (const std::string& name : variables) {
-    if (const auto variable = Variable::parse(name)) table.add(*variable);
-  }
+  for (const Variable& variable : variables) table.add(variable);
   const std::string target = target_of(model.campaign(), finding, table);
   if (target.empty() || table.drivers.empty() || !table.complete) return std::nullopt;
-  std::string drivers;
-  for (const std::string& driver : table.drivers) drivers += (drivers.empty() ? "" : " ") + driver;
-  EffectSpec spec = effect_spec(kEmpirical, {{"target", target}, {"drivers", drivers}});
-  if (!table.factor.empty()) spec.options.set("factor", table.factor);
-  if (!table.only.empty() && table.station.empty()) spec.options.set("only", table.only);
-  if (!table.station.empty() && !target.starts_with("station ")) spec.options.set("only", table.only);
+  EffectSpec spec = effect_spec(kEmpirical, {{"target", target}, {"drivers", written_list(table.drivers)}});
+  if (!table.factors.empty()) spec.options.set("factor", written_list(table.factors));
+  if (!table.only.empty() && !table.moves_station(finding)) spec.options.set("only", table.only);
   try {
     return find_effect(kEmpirical)->resolved(spec, model.views(), {});
   } catch (const InputError&) {
@@ -104,22 +98,23 @@ std::optional<EffectSpec> spec_for(const LinearModel& model, const UnknownFindin
 }  // namespace
 
 std::vector<EffectSpec> surfaces_for(const LinearModel& model, const UnknownFinding& finding) {
-  std::vector<std::vector<std::string>> sets;
+  std::vector<std::vector<Variable>> sets;
   if (finding.with_one_of.empty()) {
     sets.push_back(finding.variables);
     if (finding.variables.size() > 1) {
-      for (const std::string& variable : finding.variables) sets.push_back({variable});
+      for (const Variable& variable : finding.variables) sets.push_back({variable});
     }
   } else {
     sets.push_back(finding.variables);
-    for (const std::string& other : finding.with_one_of) {
+    for (const Variable& other : finding.with_one_of) {
       sets.push_back(finding.variables);
       sets.back().push_back(other);
     }
   }
-  for (const std::string& variable : finding.variables) {
+  for (const Variable& variable : finding.variables) {
     // What a direction drives may follow the travel since the axis turned, which no scan goes through.
-    if (variable.starts_with("dir_")) sets.push_back({variable, "travel since " + variable});
+    if (variable.kind == Variable::Kind::Direction)
+      sets.push_back({variable, {.kind = Variable::Kind::TravelSinceTurning, .axis = variable.axis}});
   }
   std::vector<EffectSpec> specs;
   for (const auto& variables : sets) {

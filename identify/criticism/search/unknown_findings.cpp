@@ -21,7 +21,7 @@ void put_simplest_first(const SearchRules& rules, std::vector<const GenericTest*
   const auto end =
       std::ranges::find_if(order, [nearly](const GenericTest* test) { return test->log10_p > nearly; });
   const auto simplest = std::ranges::min_element(order.begin(), end, {}, [](const GenericTest* test) {
-    return complexity_rank(test->variables, test->direction);
+    return complexity_rank(test->variables, test->direction.value());
   });
   if (simplest == order.begin()) return;
   rules.tell(SearchRule::SimplestFirst);
@@ -37,7 +37,7 @@ std::vector<UnknownFinding> rejected_findings(const ModelState& reached, const R
     const Family& family = setting.families[each.first];
     if (reached.has(each.first) || setting.family_wise_log10_p(test) > log10_family_risk()) continue;
     const Eigen::VectorXd moved = displacement(reached.model(), family, test);
-    unknown.push_back({names_of(scan_variables_of(family.name())),
+    unknown.push_back({scan_variables_of(family.name()),
                        {},
                        direction_of_change(reached.model(), moved),
                        {},
@@ -50,17 +50,17 @@ std::vector<UnknownFinding> rejected_findings(const ModelState& reached, const R
 
 }  // namespace
 
-std::string direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved) {
-  std::size_t nearest = 0;
+ScanDirection direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved) {
+  ScanDirection nearest = ScanDirection::X;
   double best = -1.0;
-  for (std::size_t k = 0; k < std::size(kScanDirections); ++k) {
-    const Eigen::VectorXd along = model.direction(static_cast<int>(k));
+  for (const ScanDirection direction : kScanDirections) {
+    const Eigen::VectorXd along = model.direction(direction);
     const double likeness = moved.cwiseAbs().dot(along.cwiseAbs()) / std::max(1e-300, along.norm());
     if (likeness <= best) continue;
     best = likeness;
-    nearest = k;
+    nearest = direction;
   }
-  return kScanDirections[nearest];
+  return nearest;
 }
 
 void report_what_is_certain(std::vector<UnknownFinding>& unknown) {
@@ -69,15 +69,15 @@ void report_what_is_certain(std::vector<UnknownFinding>& unknown) {
   if (leading.variables.size() < 2) return;
   const double nearly = leading.log10_p + std::max(kThresholds.same_second_variable,
                                                    -kThresholds.same_second_variable_share * leading.log10_p);
-  std::vector<std::string> common = leading.variables, others = leading.variables;
+  std::vector<Variable> common = leading.variables, others = leading.variables;
   for (const UnknownFinding& other : unknown) {
     if (other.variables.size() < 2 || other.log10_p > nearly) continue;
-    const auto is_in_other = [&other](const std::string& name) {
-      return std::ranges::find(other.variables, name) != other.variables.end();
+    const auto is_in_other = [&other](const Variable& variable) {
+      return std::ranges::find(other.variables, variable) != other.variables.end();
     };
     std::erase_if(common, std::not_fn(is_in_other));
-    for (const std::string& name : other.variables) {
-      if (std::ranges::find(others, name) == others.end()) others.push_back(name);
+    for (const Variable& variable : other.variables) {
+      if (std::ranges::find(others, variable) == others.end()) others.push_back(variable);
     }
   }
   if (common.size() != 1) return;
@@ -96,9 +96,9 @@ std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Re
   std::vector<UnknownFinding> unknown;
   for (const GenericTest* scan : order) {
     if (!seen.insert(scan->variables).second || unknown.size() == kMostUnknown) continue;
-    unknown.push_back({names_of(scan->variables),
+    unknown.push_back({scan->variables,
                        {},
-                       scan->direction,
+                       scan->direction.value(),
                        scan->rotation,
                        scan->rms,
                        reached.tests().family_wise_log10_p(*scan),

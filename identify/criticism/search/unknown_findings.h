@@ -17,8 +17,8 @@ namespace volcal {
 
 std::vector<UnknownFinding> unknown_findings(const ModelState& reached, const Reasons& rejected);
 
-/// Of kScanDirections, the one whose share in the readings is most like that of a change.
-std::string direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved);
+/// The direction whose share in the readings is most like that of a change.
+ScanDirection direction_of_change(const LinearModel& model, const Eigen::VectorXd& moved);
 
 /// Where another variable beside the same one explains nearly as much as the second of the leading finding,
 /// the first alone is certain, and the others are one of several.

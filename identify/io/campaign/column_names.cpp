@@ -7,6 +7,7 @@
 
 #include "volcal/identify/io/campaign/reading_columns.h"
 #include "volcal/identify/text/nearest_name.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
@@ -58,7 +59,7 @@ std::string meant_temperature(const std::vector<std::string>& words) {
     if (is_one_of(words[i], {"degc", "c", "deg", "celsius"})) continue;
     channel += (channel.empty() ? "" : "_") + words[i];
   }
-  return "T_" + (channel.empty() ? "machine" : channel) + "_degC";
+  return temperature_of(channel.empty() ? "machine" : channel).column();
 }
 
 std::string meant_word(const std::string& word) {

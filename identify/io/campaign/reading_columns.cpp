@@ -1,19 +1,16 @@
 #include "volcal/identify/io/campaign/reading_columns.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 
 std::string axis_column(AxisName axis) { return position_column(axis); }
 
-std::string direction_column(AxisName axis) {
-  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter_of(axis))));
-  return std::string("dir_") + letter;
-}
+std::string direction_column(AxisName axis) { return direction_of_approach(axis).column(); }
 
 std::string sigma_column(const InstrumentSchema& instrument) {
   const auto is_angle = [](const ColumnSchema& column) {
@@ -25,11 +22,8 @@ std::string sigma_column(const InstrumentSchema& instrument) {
 }
 
 std::string temperature_channel(const std::string& column) {
-  constexpr std::string_view kPrefix = "T_";
-  constexpr std::string_view kSuffix = "_degC";
-  const bool fits = column.size() > kPrefix.size() + kSuffix.size() && column.starts_with(kPrefix) &&
-                    column.ends_with(kSuffix);
-  return fits ? column.substr(kPrefix.size(), column.size() - kPrefix.size() - kSuffix.size()) : "";
+  const auto variable = Variable::parse_column(column);
+  return variable && variable->kind == Variable::Kind::Temperature ? variable->subject : "";
 }
 
 }  // namespace volcal

@@ -10,6 +10,7 @@
 #include "volcal/identify/io/import/import_lines.h"
 #include "volcal/identify/text/text_file.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/instruments/registry.h"
 
 namespace volcal {
@@ -238,11 +239,10 @@ class LaserReadings {
                  number_text(laser_.targets_mm.front() + shift) + " to " +
                  number_text(laser_.targets_mm.back() + shift) + " mm of the axis",
              shift == 0.0 ? "the file, as machine coordinates" : "the file, shifted by --at");
-    const std::string letter(1, lower_letter_of(axis_));
     readings_.columns = {{"line", line},
                          {"run", run},
                          {position_column(axis_), position},
-                         {"dir_" + letter, direction},
+                         {direction_of_approach(axis_).column(), direction},
                          {reading_column, value}};
   }
 
@@ -269,7 +269,7 @@ class LaserReadings {
         continue;
       }
       readings_.columns.push_back(
-          {"T_" + std::string(channel) + "_degC", std::vector<double>(readings_.source_line.size(), *value)});
+          {temperature_of(channel).column(), std::vector<double>(readings_.source_line.size(), *value)});
       add_fact(entry->key, number_text(*value) + " degC", said_by_line(entry->line));
     }
   }

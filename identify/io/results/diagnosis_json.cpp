@@ -100,10 +100,10 @@ Json detectable_json(const std::vector<DetectableEffect>& effects) {
 }
 
 Json unknown_json(const UnknownFinding& unknown) {
-  return {{"variables", unknown.variables},
-          {"with_one_of", unknown.with_one_of},
-          {"direction", unknown.direction},
-          {"rotation", unknown.rotation},
+  return {{"variables", names_of(unknown.variables)},
+          {"with_one_of", names_of(unknown.with_one_of)},
+          {"direction", name_of(unknown.direction)},
+          {"rotation", unknown.rotation ? unknown.rotation->name() : ""},
           {"period_mm", unknown.period > 0.0 ? Json(unknown.period * kPerMilli) : Json()},
           {"rms_um", micro(unknown.rms)},
           {"log10_p", finite_or_null(unknown.log10_p)}};
@@ -147,7 +147,7 @@ Json surface_json(const SurfaceFinding& surface) {
           {"driver", surface.name.driver},
           {"shape", surface.name.shape},
           {"label", surface.label},
-          {"drivers", surface.drivers},
+          {"drivers", written_names(surface.drivers)},
           {"unit", surface.unit},
           {"largest", finite_or_null(surface.largest / surface.si_per_unit)},
           {"u", finite_or_null(surface.largest_u / surface.si_per_unit)},

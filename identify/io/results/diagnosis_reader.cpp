@@ -11,6 +11,7 @@
 #include "volcal/identify/text/text_file.h"
 #include "volcal/identify/words/finding_json.h"
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
@@ -104,11 +105,36 @@ void read_heldout(const Json& json, MemberFinding& member) {
   member.systematic_high = metres_of(json, "systematic_high_um");
 }
 
+std::vector<Variable> variables_from(const Json& names) {
+  std::vector<Variable> variables;
+  for (const std::string& name : names.get<std::vector<std::string>>()) {
+    const auto variable = Variable::parse(name);
+    if (!variable) throw std::invalid_argument("\"" + printable(name) + "\" is no variable");
+    variables.push_back(*variable);
+  }
+  return variables;
+}
+
+ScanDirection direction_from(const Json& json) {
+  const std::string name = text(json, "direction");
+  const auto direction = scan_direction_from(name);
+  if (!direction) throw std::invalid_argument("\"" + printable(name) + "\" is no direction of a scan");
+  return *direction;
+}
+
+/// Absent where the key is, or is empty: a displacement.
+std::optional<ErrorSymbol> rotation_from(const Json& json) {
+  const std::string name = json.value("rotation", "");
+  const auto symbol = ErrorSymbol::parse(name);
+  if (!symbol && !name.empty()) throw std::invalid_argument("\"" + printable(name) + "\" is no error motion");
+  return symbol;
+}
+
 SurfaceFinding surface_from(const Json& json) {
   SurfaceFinding surface;
   surface.name = name_from(json);
   surface.label = text(json, "label");
-  surface.drivers = json.at("drivers").get<std::vector<std::string>>();
+  surface.drivers = variables_from(json.at("drivers"));
   surface.unit = text(json, "unit");
   surface.si_per_unit = si_per_unit(surface.unit);
   surface.largest = number_or_nan(json, "largest") * surface.si_per_unit;
@@ -281,11 +307,10 @@ Diagnosis diagnosis_from(const Json& json) {
   for (const Json& each : json.value("surfaces", Json::array()))
     diagnosis.surfaces.push_back(surface_from(each));
   for (const Json& each : json.at("unknown")) {
-    diagnosis.unknown.push_back({each.at("variables").get<std::vector<std::string>>(),
-                                 each.value("with_one_of", std::vector<std::string>{}),
-                                 text(each, "direction"), each.value("rotation", ""),
-                                 metres_of(each, "rms_um"), number_or_nan(each, "log10_p"),
-                                 wave_period(each)});
+    diagnosis.unknown.push_back({variables_from(each.at("variables")),
+                                 variables_from(each.value("with_one_of", Json::array())),
+                                 direction_from(each), rotation_from(each), metres_of(each, "rms_um"),
+                                 number_or_nan(each, "log10_p"), wave_period(each)});
   }
   diagnosis.tried = list_from(json.value("tried", Json::array()));
   for (const Json& each : json.value("tried_errors", Json::array()))

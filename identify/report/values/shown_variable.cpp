@@ -1,27 +1,65 @@
 #include "volcal/identify/report/values/shown_variable.h"
 
+#include <cctype>
+
 #include "volcal/model/description/units.h"
 
 namespace volcal::report {
+namespace {
+
+using Kind = Variable::Kind;
+
+std::string title_of(const Variable& variable) {
+  const std::string axis(1, letter_of(variable.axis));
+  switch (variable.kind) {
+    case Kind::Position:
+      return "Position " + axis;
+    case Kind::Direction:
+      return "Direction of approach, " + axis;
+    case Kind::Speed:
+      return "Share of the feed along " + axis;
+    case Kind::Time:
+      return "Time";
+    case Kind::Temperature:
+      return "Temperature " + variable.subject;
+    case Kind::Length:
+      return "Measured length";
+    case Kind::Elevation:
+      return "Elevation of the beam";
+    case Kind::Run:
+      return "Run";
+    case Kind::Feed:
+      return "Feed";
+    case Kind::Instrument:
+      return "Instrument " + variable.subject;
+    case Kind::Tool:
+      return "Tool " + variable.subject;
+    case Kind::Station:
+      return "Station " + variable.subject;
+    case Kind::TravelSinceTurning:
+      return "Travel of " + axis + " since it turned";
+    case Kind::ToolLength:
+      return "Length of the tool";
+    case Kind::ToolOffset:
+      return "Offset of the tool, " + std::string(1, static_cast<char>('x' + variable.component));
+  }
+  return variable.name();
+}
+
+}  // namespace
+
+ShownVariable shown_variable(const Variable& variable) {
+  if (variable.kind == Kind::Time) return {title_of(variable), "min", 1.0 / kSecondsPerMinute};
+  const Unit unit = variable.unit();
+  const std::string text = variable.kind == Kind::Temperature ? "°C" : unit_text(unit.suffix);
+  return {title_of(variable), text, 1.0 / unit.si_per_unit};
+}
 
 ShownVariable shown_variable(const std::string& name) {
-  if (name.size() == 1 && std::string("xyzuvw").find(name) != std::string::npos) {
-    return {"Position " + name, "mm", kPerMilli};
-  }
-  if (name.size() == 1) return {"Position " + name, "deg", 1.0 / kRadianPerDegree};
-  if (name.starts_with("dir_")) return {"Direction of " + name.substr(4), "", 1.0};
-  if (name.starts_with("T_")) return {"Temperature " + name.substr(2), "°C", 1.0};
-  if (name == "time") return {"Time", "min", 1.0 / kSecondsPerMinute};
-  if (name == "length") return {"Measured length", "mm", kPerMilli};
-  if (name == "feed") return {"Feed", "mm/min", kPerMilli * kSecondsPerMinute};
-  if (name == "elevation") return {"Elevation of the beam", "deg", 1.0 / kRadianPerDegree};
-  if (name == "run") return {"Run", "", 1.0};
-  if (name.starts_with("tool ")) return {"Tool " + name.substr(5), "", 1.0};
-  if (name.starts_with("station ")) return {"Station " + name.substr(8), "", 1.0};
-  if (name == "setup") return {"Setup", "", 1.0};
-  if (name == "station") return {"Station", "", 1.0};
-  if (name == "tool") return {"Tool", "", 1.0};
-  return {name, "", 1.0};
+  if (const auto variable = Variable::parse(name)) return shown_variable(*variable);
+  std::string title = name;
+  if (!title.empty()) title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return {title, "", 1.0};
 }
 
 }  // namespace volcal::report

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "volcal/model/description/variable.h"
+
 namespace volcal::report {
 
 struct ShownVariable {
@@ -11,7 +13,8 @@ struct ShownVariable {
   double factor = 1.0;  ///< edge value = factor x SI value
 };
 
-/// Of a variable of the scans by its name in files: "x", "dir_x", "T_air", "time".
+ShownVariable shown_variable(const Variable& variable);
+/// By the name of a variable, or of what groups readings: "setup", "station", "tool".
 ShownVariable shown_variable(const std::string& name);
 
 }  // namespace volcal::report

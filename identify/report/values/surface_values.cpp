@@ -76,7 +76,7 @@ std::vector<SurfaceValues> surface_values(const FitResult& result) {
 std::string surface_line(const SurfaceValues& surface, double coverage_factor) {
   std::string place;
   for (std::size_t i = 0; i < surface.at.size(); ++i)
-    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : " at ", surface.drivers[i], surface.at[i]);
+    place += fmt::format("{}{} = {:.4g}", i > 0 ? ", " : " at ", surface.drivers[i].written(), surface.at[i]);
   return fmt::format("{}: up to {:.3g} +- {:.2g} {}{}", surface.label, surface.largest / surface.si_per_unit,
                      coverage_factor * surface.largest_u / surface.si_per_unit, surface.unit, place);
 }

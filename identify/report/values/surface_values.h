@@ -11,7 +11,7 @@ namespace volcal::report {
 
 struct SurfaceValues {
   std::string label;  ///< "surface EAY by y z"
-  std::vector<std::string> drivers;
+  std::vector<Variable> drivers;
   std::string unit;  ///< edge
   double si_per_unit = 1.0;
   double rms = 0.0;      ///< SI, over the range of the drivers

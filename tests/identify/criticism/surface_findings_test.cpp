@@ -62,7 +62,7 @@ TEST(SurfaceFindings, ABumpIsDrawnWhereItIs) {
   ASSERT_EQ(diagnosis.surfaces.size(), 1u);
   const SurfaceFinding& surface = diagnosis.surfaces.front();
   EXPECT_EQ(surface.name.kind, "empirical");
-  EXPECT_EQ(surface.drivers, (std::vector<std::string>{"x", "y"}));
+  EXPECT_EQ(written_names(surface.drivers), (std::vector<std::string>{"x", "y"}));
   ASSERT_EQ(surface.at.size(), 2u);
   EXPECT_NEAR(surface.at[0], 300.0, 100.0);
   EXPECT_NEAR(surface.at[1], 250.0, 90.0);

@@ -42,8 +42,8 @@ Diagnosis named() {
 
 UnknownFinding unknown(const std::vector<std::string>& variables, double log10_p) {
   UnknownFinding finding;
-  finding.variables = variables;
-  finding.direction = "X";
+  finding.variables = testing_support::variables_named(variables);
+  finding.direction = ScanDirection::X;
   finding.rms = 0.5e-6;
   finding.log10_p = log10_p;
   return finding;
@@ -124,15 +124,15 @@ TEST(UnknownFindings, ASecondVariableIsCertainWhereNoOtherDoesAsWell) {
                                           unknown({"dir_x", "time"}, -38.1), unknown({"dir_x", "z"}, -37.9),
                                           unknown({"dir_x"}, -39.0)};
   report_what_is_certain(findings);
-  EXPECT_THAT(findings[0].variables, ElementsAre("dir_x"));
-  EXPECT_THAT(findings[0].with_one_of, ElementsAre("T_air", "time"));
+  EXPECT_THAT(names_of(findings[0].variables), ElementsAre("dir_x"));
+  EXPECT_THAT(names_of(findings[0].with_one_of), ElementsAre("T_air", "time"));
   findings = {unknown({"dir_x", "T_air"}, -10.0), unknown({"dir_x", "time"}, -8.9)};
   report_what_is_certain(findings);
-  EXPECT_THAT(findings[0].variables, ElementsAre("dir_x", "T_air"));
-  EXPECT_THAT(findings[0].with_one_of, IsEmpty());
+  EXPECT_THAT(names_of(findings[0].variables), ElementsAre("dir_x", "T_air"));
+  EXPECT_THAT(names_of(findings[0].with_one_of), IsEmpty());
   findings[1].log10_p = -9.1;
   report_what_is_certain(findings);
-  EXPECT_THAT(findings[0].variables, ElementsAre("dir_x"));
+  EXPECT_THAT(names_of(findings[0].variables), ElementsAre("dir_x"));
 }
 
 }  // namespace

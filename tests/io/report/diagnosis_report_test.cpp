@@ -313,11 +313,11 @@ TEST_F(DiagnosisReport, ResidualsOpenOnWhatStandsOutAndElseOnTheFirstVariable) {
   diagnosis_.figures.variables = {x, z};
   const test::Drawing on_z = test::draw_report(report_json(diagnosis_, campaign_));
   if (!on_z.possible) GTEST_SKIP() << "Node.js is not installed";
-  EXPECT_THAT(on_z.output, HasSubstr("opens on Position z"));
+  EXPECT_THAT(on_z.output, HasSubstr("opens on Position Z"));
   diagnosis_.figures.variables[1].given[0].mean = {0.375e-6};
   const test::Drawing on_x = test::draw_report(report_json(diagnosis_, campaign_));
   EXPECT_EQ(on_x.exit_code, 0) << on_x.output;
-  EXPECT_THAT(on_x.output, HasSubstr("opens on Position x"));
+  EXPECT_THAT(on_x.output, HasSubstr("opens on Position X"));
 }
 
 TEST_F(DiagnosisReport, IsOnePageWithoutMarkupInItsData) {

@@ -116,10 +116,10 @@ TEST(DiagnosisJson, WhatOlderFilesLackMayBeMissing) {
   Json document = written();
   for (const char* key : {"rotation", "with_one_of", "period_mm"}) document.at("unknown").at(0).erase(key);
   const Diagnosis again = diagnosis_from_json(document.dump(), "old.json");
-  EXPECT_EQ(again.unknown.at(0).rotation, "");
+  EXPECT_EQ(again.unknown.at(0).rotation, std::nullopt);
   EXPECT_TRUE(again.unknown.at(0).with_one_of.empty());
   EXPECT_EQ(again.unknown.at(0).period, 0.0);
-  EXPECT_EQ(again.unknown.at(0).direction, "Z");
+  EXPECT_EQ(again.unknown.at(0).direction, ScanDirection::Z);
 }
 
 /// Proposals keep their codes; of a file without them, their sentences.

@@ -26,7 +26,7 @@ Diagnosis with_a_drawn_surface() {
   surface.spec.options.set("to", std::vector<double>{400.0, 0.0});
   surface.spec.options.set("pieces", std::vector<double>{1.0, 1.0});
   surface.spec.options.set("coefficients", std::vector<double>(16, 2.5e-6));
-  surface.drivers = {"y", "z"};
+  surface.drivers = variables_in("y z");
   surface.unit = "urad";
   surface.si_per_unit = 1e-6;
   surface.log_evidence = 88.5;
@@ -55,7 +55,9 @@ Diagnosis with_a_drawn_surface() {
   diagnosis.asked_laws.front().laws.back().log_evidence = 80.0;
   diagnosis.tried = {diagnosis.effects.front()};
   diagnosis.tried_errors = {{.rms_heldout = 0.7e-6, .systematic = 0.25e-6}};
-  diagnosis.unknown.insert(diagnosis.unknown.begin(), {{"y", "z"}, {}, "Z", "EAY", 0.4e-6, -60.0});
+  diagnosis.unknown.insert(
+      diagnosis.unknown.begin(),
+      {variables_in("y z"), {}, ScanDirection::Z, ErrorSymbol{Component::A, AxisName::Y}, 0.4e-6, -60.0});
   return diagnosis;
 }
 
@@ -113,7 +115,8 @@ TEST(SurfaceJson, ComesBack) {
 TEST(SurfaceJson, TheRestAloneIsStillSeen) {
   const Diagnosis diagnosis = with_a_drawn_surface();
   EXPECT_EQ(remaining_unknown(diagnosis).size(), diagnosis.unknown.size() - 1);
-  EXPECT_EQ(remaining_unknown(diagnosis).front().variables, (std::vector<std::string>{"x", "time"}));
+  EXPECT_EQ(names_of(remaining_unknown(diagnosis).front().variables),
+            (std::vector<std::string>{"x", "time"}));
 }
 
 }  // namespace

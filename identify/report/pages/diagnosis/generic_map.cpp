@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "volcal/identify/criticism/data/scan_direction.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/report/numbers.h"
 
@@ -16,8 +17,8 @@ constexpr int kDigits = 3;  // of -log10 p
 Json generic_map_page(const DiagnosisInput& input) {
   const GenericMap& map = input.diagnosis.figures.generic;
   Json directions = Json::array();
-  for (std::size_t d = 0; d < std::min(map.given.size(), std::size(kScanDirections)); ++d) {
-    directions.push_back({{"name", kScanDirections[d]},
+  for (std::size_t d = 0; d < std::min(map.given.size(), kScanDirections.size()); ++d) {
+    directions.push_back({{"name", name_of(kScanDirections[d])},
                           {"given", rounded_triangle(map.given[d], kDigits, true)},
                           {"reached", rounded_triangle(map.reached[d], kDigits, true)}});
   }

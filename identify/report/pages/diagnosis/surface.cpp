@@ -10,13 +10,10 @@ namespace volcal::report {
 namespace {
 
 /// "y [mm]", "t [s]", "T_column [°C]", "c [°]".
-std::string axis_title(const std::string& driver) {
-  const auto with = [&](const char* unit) { return driver + " [" + unit + "]"; };
-  if (driver.starts_with("T_")) return with("°C");
-  if (driver == "t") return with("s");
-  if (driver == "feed") return with("mm/min");
-  if (driver.size() == 1 && driver[0] <= 'c') return with("°");
-  return with("mm");
+std::string axis_title(const Variable& driver) {
+  const std::string unit =
+      driver.kind == Variable::Kind::Temperature ? "°C" : unit_text(driver.unit().suffix);
+  return driver.written() + (unit.empty() ? "" : " [" + unit + "]");
 }
 
 std::vector<double> entries(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
@@ -28,7 +25,7 @@ Json surface_json(const SurfaceFinding& surface) {
   Json axes = Json::array();
   for (std::size_t i = 0; i < surface.figure.places.size(); ++i) {
     axes.push_back({{"title", axis_title(surface.drivers[i])},
-                    {"name", surface.drivers[i]},
+                    {"name", surface.drivers[i].written()},
                     {"places", rounded_array(surface.figure.places[i], 1.0)},
                     {"dots", i < surface.figure.dots.size() ? rounded_array(surface.figure.dots[i], 1.0, 4)
                                                             : Json::array()}});
@@ -51,7 +48,7 @@ Json surface_json(const SurfaceFinding& surface) {
           {"largest", rounded(surface.largest * factor, 4)},
           {"largest_U95", rounded(kCoverageFactor * surface.largest_u * factor, 2)},
           {"at", rounded_array(surface.at, 1.0, 4)},
-          {"third", surface.drivers.size() > 2 ? Json(surface.drivers[2]) : Json()},
+          {"third", surface.drivers.size() > 2 ? Json(surface.drivers[2].written()) : Json()},
           {"third_at", rounded(surface.figure.third, 4)},
           {"log_evidence", rounded(surface.log_evidence, 3)},
           {"rms", rounded(surface.rms * factor, 3)},

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "volcal/identify/report/numbers.h"
+#include "volcal/model/description/parameter_names.h"
 
 namespace volcal::report {
 namespace {
@@ -57,23 +58,18 @@ Json tool_json(const ToolVolume& volume) {
           {"u_max_um", rounded(volume.u_max() * kPerMicro, 3)}};
 }
 
-/// Named points among the nuisance parameters: stations and ball-bar centres.
+/// Named points among the nuisance parameters: stations and ball-bar centres. A sphere's parameters may be
+/// its displacement from where it was set.
 Json named_points(const FitResult& result) {
   Json list = Json::array();
-  const std::string station = "station ";
-  const std::string centre = ": centre";
   for (const ParameterBlock& block : result.layout.blocks) {
     if (block.kind != ParameterKind::Nuisance || block.size() != 3) continue;
+    const auto point = named_point(block.name);
+    if (!point || point->kind == NamedPoint::Kind::Sphere) continue;
     const Eigen::Vector3d point_w = result.parameters.segment<3>(block.offset);
-    if (block.name.starts_with(station)) {
-      list.push_back({{"name", block.name.substr(station.size())},
-                      {"kind", "station"},
-                      {"point_mm", rounded_vector(point_w, kPerMilli, 7)}});
-    } else if (block.name.ends_with(centre)) {
-      list.push_back({{"name", block.name.substr(0, block.name.size() - centre.size())},
-                      {"kind", "centre"},
-                      {"point_mm", rounded_vector(point_w, kPerMilli, 7)}});
-    }
+    list.push_back({{"name", point->name},
+                    {"kind", point->kind == NamedPoint::Kind::Station ? "station" : "centre"},
+                    {"point_mm", rounded_vector(point_w, kPerMilli, 7)}});
   }
   return list;
 }

@@ -13,6 +13,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/values/line_means.h"
 #include "volcal/identify/report/values/residual_sample.h"
+#include "volcal/identify/report/values/shown_variable.h"
 #include "volcal/identify/report/values/swallowed_noise.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/instruments/registry.h"
@@ -72,6 +73,15 @@ struct Abscissa {
   bool discrete = false;  ///< -1, 0, 1
 };
 
+/// `value_si`: of a record.
+template <class Value>
+Abscissa abscissa(std::string key, const Variable& variable, const Value& value_si) {
+  const ShownVariable shown = shown_variable(variable);
+  return {
+      std::move(key), shown.title, shown.unit,
+      [value_si, factor = shown.factor](const ResidualRecord& record) { return value_si(record) * factor; }};
+}
+
 /// Means of an ordinate in equal bins of an abscissa, or at its values.
 Json binned_mean(const PageInput& input, const std::vector<double>& x, bool discrete,
                  const Ordinate& ordinate) {
@@ -125,21 +135,18 @@ const Readings& readings_of(const PageInput& input, const ResidualRecord& record
 void add_axes(const PageInput& input, std::vector<Abscissa>& list) {
   for (const Axis& axis : input.result.machine.axes) {
     const std::size_t k = index_of(axis.name);
-    const double factor = position_factor(axis.name);
-    list.push_back({axis_letter(axis.name), "Position " + axis_letter(axis.name),
-                    std::string(position_unit(axis.name).suffix),
-                    [&input, k, factor](const ResidualRecord& record) {
-                      return readings_of(input, record).position[k][record.row] * factor;
-                    }});
+    list.push_back(abscissa(axis_letter(axis.name), position_of(axis.name), [&input, k](const auto& record) {
+      return readings_of(input, record).position[k][record.row];
+    }));
   }
   for (const Axis& axis : input.result.machine.axes) {
     const std::size_t k = index_of(axis.name);
-    list.push_back({"dir_" + axis_letter(axis.name), "Direction of approach, " + axis_letter(axis.name), "",
-                    [&input, k](const ResidualRecord& record) {
-                      const auto& direction = readings_of(input, record).direction[k];
-                      return direction.empty() ? nan() : static_cast<double>(direction[record.row]);
-                    },
-                    true});
+    list.push_back(abscissa("dir_" + axis_letter(axis.name), direction_of_approach(axis.name),
+                            [&input, k](const auto& record) {
+                              const auto& direction = readings_of(input, record).direction[k];
+                              return direction.empty() ? nan() : static_cast<double>(direction[record.row]);
+                            }));
+    list.back().discrete = true;
   }
 }
 
@@ -159,23 +166,23 @@ std::vector<std::string> temperature_channels(const Campaign& campaign) {
 
 void add_environment(const PageInput& input, std::vector<Abscissa>& list) {
   for (const std::string& channel : temperature_channels(input.campaign)) {
-    list.push_back(
-        {"T_" + channel, "Temperature " + channel, "°C", [&input, channel](const ResidualRecord& record) {
-           const auto& all = readings_of(input, record).temperature;
-           const auto found = all.find(channel);
-           return found == all.end() || found->second.empty() ? nan() : found->second[record.row];
-         }});
+    const Variable variable = temperature_of(channel);
+    list.push_back(abscissa(variable.name(), variable, [&input, channel](const auto& record) {
+      const auto& all = readings_of(input, record).temperature;
+      const auto found = all.find(channel);
+      return found == all.end() || found->second.empty() ? nan() : found->second[record.row];
+    }));
   }
-  list.push_back({"length", "Measured length", "mm", [&input](const ResidualRecord& record) {
-                    const Setup& setup = input.campaign.setups[record.setup];
-                    return traits_of(setup).laser_length == LaserLength::Distance
-                               ? setup.readings.value[0][record.row] * kPerMilli
-                               : nan();
-                  }});
-  list.push_back({"time", "Time", "min", [&input](const ResidualRecord& record) {
-                    const std::vector<double>& time = readings_of(input, record).time;
-                    return time.empty() ? nan() : time[record.row] / kSecondsPerMinute;
-                  }});
+  const Variable length{Variable::Kind::Length}, time{Variable::Kind::Time};
+  list.push_back(abscissa(length.name(), length, [&input](const auto& record) {
+    const Setup& setup = input.campaign.setups[record.setup];
+    return traits_of(setup).laser_length == LaserLength::Distance ? setup.readings.value[0][record.row]
+                                                                  : nan();
+  }));
+  list.push_back(abscissa(time.name(), time, [&input](const auto& record) {
+    const std::vector<double>& recorded = readings_of(input, record).time;
+    return recorded.empty() ? nan() : recorded[record.row];
+  }));
 }
 
 struct Against {

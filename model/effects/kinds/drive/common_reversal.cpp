@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/shared_motions.h"
 
@@ -13,7 +14,7 @@ std::string directions_of(const std::vector<ErrorSymbol>& symbols) {
   std::set<AxisName> known;
   for (const ErrorSymbol symbol : symbols) {
     if (!known.insert(symbol.axis).second) continue;
-    words += (words.empty() ? "dir_" : " dir_") + std::string(1, lower_letter_of(symbol.axis));
+    words += (words.empty() ? "" : " ") + direction_of_approach(symbol.axis).name();
   }
   return words;
 }

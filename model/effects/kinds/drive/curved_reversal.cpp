@@ -1,4 +1,5 @@
 // Reversal that changes with the square of the travel: a screw that sags or is worn in the middle.
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/reversal_label.h"
@@ -9,9 +10,9 @@ namespace {
 std::unique_ptr<FormulaEffect> make_curved_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol) + " along the travel, curved";
-  const std::string axis(1, lower_letter_of(symbol.axis));
   return std::make_unique<FormulaEffect>(
-      EffectName{"curved-reversal", symbol.name(), "dir_" + axis + " " + axis, "quadratic"},
+      EffectName{"curved-reversal", symbol.name(),
+                 written_list({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "quadratic"},
       std::vector{motion_amplitude(table, label, symbol, "per_m2")},
       [axis = symbol.axis](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, axis).array() * positions_from_home(view, axis).array().square();

@@ -1,4 +1,5 @@
 // Reversal that changes along the travel: a screw worn in the middle, a cable chain.
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/reversal_label.h"
@@ -20,9 +21,9 @@ EffectSchema position_reversal_schema() {
 std::unique_ptr<FormulaEffect> make_position_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol) + " along the travel";
-  const std::string axis(1, lower_letter_of(symbol.axis));
   return std::make_unique<FormulaEffect>(
-      EffectName{"position-reversal", symbol.name(), "dir_" + axis + " " + axis, "linear"},
+      EffectName{"position-reversal", symbol.name(),
+                 written_list({direction_of_approach(symbol.axis), position_of(symbol.axis)}), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_m")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, symbol.axis).cwiseProduct(positions_from_home(view, symbol.axis));

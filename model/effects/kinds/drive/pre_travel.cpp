@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/travel_since_turning.h"
@@ -27,7 +28,7 @@ std::unique_ptr<FormulaEffect> make_pre_travel(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = "pre-travel " + symbol.name();
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"pre-travel", symbol.name(), std::string("dir_") + lower_letter_of(symbol.axis) + " travel",
+      EffectName{"pre-travel", symbol.name(), direction_of_approach(symbol.axis).name() + " travel",
                  "exp(-s/l)"},
       std::vector{motion_amplitude(table, label, symbol, "")},
       [symbol](const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {

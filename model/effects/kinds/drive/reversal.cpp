@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/reversal_label.h"
@@ -22,7 +23,7 @@ std::unique_ptr<FormulaEffect> make_reversal(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   const std::string label = reversal_label(symbol);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"reversal", symbol.name(), std::string("dir_") + lower_letter_of(symbol.axis), "step"},
+      EffectName{"reversal", symbol.name(), direction_of_approach(symbol.axis).name(), "step"},
       std::vector{motion_amplitude(table, label, symbol, "")},
       [symbol](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return 0.5 * directions(view, symbol.axis);

@@ -1,4 +1,5 @@
 // Reversal that changes with a temperature: the preload of a nut, a belt or a rack grows and shrinks with it.
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/reversal_label.h"
@@ -12,7 +13,7 @@ std::unique_ptr<FormulaEffect> make_thermal_reversal(const EffectTable& table) {
   const std::string label = reversal_label(symbol) + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
       EffectName{"thermal-reversal", symbol.name(),
-                 std::string("dir_") + lower_letter_of(symbol.axis) + " T_" + channel, "linear"},
+                 direction_of_approach(symbol.axis).name() + " " + temperature_of(channel).name(), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_K")},
       [axis = symbol.axis, channel](const SetupView& view,
                                     const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <vector>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/instruments/registry.h"
@@ -193,7 +194,7 @@ std::unique_ptr<FormulaEffect> make_following_error(const EffectTable& table) {
   const bool feed = by_feed(table);
   const ErrorSymbol symbol{positioning_component(axis), axis};
   const std::string label = std::string("following error ") + letter_of(axis) + (feed ? " by feed" : "");
-  const std::string direction = std::string("dir_") + lower_letter_of(axis);
+  const std::string direction = direction_of_approach(axis).name();
   auto effect = std::make_unique<FormulaEffect>(
       EffectName{"following-error", symbol.name(), feed ? direction + " feed" : direction, "cos(phi)"},
       std::vector{EffectAmplitude{.label = label,

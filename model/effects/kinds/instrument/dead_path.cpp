@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -52,7 +53,7 @@ std::unique_ptr<FormulaEffect> make_dead_path(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
   const std::string label = where.label() + (channel.empty() ? " by time" : " by " + channel);
   return std::make_unique<FormulaEffect>(
-      EffectName{"dead-path", where.target(), channel.empty() ? "time" : "T_" + channel, "linear"},
+      EffectName{"dead-path", where.target(), temperature_or_time(channel).name(), "linear"},
       std::vector{
           reading_amplitude(table, label, channel.empty() ? "amplitude_um_per_h" : "amplitude_um_per_K")},
       [where, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {

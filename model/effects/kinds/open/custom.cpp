@@ -25,7 +25,11 @@ class CustomFormula {
   explicit CustomFormula(const EffectTable& table)
       : place_(table.place), target_(written_target(table)), expression_(expression_of(table)) {
     for (const std::string& name : expression_.variables()) {
-      (is_parameter(name) ? parameters_ : variables_).push_back(name);
+      if (is_parameter(name)) {
+        parameters_.push_back(name);
+      } else {
+        variables_.push_back(*Variable::parse_written(name));
+      }
     }
     if (variables_.empty()) table.fail("its expression depends on nothing", "write a variable into it");
     for (const std::string parameter : kParameters) check_parameter(table, parameter);
@@ -34,14 +38,15 @@ class CustomFormula {
   const WrittenTarget& target() const { return target_; }
   const Expression& expression() const { return expression_; }
   /// Those that were recorded, without the parameters of the shape.
-  const std::vector<std::string>& variables() const { return variables_; }
+  const std::vector<Variable>& variables() const { return variables_; }
   const std::vector<std::string>& parameters() const { return parameters_; }
 
   void check(const Campaign& campaign) const {
     target_.check(campaign, what(), place_);
-    for (const std::string& name : variables_) {
+    for (const Variable& variable : variables_) {
+      const std::string name = variable.written();
       check_variable(
-          campaign, name, [&](const Setup& setup) { return acts_on(campaign, setup); }, what(),
+          campaign, variable, [&](const Setup& setup) { return acts_on(campaign, setup); }, what(),
           "the expression uses " + name + " at character " + std::to_string(expression_.character_of(name)),
           place_);
     }
@@ -52,7 +57,7 @@ class CustomFormula {
   }
 
   bool all_recorded(const Setup& setup) const {
-    return std::ranges::all_of(variables_, [&](const auto& name) { return has_variable(setup, name); });
+    return std::ranges::all_of(variables_, [&](const Variable& each) { return has_variable(setup, each); });
   }
 
   /// Throws InputError where the expression is not finite.
@@ -63,11 +68,12 @@ class CustomFormula {
       return Eigen::VectorXd::Zero(rows);
     const auto& names = expression_.variables();
     Eigen::MatrixXd columns(rows, static_cast<Eigen::Index>(names.size()));
+    auto variable = variables_.begin();
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto parameter = std::ranges::find(parameters_, names[k]);
       columns.col(static_cast<Eigen::Index>(k)) =
           parameter == parameters_.end()
-              ? *recorded_variable(view, names[k])
+              ? *recorded_variable(view, *variable++)
               : Eigen::VectorXd(Eigen::VectorXd::Constant(rows, shape[parameter - parameters_.begin()]));
     }
     Eigen::VectorXd result = expression_.evaluate(columns);
@@ -115,22 +121,16 @@ class CustomFormula {
   SourcePlace place_;
   WrittenTarget target_;
   Expression expression_;
-  std::vector<std::string> variables_;
+  std::vector<Variable> variables_;  ///< in the order of the expression
   std::vector<std::string> parameters_;
 };
-
-std::string joined_names(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
-  return text;
-}
 
 std::unique_ptr<FormulaEffect> make_custom(const EffectTable& table) {
   const CustomFormula formula(table);
   const std::string& target = formula.target().text;
   const std::string label = target + " by " + formula.expression().text();
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"custom", target, joined_names(formula.variables()), formula.expression().text()},
+      EffectName{"custom", target, written_list(formula.variables()), formula.expression().text()},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = formula.target().target(),
                                     .key = formula.target().amplitude_key("amplitude"),
@@ -191,12 +191,12 @@ std::vector<EffectSpec> custom_examples(const Campaign& campaign) {
 }  // namespace
 
 Expression custom_expression(const std::string& formula) {
-  return {formula, [](const std::string& name) { return is_parameter(name) || is_recorded_variable(name); }};
+  return {formula,
+          [](const std::string& name) { return is_parameter(name) || Variable::parse_written(name); }};
 }
 
 std::string custom_expression_names() {
-  return "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
-         listed_names(plain_variables()) + ", p, q; functions are " +
+  return "variables are " + listed_variables() + ", p, q; functions are " +
          listed_names(Expression::function_names());
 }
 

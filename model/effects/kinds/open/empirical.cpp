@@ -67,55 +67,51 @@ Owner owner_of(const EffectTable& table) {
 struct Statement {
   explicit Statement(const EffectTable& table)
       : place(table.place), target(written_target(table)), owner(owner_of(table)) {
-    drivers = variables_in(table.text("drivers", kListedDrivers));
-    factors = variables_in(table.spec.options.text("factor").value_or(""));
+    drivers = stated_variables(table, "drivers", table.text("drivers", kListedDrivers));
+    factors = stated_variables(table, "factor", table.spec.options.text("factor").value_or(""));
     if (drivers.empty() || drivers.size() > kMostDrivers)
       table.fail(std::to_string(drivers.size()) + " drivers", kListedDrivers);
-    for (const std::string& name : drivers) check_name(table, name, "drivers");
-    for (const std::string& name : factors) check_name(table, name, "factor");
     read_sides(table);
   }
 
   std::string name() const {
     std::string text = drivers.size() == 1 ? "curve " : "surface ";
-    text += target_text() + " by";
-    for (const std::string& factor : factors) text += " " + factor;
-    for (const std::string& driver : drivers) text += " " + driver;
-    return text;
+    return text + target_text() + " by " + driver_text();
   }
   std::string target_text() const {
     return target.text + (owner.kind == Owner::Kind::All ? "" : " of " + owner.name);
   }
   std::string driver_text() const {
-    std::string text;
-    for (const std::string& name : factors) text += name + " ";
-    for (const std::string& name : drivers) text += name + " ";
-    text.pop_back();
-    return text;
+    return (factors.empty() ? "" : written_list(factors) + " ") + written_list(drivers);
   }
 
   bool acts_on(const Campaign& campaign, const Setup& setup) const {
     return target.acts_on(campaign, setup) && owner.holds(campaign, setup);
   }
   bool all_recorded(const Setup& setup) const {
-    const auto is_recorded = [&](const std::string& name) { return has_variable(setup, name); };
+    const auto is_recorded = [&](const Variable& variable) { return has_variable(setup, variable); };
     return std::ranges::all_of(drivers, is_recorded) && std::ranges::all_of(factors, is_recorded);
   }
 
   SourcePlace place;
   WrittenTarget target;
   Owner owner;
-  std::vector<std::string> drivers;
-  std::vector<std::string> factors;
+  std::vector<Variable> drivers;
+  std::vector<Variable> factors;
   std::vector<TensorBasis::Side> sides;
   bool has_range = false;
 
  private:
-  static void check_name(const EffectTable& table, const std::string& name, const std::string& key) {
-    if (is_recorded_variable(name)) return;
-    table.fail(key + ": \"" + name + "\" is no variable",
-               "variables are x y z a b c, dir_x ... dir_c, since_x ... since_c, T_<channel>, " +
-                   listed_names(plain_variables()));
+  static std::vector<Variable> stated_variables(const EffectTable& table, const std::string& key,
+                                                const std::string& list) {
+    std::vector<Variable> variables;
+    for (const std::string& word : words_in(list)) {
+      const auto variable = Variable::parse_written(word);
+      if (!variable)
+        table.fail(key + ": \"" + word + "\" is no variable", "variables are " + listed_variables());
+      variables.push_back(*variable);
+    }
+    return variables;
   }
 
   /// One number per driver.
@@ -147,7 +143,8 @@ struct Statement {
         side.from = (*from)[i];
         side.to = (*to)[i];
         if (!(side.from < side.to))
-          table.fail(fmt::format("the range of {} is empty", drivers[i]), "write from less than to");
+          table.fail(fmt::format("the range of {} is empty", drivers[i].written()),
+                     "write from less than to");
       }
       coefficients *= side.pieces + 3;
       sides.push_back(side);
@@ -187,10 +184,10 @@ class EmpiricalEffect final : public Effect {
     stated_.target.check(campaign, what, place);
     stated_.owner.check(campaign, place);
     const auto acts = [&](const Setup& setup) { return stated_.acts_on(campaign, setup); };
-    for (const std::string& name : stated_.drivers)
-      check_variable(campaign, name, acts, what, "it is driven by " + name, place);
-    for (const std::string& name : stated_.factors)
-      check_variable(campaign, name, acts, what, "it is multiplied with " + name, place);
+    for (const Variable& variable : stated_.drivers)
+      check_variable(campaign, variable, acts, what, "it is driven by " + variable.written(), place);
+    for (const Variable& variable : stated_.factors)
+      check_variable(campaign, variable, acts, what, "it is multiplied with " + variable.written(), place);
   }
 
   Eigen::MatrixXd drivers(const SetupView& view, const Eigen::VectorXd& /*shape*/) const override {
@@ -199,8 +196,8 @@ class EmpiricalEffect final : public Effect {
     if (!stated_.acts_on(view.campaign, view.setup) || !stated_.all_recorded(view.setup)) return values;
     require_range();
     Eigen::VectorXd factor = Eigen::VectorXd::Ones(rows);
-    for (const std::string& name : stated_.factors) {
-      const auto own = recorded_variable(view, name);
+    for (const Variable& each : stated_.factors) {
+      const auto own = recorded_variable(view, each);
       if (own->size() != rows) return values;
       factor.array() *= own->array();
     }
@@ -315,7 +312,8 @@ class EmpiricalKind final : public EffectKind {
     for (std::size_t i = 0; i < stated.drivers.size(); ++i) {
       const auto side = range_of(stated, views, stated.drivers[i]).side(stated.sides[i].pieces);
       if (!side) {
-        throw InputError(stated.place, stated.name() + ": " + stated.drivers[i] + " does not change",
+        throw InputError(stated.place,
+                         stated.name() + ": " + stated.drivers[i].written() + " does not change",
                          "remove it from the drivers, or measure where it changes");
       }
       from.push_back(side->from);
@@ -355,7 +353,7 @@ class EmpiricalKind final : public EffectKind {
 
  private:
   static ValuesOfDriver range_of(const Statement& stated, const std::vector<SetupView>& views,
-                                 const std::string& driver) {
+                                 const Variable& driver) {
     ValuesOfDriver range;
     for (const SetupView& view : views) {
       if (!stated.acts_on(view.campaign, view.setup)) continue;

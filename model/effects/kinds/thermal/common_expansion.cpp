@@ -1,4 +1,5 @@
 // Scales of one material at one temperature: the same coefficient of expansion on every axis.
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/effects/shared_motions.h"
 
@@ -15,7 +16,7 @@ std::unique_ptr<FormulaEffect> make_common_expansion(const EffectTable& table) {
                             .key = "amplitude_um_per_m_K",
                             .guess = table.number("amplitude", 0.0)};
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"common-expansion", names_of_symbols(symbols), "T_" + channel, "linear"},
+      EffectName{"common-expansion", names_of_symbols(symbols), temperature_of(channel).name(), "linear"},
       std::vector{std::move(amplitude)},
       [axes, channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         const Eigen::VectorXd excess = temperature_excess(view, channel);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/lagged_channel.h"
 #include "volcal/model/effects/registry.h"
 
@@ -15,7 +16,7 @@ constexpr int kLags = 8;
 
 ChannelHistory lag_of(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
-  return {"late by " + channel, "T_" + channel, "lag", lagged_excess};
+  return {"late by " + channel, temperature_of(channel).name(), "lag", lagged_excess};
 }
 
 std::vector<Eigen::VectorXd> lags() {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -34,8 +35,8 @@ std::unique_ptr<FormulaEffect> make_scale_expansion(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = "expansion " + linear_axis_text(axis) + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"scale-expansion", ErrorSymbol{positioning_component(axis), axis}.name(), "T_" + channel,
-                 "linear"},
+      EffectName{"scale-expansion", ErrorSymbol{positioning_component(axis), axis}.name(),
+                 temperature_of(channel).name(), "linear"},
       std::vector<EffectAmplitude>{
           {.label = label,
            .target = {.kind = TargetKind::Motion, .symbol = {positioning_component(axis), axis}},
@@ -68,7 +69,7 @@ std::unique_ptr<FormulaEffect> make_thermal_drift(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = symbol.name() + " by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"thermal-drift", symbol.name(), "T_" + channel, "linear"},
+      EffectName{"thermal-drift", symbol.name(), temperature_of(channel).name(), "linear"},
       std::vector{motion_amplitude(table, label, symbol, "per_K")},
       [channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return temperature_excess(view, channel);
@@ -115,7 +116,7 @@ std::unique_ptr<FormulaEffect> make_tool_expansion(const EffectTable& table) {
   const std::string channel = table.text("temperature", "add temperature = \"CHANNEL\"");
   const std::string label = "tool by " + channel;
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"tool-expansion", "tool", "T_" + channel, "linear"},
+      EffectName{"tool-expansion", "tool", temperature_of(channel).name(), "linear"},
       vector_amplitudes(table, label, TargetKind::ToolOffset, "um_per_K"),
       [channel](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
         return temperature_excess(view, channel).replicate(1, 3);
@@ -176,7 +177,7 @@ std::unique_ptr<FormulaEffect> make_squareness_drift(const EffectTable& table) {
   const std::string channel = table.spec.options.text("temperature").value_or("");
   const std::string label = "drift of " + name + (channel.empty() ? "" : " by " + channel);
   auto effect = std::make_unique<FormulaEffect>(
-      EffectName{"squareness-drift", name, channel.empty() ? "time" : "T_" + channel, "linear"},
+      EffectName{"squareness-drift", name, temperature_or_time(channel).name(), "linear"},
       std::vector<EffectAmplitude>{{.label = label,
                                     .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
                                     .key = channel.empty() ? "amplitude_urad_per_h" : "amplitude_urad_per_K",

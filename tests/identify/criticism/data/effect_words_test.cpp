@@ -73,46 +73,32 @@ TEST(EffectWords, CapitalsStandForNamesOfTheFiles) {
   EXPECT_EQ(full_name({"reversal", "EXX", "dir_x", "step"}), "reversal:EXX:dir_x:step");
 }
 
-TEST(Variable, NamesAreReadAgain) {
+/// A pattern and a meaning for every variable that scans go through, by which its name is found.
+TEST(ScanWords, StandForTheVariablesOfTheScans) {
   using Kind = Variable::Kind;
-  const std::vector<std::pair<Variable, std::string>> all = {
-      {{Kind::Position, AxisName::Y}, "y"},
-      {{Kind::Direction, AxisName::A}, "dir_a"},
-      {{Kind::Speed, AxisName::X}, "speed_x"},
-      {{Kind::Time}, "time"},
-      {{.kind = Kind::Temperature, .subject = "column 2"}, "T_column 2"},
-      {{Kind::Length}, "length"},
-      {{Kind::Elevation}, "elevation"},
-      {{Kind::Run}, "run"},
-      {{Kind::Feed}, "feed"},
-      {{.kind = Kind::Instrument, .subject = "ball-bar"}, "instrument ball-bar"},
-      {{.kind = Kind::Tool, .subject = "side x"}, "tool side x"},
-      {{.kind = Kind::Station, .subject = "P1"}, "station P1"},
-      {{Kind::TravelSinceTurning, AxisName::Z}, "travel since dir_z"}};
-  for (const auto& [variable, name] : all) {
-    EXPECT_EQ(variable.name(), name);
-    EXPECT_EQ(Variable::parse(name), variable) << name;
-  }
-  EXPECT_EQ(scan_words().size() + 1, all.size()) << "travel is no variable of the scans";
-  for (const char* text : {"nonsense", "X", "dir_X", "dir_", "T_", "tool ", "times", ""})
-    EXPECT_EQ(Variable::parse(text), std::nullopt) << text;
+  ASSERT_EQ(scan_words().size(), static_cast<std::size_t>(Kind::TravelSinceTurning));
+  EXPECT_EQ(scan_words()[static_cast<std::size_t>(Kind::Run)].pattern, "run");
+  EXPECT_EQ(scan_words()[static_cast<std::size_t>(Kind::Run)].meaning, "number of the run");
+  EXPECT_EQ(scan_words()[static_cast<std::size_t>(Kind::Station)].pattern, "station STATION");
+  EXPECT_EQ(scan_words()[static_cast<std::size_t>(Kind::Station)].meaning,
+            "whether the reading was taken from this station");
 }
 
 /// What scans see nearly alike is reported in this order.
 TEST(ScanWords, TheSimplestIsTheLeastFarFetched) {
-  const auto rank = [](const std::vector<std::string>& names, const std::string& direction) {
+  const auto rank = [](const std::vector<std::string>& names, ScanDirection direction) {
     return complexity_rank(testing_support::variables_named(names), direction);
   };
-  EXPECT_EQ(rank({"station P1"}, "X"), 0);
-  EXPECT_EQ(rank({"instrument ball-bar"}, "beam"), 0);
-  EXPECT_EQ(rank({"station P1"}, "beam"), 1) << "its dead path is a parameter of the model";
-  EXPECT_EQ(rank({"x", "dir_x"}, "Y"), 1);
-  EXPECT_EQ(rank({"station P1", "time"}, "X"), 1) << "a station drifts in time";
-  EXPECT_EQ(rank({"station P1", "T_air"}, "X"), 2);
-  EXPECT_EQ(rank({"length", "T_air"}, "beam"), 1) << "the wavelength follows the air";
-  EXPECT_EQ(rank({"length", "time"}, "beam"), 2);
-  EXPECT_EQ(rank({"x", "time"}, "X"), 1);
-  EXPECT_EQ(rank({"time", "T_air"}, "X"), 3);
+  EXPECT_EQ(rank({"station P1"}, ScanDirection::X), 0);
+  EXPECT_EQ(rank({"instrument ball-bar"}, ScanDirection::Beam), 0);
+  EXPECT_EQ(rank({"station P1"}, ScanDirection::Beam), 1) << "its dead path is a parameter of the model";
+  EXPECT_EQ(rank({"x", "dir_x"}, ScanDirection::Y), 1);
+  EXPECT_EQ(rank({"station P1", "time"}, ScanDirection::X), 1) << "a station drifts in time";
+  EXPECT_EQ(rank({"station P1", "T_air"}, ScanDirection::X), 2);
+  EXPECT_EQ(rank({"length", "T_air"}, ScanDirection::Beam), 1) << "the wavelength follows the air";
+  EXPECT_EQ(rank({"length", "time"}, ScanDirection::Beam), 2);
+  EXPECT_EQ(rank({"x", "time"}, ScanDirection::X), 1);
+  EXPECT_EQ(rank({"time", "T_air"}, ScanDirection::X), 3);
 }
 
 }  // namespace

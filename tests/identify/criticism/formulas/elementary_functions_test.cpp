@@ -26,7 +26,7 @@ double by_expression(const std::string& text, const std::string& variable, doubl
 
 TEST(ElementaryFunctions, AreWhatTheirExpressionsSay) {
   for (const auto& [variable, zero] : {std::pair{"y", 0.0}, {"y", -120.0}, {"T_column", 20.0}, {"t", 0.0}}) {
-    const DriverRange driver{variable, 17.3, 260.0};
+    const DriverRange driver{*Variable::parse_written(variable), 17.3, 260.0};
     for (const ElementaryFunction& function : elementary_functions(driver, zero)) {
       const std::string text = function.text({"p", "q"});
       ASSERT_FALSE(function.starts.empty()) << text;
@@ -44,21 +44,21 @@ TEST(ElementaryFunctions, AreWhatTheirExpressionsSay) {
 
 TEST(ElementaryFunctions, AreAllDifferent) {
   std::set<std::string> texts;
-  for (const ElementaryFunction& function : elementary_functions({"t", 0.0, 3600.0}, 0.0))
+  for (const ElementaryFunction& function : elementary_functions({{Variable::Kind::Time}, 0.0, 3600.0}, 0.0))
     EXPECT_TRUE(texts.insert(function.text({"p", "q"})).second) << function.text({"p", "q"});
   EXPECT_EQ(texts.size(), 12u);
 }
 
 TEST(ElementaryFunctions, CountFromTheirZero) {
-  const auto functions = elementary_functions({"T_column", 18.0, 26.0}, 20.0);
+  const auto functions = elementary_functions({temperature_of("column"), 18.0, 26.0}, 20.0);
   EXPECT_EQ(functions.front().text({}), "(T_column - 20)");
   EXPECT_EQ(functions.front().at(20.0, {}), 0.0);
 }
 
 TEST(ElementaryFunctions, CountFromANegativePlaceByASum) {
-  EXPECT_EQ(power_of("y", -250.0, 1).text({}), "(y + 250)");
-  EXPECT_EQ(power_of("y", 120.0, 2).text({}), "(y - 120)^2");
-  const DriverRange driver{"x", -300.0, 300.0};
+  EXPECT_EQ(power_of(position_of(AxisName::Y), -250.0, 1).text({}), "(y + 250)");
+  EXPECT_EQ(power_of(position_of(AxisName::Y), 120.0, 2).text({}), "(y - 120)^2");
+  const DriverRange driver{position_of(AxisName::X), -300.0, 300.0};
   for (const ElementaryFunction& function : elementary_functions(driver, 0.0)) {
     const std::string text = function.text({"-40.5", "-7"});
     EXPECT_EQ(text.find("- -"), std::string::npos) << text;

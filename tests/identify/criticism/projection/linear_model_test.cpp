@@ -130,7 +130,7 @@ TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
         std::ranges::find(smoothed.smoothing(), *ErrorSymbol::parse("EXX"), &SmoothingTerm::symbol);
     return 1.0 / std::sqrt(term->lambda);
   };
-  Eigen::VectorXd wave = model.direction(0);
+  Eigen::VectorXd wave = model.direction(ScanDirection::X);
   for (Eigen::Index i = 0; i < wave.size(); ++i) {
     const auto& [setup, row, channel] = model.observations()[static_cast<std::size_t>(i)];
     wave[i] *= 3e-6 * std::sin(25.0 * study.simulated.campaign.setups[setup].readings.position[0][row]);

@@ -29,7 +29,8 @@ std::vector<GenericTest> scanned(const Eigen::VectorXd& residual) {
 bool holds(const std::vector<GenericTest>& tests, const std::vector<std::string>& names,
            const std::string& direction) {
   return std::ranges::any_of(tests, [&](const GenericTest& test) {
-    return test.direction == direction && std::ranges::is_permutation(names_of(test.variables), names);
+    return name_of(test.direction.value()) == direction &&
+           std::ranges::is_permutation(names_of(test.variables), names);
   });
 }
 
@@ -50,10 +51,11 @@ TEST(GenericScan, LooksForWhatCouldHaveAReason) {
   EXPECT_FALSE(holds(tests, {"x", "length"}, "beam"));
   std::set<std::string> rotations;
   for (const GenericTest& test : tests) {
-    if (test.rotation.empty()) continue;
-    rotations.insert(test.rotation);
+    if (!test.rotation) continue;
+    rotations.insert(test.rotation->name());
     for (const std::string& name : names_of(test.variables))
-      EXPECT_FALSE(name.starts_with("station") || name == "length" || name == "elevation") << test.rotation;
+      EXPECT_FALSE(name.starts_with("station") || name == "length" || name == "elevation")
+          << test.rotation->name();
   }
   EXPECT_EQ(rotations,
             (std::set<std::string>{"EAX", "EBX", "ECX", "EAY", "EBY", "ECY", "EAZ", "EBZ", "ECZ"}));
@@ -63,14 +65,14 @@ TEST(GenericScan, LooksForWhatCouldHaveAReason) {
 TEST(GenericScan, FindsAProductOfTwoVariables) {
   std::mt19937_64 random(4);
   const Eigen::VectorXd moved = model_of_nothing_hidden()
-                                    .direction(0)
+                                    .direction(ScanDirection::X)
                                     .cwiseProduct(value_of_variable("T_column"))
                                     .cwiseProduct(value_of_variable("dir_y"));
   const std::vector<GenericTest> tests =
       scanned(white_residual(model_of_nothing_hidden(), random) + 0.5e-6 * moved);
   const auto least = std::ranges::min_element(tests, {}, &GenericTest::log10_p);
   EXPECT_THAT(names_of(least->variables), ::testing::UnorderedElementsAre("T_column", "dir_y"));
-  EXPECT_EQ(least->direction, "X");
+  EXPECT_EQ(least->direction, ScanDirection::X);
   EXPECT_LT(least->log10_p, -10.0);
 }
 
@@ -105,11 +107,11 @@ TEST(GenericScan, FindsARotationByItsArms) {
   const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 10e-6 * moved, variables);
   const GenericTest& least = least_probable(tests);
   EXPECT_THAT(names_of(least.variables), ::testing::ElementsAre("T_air"));
-  EXPECT_EQ(least.rotation, "EAZ");
-  EXPECT_THAT(least.direction, ::testing::AnyOf("Y", "Z"));
+  EXPECT_EQ(least.rotation, (ErrorSymbol{Component::A, AxisName::Z}));
+  EXPECT_THAT(least.direction, ::testing::AnyOf(ScanDirection::Y, ScanDirection::Z));
   double as_displacement = 0.0;
   for (const GenericTest& test : tests) {
-    if (test.rotation.empty()) as_displacement = std::min(as_displacement, test.log10_p);
+    if (!test.rotation) as_displacement = std::min(as_displacement, test.log10_p);
   }
   EXPECT_LT(least.log10_p, as_displacement - 5.0);
 }
@@ -118,13 +120,14 @@ TEST(GenericScan, FindsADisplacementInSeveralDirectionsAtOnce) {
   std::mt19937_64 random(6);
   const LinearModel& model = model_of_nothing_hidden();
   const std::vector<ScanVariable> variables = two_temperatures();
-  const Eigen::VectorXd moved =
-      (model.direction(0) - model.direction(1) + 0.8 * model.direction(2)).cwiseProduct(variables[0].value);
+  const Eigen::VectorXd moved = (model.direction(ScanDirection::X) - model.direction(ScanDirection::Y) +
+                                 0.8 * model.direction(ScanDirection::Z))
+                                    .cwiseProduct(variables[0].value);
   const std::vector<GenericTest> tests = scanned(white_residual(model, random) + 1e-6 * moved, variables);
   const GenericTest& least = least_probable(tests);
   EXPECT_THAT(names_of(least.variables), ::testing::ElementsAre("T_air"));
-  EXPECT_TRUE(least.rotation.empty());
-  EXPECT_THAT(least.direction, ::testing::AnyOf("X", "Y"));
+  EXPECT_EQ(least.rotation, std::nullopt);
+  EXPECT_THAT(least.direction, ::testing::AnyOf(ScanDirection::X, ScanDirection::Y));
   EXPECT_EQ(least.dof, 9.0) << "three powers along three directions";
 }
 
@@ -133,19 +136,21 @@ TEST(GenericScan, FindsTheDifferenceOfTwoTemperatures) {
   const LinearModel& model = model_of_nothing_hidden();
   const std::vector<ScanVariable> variables = two_temperatures();
   const Eigen::VectorXd difference = variables[0].value - variables[1].value;
-  const std::vector<GenericTest> tests =
-      scanned(white_residual(model, random) + 1e-6 * model.direction(2).cwiseProduct(difference), variables);
+  const std::vector<GenericTest> tests = scanned(
+      white_residual(model, random) + 1e-6 * model.direction(ScanDirection::Z).cwiseProduct(difference),
+      variables);
   const GenericTest& least = least_probable(tests);
   EXPECT_THAT(names_of(least.variables), ::testing::UnorderedElementsAre("T_air", "T_column"));
-  EXPECT_EQ(least.direction, "Z");
+  EXPECT_EQ(least.direction, ScanDirection::Z);
 }
 
 /// What a test would explain, as one column, explains as much.
 TEST(GenericScan, TellsWhatATestWouldExplain) {
   std::mt19937_64 random(6);
   const LinearModel& model = model_of_nothing_hidden();
-  const Eigen::VectorXd moved =
-      model.direction(1).cwiseProduct(value_of_variable("T_column")).cwiseProduct(value_of_variable("dir_x"));
+  const Eigen::VectorXd moved = model.direction(ScanDirection::Y)
+                                    .cwiseProduct(value_of_variable("T_column"))
+                                    .cwiseProduct(value_of_variable("dir_x"));
   const Projector projector = white_projector(model, white_residual(model, random) + 0.8e-6 * moved);
   const std::vector<GenericTest> tests = generic_scan(model, variables_of_nothing_hidden(), projector, 1);
   std::vector<std::size_t> chosen;
@@ -162,7 +167,7 @@ TEST(GenericScan, TellsWhatATestWouldExplain) {
     if (!test.kernel) {
       EXPECT_NEAR(lm, test.lm, 1e-6 * test.lm) << k;
     }
-    if (!test.rotation.empty()) continue;
+    if (test.rotation) continue;
     EXPECT_GT(lm, 50.0) << k;
     EXPECT_GT(explained.col(column).normalized().dot(moved.normalized()), 0.7) << k;
   }

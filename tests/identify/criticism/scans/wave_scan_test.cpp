@@ -21,7 +21,7 @@ using testing_support::model_of_nothing_hidden;
 using testing_support::white_projector;
 using testing_support::white_residual;
 
-Eigen::VectorXd wave(AxisName axis, int direction, double period, double phase) {
+Eigen::VectorXd wave(AxisName axis, ScanDirection direction, double period, double phase) {
   const LinearModel& model = model_of_nothing_hidden();
   Eigen::VectorXd moved = model.direction(direction);
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
@@ -51,10 +51,10 @@ double range_of(AxisName axis) {
 }
 
 TEST(WaveScan, FindsScrewsAndScalesAtTheirPeriod) {
-  const std::tuple<AxisName, int, double> hidden[] = {{AxisName::X, 0, 10.3e-3},
-                                                      {AxisName::Y, 1, 5.07e-3},
-                                                      {AxisName::Z, 0, 1.9e-3},
-                                                      {AxisName::X, 2, 41e-6}};
+  const std::tuple<AxisName, ScanDirection, double> hidden[] = {{AxisName::X, ScanDirection::X, 10.3e-3},
+                                                                {AxisName::Y, ScanDirection::Y, 5.07e-3},
+                                                                {AxisName::Z, ScanDirection::X, 1.9e-3},
+                                                                {AxisName::X, ScanDirection::Z, 41e-6}};
   std::mt19937_64 random(21);
   for (const auto& [axis, direction, period] : hidden) {
     const std::vector<WaveTest> tests = scanned_waves(white_residual(model_of_nothing_hidden(), random) +
@@ -73,8 +73,8 @@ TEST(WaveScan, FindsScrewsAndScalesAtTheirPeriod) {
 TEST(WaveScan, TestsTheProjectedWave) {
   std::mt19937_64 random(22);
   const LinearModel& model = model_of_nothing_hidden();
-  const Projector projector =
-      white_projector(model, white_residual(model, random) + 1e-6 * wave(AxisName::Y, 0, 7.3e-3, 0.1));
+  const Projector projector = white_projector(
+      model, white_residual(model, random) + 1e-6 * wave(AxisName::Y, ScanDirection::X, 7.3e-3, 0.1));
   for (const WaveTest& test : wave_scan(model, projector, 2)) {
     const Eigen::MatrixXd columns = wave_columns(model, test.axis, test.direction, test.period);
     EXPECT_NEAR(score_test(projector.project(columns), 0, 2).lm, test.projected_lm, 1e-6 * test.projected_lm);
@@ -113,7 +113,7 @@ TEST(WaveScan, TakesWhatRepeatsAtAPositionForNoWave) {
   std::normal_distribution<double> normal;
   const LinearModel& model = model_of_nothing_hidden();
   std::map<double, double> of_position;
-  Eigen::VectorXd moved = model.direction(2);
+  Eigen::VectorXd moved = model.direction(ScanDirection::Z);
   for (Eigen::Index i = 0; i < moved.size(); ++i) {
     const auto& [setup, row, channel] = model.observations()[static_cast<std::size_t>(i)];
     const double z = model.campaign().setups[setup].readings.position[index_of(AxisName::Z)][row];

@@ -54,9 +54,9 @@ sim::HiddenEffect roll_along_y() {
 ModelState with_a_curve_and_a_name(const LinearModel& model) {
   const ModelState given = ModelState(model, setting_of(model)).tested();
   UnknownFinding finding;
-  finding.variables = {"y"};
-  finding.direction = "Z";
-  finding.rotation = "EAZ";
+  finding.variables = testing_support::variables_named({"y"});
+  finding.direction = ScanDirection::Z;
+  finding.rotation = ErrorSymbol{Component::A, AxisName::Z};
   const EffectSpec spec = surfaces_for(model, finding).at(0);
   const std::shared_ptr<const Effect> curve = find_effect(spec.kind)->make(spec, {});
   const double evidence = surface_evidence(model, given.projector(), *curve);
@@ -79,7 +79,7 @@ TEST(OneCause, TheSquareOfATemperatureTakesThePlaceOfTwoNames) {
   EXPECT_EQ(cause->replaces, (std::set<std::size_t>{0, 1}));
   EXPECT_EQ(cause->surface.effect->name().target, "EAZ");
   EXPECT_EQ(cause->surface.effect->name().driver, "T_column");
-  EXPECT_EQ(cause->surface.finding.variables, (std::vector<std::string>{"T_column"}));
+  EXPECT_EQ(names_of(cause->surface.finding.variables), (std::vector<std::string>{"T_column"}));
   EXPECT_GT(cause->surface.log_evidence, 5.0);
 }
 

@@ -25,7 +25,7 @@ const Eigen::Vector3i kRejectionGrid{5, 4, 3};
 GenericTest hand_made_scan(const std::vector<std::string>& variables, double log10_p, double period = 0.0) {
   GenericTest test;
   test.variables = testing_support::variables_named(variables);
-  test.direction = "Y";
+  test.direction = ScanDirection::Y;
   test.log10_p = log10_p;
   test.period = period;
   return test;

@@ -217,7 +217,7 @@ TEST(Search, WhatIsInNoCatalogueGetsNoName) {
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());
   ASSERT_FALSE(diagnosis.unknown.empty());
-  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains(::testing::AnyOf("x", "y")));
+  EXPECT_THAT(names_of(diagnosis.unknown[0].variables), ::testing::Contains(::testing::AnyOf("x", "y")));
 }
 
 /// Backlash that the axis takes up on its first 50 mm has the reversal's driver and another shape.
@@ -229,7 +229,7 @@ TEST(Search, AReversalThatIsTakenUpOnTheWayGetsNoName) {
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   EXPECT_TRUE(diagnosis.effects.empty());
   ASSERT_FALSE(diagnosis.unknown.empty());
-  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::Contains("dir_y"));
+  EXPECT_THAT(names_of(diagnosis.unknown[0].variables), ::testing::Contains("dir_y"));
 }
 
 /// A screw that no name of the catalogue stands for is reported by its period.
@@ -240,8 +240,8 @@ TEST(Search, AWaveWithoutANameIsToldByItsPeriod) {
   const Diagnosis diagnosis = searched(study, true, {"lead-error", "encoder-subdivision"});
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   ASSERT_FALSE(diagnosis.unknown.empty());
-  EXPECT_THAT(diagnosis.unknown[0].variables, ::testing::ElementsAre("x"));
-  EXPECT_EQ(diagnosis.unknown[0].direction, "X");
+  EXPECT_THAT(names_of(diagnosis.unknown[0].variables), ::testing::ElementsAre("x"));
+  EXPECT_EQ(diagnosis.unknown[0].direction, ScanDirection::X);
   EXPECT_NEAR(diagnosis.unknown[0].period, 10.3e-3, 0.1e-3);
   EXPECT_NEAR(diagnosis.unknown[0].rms, 0.6e-6, 0.3e-6) << "in units of the stated noise";
 }
@@ -292,7 +292,7 @@ TEST(Search, WhatCirclesShowIsSeenWithoutAName) {
   const Diagnosis diagnosis = searched(fitted, true, {"servo-mismatch", "following-error"});
   EXPECT_EQ(to_string(diagnosis.verdict), "UNKNOWN");
   ASSERT_FALSE(diagnosis.unknown.empty());
-  EXPECT_THAT(diagnosis.unknown[0].variables,
+  EXPECT_THAT(names_of(diagnosis.unknown[0].variables),
               ::testing::Contains(::testing::AnyOf("speed_x", "speed_y", "dir_x", "dir_y")));
 }
 

@@ -148,7 +148,7 @@ void write_step(const Step& step, const std::vector<double>& lm, const std::stri
         {{"observation", sequence.observation}, {"time", sequence.time}, {"line", sequence.line}});
   }
   std::ofstream(folder + "/problem.json") << json.dump() << '\n';
-  write_matrix(folder + "/jacobian.f64", problem.jacobian);
+  write_matrix(folder + "/jacobian.f64", problem.jacobian.whole());
   write_matrix(folder + "/residual.f64", problem.residual);
   write_matrix(folder + "/precision.f64", problem.prior_precision);
   write_matrix(folder + "/mean.f64", problem.prior_mean);

@@ -1,11 +1,13 @@
 // Processor time of what a person does with a session, all threads together: what a machine that others use
-// can tell, where times on the wall cannot.
+// can tell, where times on the wall cannot. And the most memory that the process had until each step was made
+// first.
 //
 //   session_bench CAMPAIGN.toml [--threads N] [--repeats N]
 
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <map>
 #include <memory>
@@ -48,24 +50,37 @@ class ProcessorTimes {
  public:
   template <class Work>
   void measure(const std::string& what, const Work& work) {
+    const auto wall = std::chrono::steady_clock::now();
     const double begin = processor_seconds();
     work();
     if (!times_.contains(what)) order_.push_back(what);
-    times_[what].push_back(1e3 * (processor_seconds() - begin));
+    Times& times = times_[what];
+    if (times.processor.empty()) times.peak = peak_memory();
+    times.processor.push_back(1e3 * (processor_seconds() - begin));
+    times.wall.push_back(1e3 *
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count());
   }
   void print() {
-    fmt::print("  {:30} {:>12} {:>9} {:>9} {:>3}\n", "processor time", "median [ms]", "least", "most", "n");
+    fmt::print("  {:28} {:>16} {:>9} {:>9} {:>12} {:>10} {:>3}\n", "", "processor [ms]", "least", "most",
+               "wall [ms]", "peak [MB]", "n");
     for (const std::string& what : order_) {
-      std::vector<double>& times = times_[what];
-      std::ranges::sort(times);
-      fmt::print("  {:30} {:12.1f} {:9.1f} {:9.1f} {:3}\n", what, times[times.size() / 2], times.front(),
-                 times.back(), times.size());
+      Times& times = times_[what];
+      std::ranges::sort(times.processor);
+      std::ranges::sort(times.wall);
+      const std::size_t middle = times.processor.size() / 2;
+      fmt::print("  {:28} {:16.1f} {:9.1f} {:9.1f} {:12.1f} {:10.0f} {:3}\n", what, times.processor[middle],
+                 times.processor.front(), times.processor.back(), times.wall[middle],
+                 1e-6 * static_cast<double>(times.peak), times.processor.size());
     }
   }
 
  private:
+  struct Times {
+    std::vector<double> processor, wall;  ///< ms
+    std::size_t peak = 0;                 ///< bytes, when it was made first
+  };
   std::vector<std::string> order_;
-  std::map<std::string, std::vector<double>> times_;
+  std::map<std::string, Times> times_;
 };
 
 /// The first effects of the ranking that can be added.

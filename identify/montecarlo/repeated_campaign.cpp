@@ -64,7 +64,7 @@ RepeatedCampaign::RepeatedCampaign(const Campaign& campaign, const FitResult& re
     predicted_[index] =
         readings.value[static_cast<std::size_t>(place.channel)][place.row] - problem.residual[index];
   }
-  whitener_.whiten(problem.jacobian, whitened_, 1);
+  whitener_.whiten(problem.jacobian.whole(), whitened_, 1);
   const auto factor = cholesky_lower(whitened_.transpose() * whitened_ + problem.prior_precision);
   if (!factor) throw std::runtime_error("the normal matrix is not positive definite");
   gain_ = inverse_from_cholesky(*factor);

@@ -309,20 +309,24 @@ std::vector<std::size_t> Whitener::order_of_part(std::size_t first, Eigen::Index
 
 Eigen::MatrixXd Whitener::whiten_part(std::size_t first,
                                       const Eigen::Ref<const Eigen::MatrixXd>& columns) const {
-  const std::vector<const Track*> inside = tracks_of_part(first, columns.rows());
   std::size_t rows = 0;
-  for (const Track* const track : inside) rows += track->steps.size();
+  for (const Track* const track : tracks_of_part(first, columns.rows())) rows += track->steps.size();
   Eigen::MatrixXd whitened(static_cast<Eigen::Index>(rows), columns.cols());
+  whiten_part(first, columns, whitened);
+  return whitened;
+}
+
+void Whitener::whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                           Eigen::Ref<Eigen::MatrixXd> whitened) const {
   double* out = whitened.data();
-  for (const Track* const track : inside) {
+  for (const Track* const track : tracks_of_part(first, columns.rows())) {
     for (Eigen::Index column = 0; column < columns.cols(); column += kColumnBlock) {
       whiten_block(*track, std::min(kColumnBlock, columns.cols() - column),
                    {columns.data() + column * columns.outerStride(), columns.outerStride(),
-                    out + column * whitened.rows(), whitened.rows(), nullptr, first, true});
+                    out + column * whitened.outerStride(), whitened.outerStride(), nullptr, first, true});
     }
     out += track->steps.size();
   }
-  return whitened;
 }
 
 void Whitener::weigh_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
@@ -408,7 +412,7 @@ Eigen::MatrixXd Whitener::sum_of_grams(const std::vector<const Track*>& tracks, 
   return total;
 }
 
-Eigen::MatrixXd Whitener::gram(const Eigen::MatrixXd& rows, int threads) const {
+Eigen::MatrixXd Whitener::gram(const Eigen::Ref<const Eigen::MatrixXd>& rows, int threads) const {
   require(rows.cols() == static_cast<Eigen::Index>(rows_), "one column per observation");
   std::vector<const Track*> tracks;
   for (const Track& track : tracks_) tracks.push_back(&track);

@@ -78,6 +78,9 @@ class Whitener {
   /// Rows [first, first + columns.rows()) alone, which hold whole sequences: their observations that are not
   /// missing, sequence by sequence, in the order of the filters. On the caller's thread.
   Eigen::MatrixXd whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns) const;
+  /// The same into `whitened`, which has the size.
+  void whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
+                   Eigen::Ref<Eigen::MatrixXd> whitened) const;
   /// whiten_part() into `whitened`, which has the size, and Sigma^-1 of the columns, observation by
   /// observation: `weighed` becomes kColumnBlock x (observations in use), 0 beyond the columns. At most
   /// kColumnBlock columns.
@@ -88,7 +91,7 @@ class Whitener {
 
   /// rows Sigma^-1 rows^T, full symmetric, for `rows` (columns x observations, the transpose of what whiten()
   /// takes), without storing the whitened matrix.
-  Eigen::MatrixXd gram(const Eigen::MatrixXd& rows, int threads) const;
+  Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& rows, int threads) const;
 
   /// Makes the columns (as those of `rows`) of observations as the filter comes to them; called from several
   /// threads at once.
@@ -100,6 +103,14 @@ class Whitener {
   };
   /// gram() of one group's observations, with nothing of their number stored.
   GroupGram gram_of_group(std::size_t group, Eigen::Index width, const MakeColumns& make, int threads) const;
+
+  /// log|Sigma| + |L^-1 column|^2 of several noise models of the only group, eight in the time of one or two
+  /// by set_parameters() and whiten(), and equal to those to rounding; what the class holds stays. The same
+  /// for any number of threads. Throws std::invalid_argument where has_open_lines(), or of several groups.
+  std::vector<double> misfits(std::span<const NoiseParameters> noises, const Eigen::VectorXd& column,
+                              int threads) const;
+  /// Lines are resumed after others began.
+  bool has_open_lines() const;
 
   /// log|Sigma| of the observations that are not missing.
   double log_determinant() const { return log_determinant_; }
@@ -140,6 +151,8 @@ class Whitener {
                      double* state);
   /// Adjoint of filter() on whitened rows of the whole track, in place: L^-T.
   static void filter_adjoint(const Track& track, Eigen::Index width, double* rows);
+  /// `models`, `misfits`: of several noise models side by side (noise_misfits.cpp).
+  static void find_misfits(const Track& track, const double* models, const double* column, double* misfits);
   static FilterStep filter_step(const Track& track, std::size_t i);
   /// Offsets that are held while that of the step's own line is seen: their state and gain / scale.
   template <class Visit>

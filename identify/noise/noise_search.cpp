@@ -252,14 +252,27 @@ void NoiseSearch::find_slope(Point& point) {
 }
 
 /// -2 l up to a constant, with the solution of `from` held and its log information linear.
-double NoiseSearch::surrogate(const Point& from, const Eigen::VectorXd& at, const Active& active) {
-  double value = likelihood_.misfit(group_, parameters(at, active), from.residual);
-  value += held_information(at, active) + from.slope(kWhite) * (at(kWhite) - from.at(kWhite));
-  for (int term = 0; term < kTerms; ++term) {
-    const Eigen::Index i = parameter_of(term);
-    if (active[static_cast<std::size_t>(term)]) value += from.slope(i) * (at(i) - from.at(i));
+std::vector<double> NoiseSearch::surrogates(const Point& from, const std::vector<Eigen::VectorXd>& places,
+                                            const Active& active) {
+  std::vector<NoiseParameters> noises;
+  for (const Eigen::VectorXd& at : places) noises.push_back(parameters(at, active));
+  std::vector<double> values = likelihood_.misfits(group_, noises, from.residual);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const Eigen::VectorXd& at = places[k];
+    values[k] += held_information(at, active) + from.slope(kWhite) * (at(kWhite) - from.at(kWhite));
+    for (int term = 0; term < kTerms; ++term) {
+      const Eigen::Index i = parameter_of(term);
+      if (active[static_cast<std::size_t>(term)]) values[k] += from.slope(i) * (at(i) - from.at(i));
+    }
+    if (active[0]) values[k] += from.slope(kTau) * (at(kTau) - from.at(kTau));
   }
-  return active[0] ? value + from.slope(kTau) * (at(kTau) - from.at(kTau)) : value;
+  return values;
+}
+
+ValuesAt NoiseSearch::surrogate(const Point& from, const Active& active) {
+  return [this, &from, &active](const std::vector<Eigen::VectorXd>& places) {
+    return surrogates(from, places, active);
+  };
 }
 
 std::vector<Eigen::VectorXd> NoiseSearch::starts(const Active& active) const {
@@ -288,7 +301,9 @@ std::vector<Eigen::VectorXd> NoiseSearch::starts(const Active& active) const {
 
 NoiseSearch::Point NoiseSearch::best_start(const Point& from, const Active& active) {
   std::vector<std::pair<double, Eigen::VectorXd>> candidates;
-  for (const Eigen::VectorXd& at : starts(active)) candidates.emplace_back(surrogate(from, at, active), at);
+  const std::vector<Eigen::VectorXd> all = starts(active);
+  const std::vector<double> values = surrogates(from, all, active);
+  for (std::size_t k = 0; k < all.size(); ++k) candidates.emplace_back(values[k], all[k]);
   std::ranges::sort(candidates, {}, &std::pair<double, Eigen::VectorXd>::first);
   std::set<double> taus;  // the refined ones differ in it, or are the best alone
   std::erase_if(candidates,
@@ -298,8 +313,7 @@ NoiseSearch::Point NoiseSearch::best_start(const Point& from, const Active& acti
   const Box limits = box(active);
   Minimum best{{}, std::numeric_limits<double>::infinity()};
   for (const auto& candidate : candidates) {
-    Minimum found = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(from, at, active); },
-                                    candidate.second, limits, kSurrogateTolerance);
+    Minimum found = bounded_minimum(surrogate(from, active), candidate.second, limits, kSurrogateTolerance);
     if (found.value < best.value) best = std::move(found);
   }
   Point point;
@@ -319,9 +333,7 @@ void NoiseSearch::refine(Point& point) {
                    limits.upper.cwiseMin((point.at.array() + reach).matrix()).cwiseMax(limits.lower)};
     Point next;
     next.active = point.active;
-    next.at = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(point, at, point.active); },
-                              point.at, near, kSurrogateTolerance)
-                  .at;
+    next.at = bounded_minimum(surrogate(point, point.active), point.at, near, kSurrogateTolerance).at;
     evaluate(next);
     const Eigen::VectorXd step = next.at - point.at;
     const double error = next.log_information - point.log_information - point.slope.dot(step);
@@ -374,9 +386,8 @@ NoiseSearch::Point NoiseSearch::with(const Point& point, int term) {
   Eigen::VectorXd from = point.at;
   from(parameter_of(term)) = coordinate(kAddedShare * total_);
   if (term == 0) from(kTau) = 0.5 * (lower_(kTau) + upper_(kTau));
-  larger.at = bounded_minimum([&](const Eigen::VectorXd& at) { return surrogate(point, at, larger.active); },
-                              from, box(larger.active), kSurrogateTolerance)
-                  .at;
+  larger.at =
+      bounded_minimum(surrogate(point, larger.active), from, box(larger.active), kSurrogateTolerance).at;
   evaluate(larger);
   return larger;
 }
@@ -494,10 +505,10 @@ void NoiseSearch::find_uncertainty(const Point& point, InstrumentNoise& result) 
   std::vector<double> width(count), above(count);
   Eigen::MatrixXd hessian(count, count);
   for (std::size_t a = 0; a < count; ++a) {
-    const double bend = (surrogate(point, moved(point.at, free[a], kBendStep), point.active) -
-                         2.0 * surrogate(point, point.at, point.active) +
-                         surrogate(point, moved(point.at, free[a], -kBendStep), point.active)) /
-                        (kBendStep * kBendStep);
+    const std::vector<double> near = surrogates(
+        point, {moved(point.at, free[a], kBendStep), point.at, moved(point.at, free[a], -kBendStep)},
+        point.active);
+    const double bend = (near[0] - 2.0 * near[1] + near[2]) / (kBendStep * kBendStep);
     width[a] = std::clamp(0.5 * std::sqrt(2.0 / std::max(bend, 1e-9)), 0.005, 0.3);
     const Eigen::VectorXd up = moved(point.at, free[a], width[a]);
     above[a] = value(up);

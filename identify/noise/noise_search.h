@@ -48,7 +48,9 @@ class NoiseSearch {
   Box box(const Active& active) const;
   void evaluate(Point& point);
   void find_slope(Point& point);
-  double surrogate(const Point& from, const Eigen::VectorXd& at, const Active& active);
+  std::vector<double> surrogates(const Point& from, const std::vector<Eigen::VectorXd>& places,
+                                 const Active& active);
+  ValuesAt surrogate(const Point& from, const Active& active);
   std::vector<Eigen::VectorXd> starts(const Active& active) const;
   Point best_start(const Point& from, const Active& active);
   void refine(Point& point);

@@ -9,11 +9,14 @@
 #include <string>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kSingular = 1e-12;  // of the largest eigenvalue, columns scaled to one
+constexpr double kSingular = 1e-12;            // of the largest eigenvalue, columns scaled to one
+constexpr Eigen::Index kCarried = 4096;        // observations at once
+constexpr Eigen::Index kWorthThreads = 10000;  // observations: one column of fewer is done before threads are
 
 void require_consistent(bool condition, const char* problem) {
   if (!condition) throw std::invalid_argument(std::string("restricted likelihood: ") + problem);
@@ -82,6 +85,7 @@ void RestrictedLikelihood::split(const NoiseProblem& problem) {
   const Eigen::Index p = problem.jacobian.cols();
   for (Group& group : groups_) {
     group.rows.resize(p + 1, static_cast<Eigen::Index>(group.observation.size()));
+    group.variables = p;
     for (Eigen::Index k = 0; k < group.rows.cols(); ++k) {
       const auto i = static_cast<Eigen::Index>(group.observation[static_cast<std::size_t>(k)]);
       group.rows.col(k).head(p) = problem.jacobian.row(i).transpose();
@@ -150,35 +154,48 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
 }
 
-/// Observations in the variables, residuals from the white estimate.
+/// Observations in the variables, residuals from the white estimate; in place, since they are large.
 void RestrictedLikelihood::carry_rows() {
   const Eigen::Index p = transform_.rows(), kept = transform_.cols();
   Eigen::MatrixXd carry = Eigen::MatrixXd::Zero(p + 1, kept + 1);
   carry.topLeftCorner(p, kept) = transform_;
   carry.col(kept) << -first_, 1.0;
   for (Group& group : groups_) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(kept + 1, group.rows.cols());
-    add_transposed_product(carry, group.rows, rows);
-    group.rows = std::move(rows);
+    const Eigen::Index count = group.rows.cols();
+    run_parallel(static_cast<std::size_t>((count + kCarried - 1) / kCarried), threads_,
+                 [&](std::size_t block) {
+                   const Eigen::Index first = static_cast<Eigen::Index>(block) * kCarried;
+                   auto own = group.rows.middleCols(first, std::min(kCarried, count - first));
+                   Eigen::MatrixXd carried = Eigen::MatrixXd::Zero(kept + 1, own.cols());
+                   add_transposed_product(carry, own, carried);
+                   own.topRows(kept + 1) = carried;
+                 });
+    group.variables = kept;
   }
 }
 
 RestrictedLikelihood::Share RestrictedLikelihood::share(std::size_t group, const NoiseParameters& noise) {
   Whitener& whitener = groups_[group].whitener.front();
   whitener.set_parameters({&noise, 1});
-  return {whitener.gram(groups_[group].rows, threads_), whitener.log_determinant()};
+  return {whitener.gram(groups_[group].own_rows(), threads_), whitener.log_determinant()};
 }
 
 Eigen::VectorXd RestrictedLikelihood::residual(std::size_t group, const Eigen::VectorXd& at) const {
-  const Eigen::MatrixXd& rows = groups_[group].rows;
+  const auto rows = groups_[group].own_rows();
   return rows.row(at.size()).transpose() - rows.topRows(at.size()).transpose() * at;
 }
 
-double RestrictedLikelihood::misfit(std::size_t group, const NoiseParameters& noise,
-                                    const Eigen::VectorXd& residual) {
+std::vector<double> RestrictedLikelihood::misfits(std::size_t group, std::span<const NoiseParameters> noises,
+                                                  const Eigen::VectorXd& residual) {
   Whitener& whitener = groups_[group].whitener.front();
-  whitener.set_parameters({&noise, 1});
-  return whitener.log_determinant() + whitener.whiten(residual).squaredNorm();
+  if (!whitener.has_open_lines())
+    return whitener.misfits(noises, residual, residual.size() < kWorthThreads ? 1 : threads_);
+  std::vector<double> all;
+  for (const NoiseParameters& noise : noises) {
+    whitener.set_parameters({&noise, 1});
+    all.push_back(whitener.log_determinant() + whitener.whiten(residual).squaredNorm());
+  }
+  return all;
 }
 
 RestrictedLikelihood::Solution RestrictedLikelihood::solve(const Eigen::MatrixXd& gram) {

@@ -17,10 +17,12 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "volcal/identify/noise/local_rows.h"
 #include "volcal/identify/noise/noise_model.h"
+#include "volcal/identify/numeric/shared_matrix.h"
 
 namespace volcal {
 
@@ -28,7 +30,7 @@ inline constexpr double kMinInformation = 1e-3;
 
 /// The linear model about the current adjustment.
 struct NoiseProblem {
-  Eigen::MatrixXd jacobian;  ///< N x p
+  SharedMatrix jacobian;  ///< N x p
   /// The first columns of `jacobian` once more; null = not known to be local. Only makes projections faster.
   std::shared_ptr<const LocalRows> local;
   Eigen::VectorXd residual;         ///< N, reading minus prediction, m or rad
@@ -61,8 +63,9 @@ class RestrictedLikelihood {
   Share share(std::size_t group, const NoiseParameters& noise);
   /// The residuals of a group were the solution `at`, in the order of group_data().
   Eigen::VectorXd residual(std::size_t group, const Eigen::VectorXd& at) const;
-  /// log|Sigma_g| + r^T Sigma_g^-1 r.
-  double misfit(std::size_t group, const NoiseParameters& noise, const Eigen::VectorXd& residual);
+  /// log|Sigma_g| + r^T Sigma_g^-1 r of several noise models, faster together.
+  std::vector<double> misfits(std::size_t group, std::span<const NoiseParameters> noises,
+                              const Eigen::VectorXd& residual);
   /// Infinite quadratic when the sum is not positive definite.
   static Solution solve(const Eigen::MatrixXd& gram);
 
@@ -81,8 +84,11 @@ class RestrictedLikelihood {
     NoiseData data;                        ///< group 0 of its own
     std::vector<std::size_t> observation;  ///< of the problem
     std::vector<std::int64_t> point;
-    Eigen::MatrixXd rows;            ///< (variables + 1) x observations: J^T and y^T
+    Eigen::MatrixXd rows;  ///< the first variables + 1 x observations: J^T and y^T
+    Eigen::Index variables = 0;
     std::vector<Whitener> whitener;  ///< one; empty until the data are there
+
+    auto own_rows() const { return rows.topRows(variables + 1); }
   };
   void split(const NoiseProblem& problem);
   void transform(const NoiseProblem& problem);

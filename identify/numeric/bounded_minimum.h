@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <vector>
 
 namespace volcal {
 
@@ -24,5 +25,10 @@ struct Minimum {
 Minimum bounded_minimum(const std::function<double(const Eigen::VectorXd&)>& function,
                         const Eigen::VectorXd& start, const Box& box, double tolerance,
                         int most_iterations = 40);
+
+/// A function of which several values together take less than one by one.
+using ValuesAt = std::function<std::vector<double>(const std::vector<Eigen::VectorXd>& places)>;
+Minimum bounded_minimum(const ValuesAt& function, const Eigen::VectorXd& start, const Box& box,
+                        double tolerance, int most_iterations = 40);
 
 }  // namespace volcal

@@ -195,14 +195,15 @@ std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::ve
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
                const std::vector<ObservationPlace>& places, NoiseProblem& problem) {
   const auto count = static_cast<Eigen::Index>(places.size());
-  problem.jacobian.resize(count, datum.size());
+  Eigen::MatrixXd jacobian(count, datum.size());
   problem.residual.resize(count);
   for_each_row(model, parameters, places, [&](Eigen::Index i, const RowJacobian& row) {
     const auto [setup, reading, channel] = places[static_cast<std::size_t>(i)];
-    problem.jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, channel).transpose());
+    jacobian.row(i) = datum.reduce_rows(dense_row(model.layout(), row, channel).transpose());
     const Readings& readings = model.campaign().setups[setup].readings;
     problem.residual[i] = readings.value[static_cast<std::size_t>(channel)][reading] - row.predicted[channel];
   });
+  problem.jacobian = std::move(jacobian);
 }
 
 LocalRows local_rows(const MeasurementModel& model, const DatumSpace& datum,

@@ -104,7 +104,6 @@ inline void add_grid(const GridPlan& plan, std::mt19937_64& generator, NoiseProb
   const Eigen::Index first = problem.jacobian.rows();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(first + readings, p);
   if (first > 0) rows.topRows(first) = problem.jacobian;
-  problem.jacobian = std::move(rows);
   Eigen::Index i = first;
   for (int s = 0; s < plan.stations; ++s) {
     const Eigen::Vector3d station = grid_station(s);
@@ -122,11 +121,12 @@ inline void add_grid(const GridPlan& plan, std::mt19937_64& generator, NoiseProb
         sequence.line.push_back(line);
         problem.data.sigma.push_back(plan.sigma * jitter(generator));
         problem.data.length.push_back(beam.norm());
-        problem.jacobian.row(i) = grid_derivatives(plan, s, at, beam);
+        rows.row(i) = grid_derivatives(plan, s, at, beam);
       }
     }
     problem.data.sequences.push_back(std::move(sequence));
   }
+  problem.jacobian = std::move(rows);
 }
 
 /// A draw of the noise of the covariance above, by its definition. Sequences in time order.

@@ -111,11 +111,13 @@ LinearModel LinearModel::with_surface(const Effect& effect) const {
   other.base_prior_ = base_prior_of(before + count);
   other.reduced_ = reduced_of(before + count);
   const auto problem = std::make_shared<NoiseProblem>(*problem_);
-  problem->jacobian.conservativeResize(Eigen::NoChange, before + count);
-  for (std::size_t setup = 0; setup + 1 < parts().size(); ++setup) {
-    const Eigen::Index first = parts()[setup], rows = parts()[setup + 1] - first;
-    columns(effect, effect.shape_values(), setup, problem->jacobian.block(first, before, rows, count));
-  }
+  problem->jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, before + count);
+    for (std::size_t setup = 0; setup + 1 < parts().size(); ++setup) {
+      const Eigen::Index first = parts()[setup], rows = parts()[setup + 1] - first;
+      columns(effect, effect.shape_values(), setup, jacobian.block(first, before, rows, count));
+    }
+  });
   std::vector<SmoothingTerm> smoothing = smoothing_;
   smoothing.push_back(surface_term(*effect.surface(), static_cast<int>(before)));
   other.set_smoothing(std::move(smoothing), problem);
@@ -133,7 +135,7 @@ LinearModel LinearModel::without_surface(std::size_t term) const {
   other.base_prior_.mean = base_prior_.mean(kept);
   other.reduced_ = reduced_(kept);
   const auto problem = std::make_shared<NoiseProblem>(*problem_);
-  problem->jacobian = problem_->jacobian(Eigen::all, kept);
+  problem->jacobian = problem_->jacobian(Eigen::all, kept).eval();
   std::vector<SmoothingTerm> smoothing = smoothing_;
   smoothing.erase(smoothing.begin() + static_cast<std::ptrdiff_t>(term));
   for (SmoothingTerm& each : smoothing) {

@@ -22,6 +22,7 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
       threads_(threads),
       base_parameters_(problem.jacobian.cols()),
       parts_(parts.empty() ? std::vector<Eigen::Index>{0, problem.jacobian.rows()} : std::move(parts)),
+      jacobian_(problem.jacobian),
       accepted_(part_count()),
       precision_(problem.prior_precision.size() > 0
                      ? problem.prior_precision
@@ -32,25 +33,40 @@ Projector::Projector(const NoiseProblem& problem, const NoiseData& data,
                                    : Eigen::VectorXd(Eigen::VectorXd::Zero(base_parameters_));
   pull_ = precision_ * mean;
   prior_squares_ = mean.dot(pull_);
-  std::vector<Eigen::MatrixXd> whitened(part_count()), residual(part_count());
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    Eigen::MatrixXd rows(part_rows(part), base_parameters_ + 1);
-    rows << problem.jacobian.middleRows(parts_[part], part_rows(part)),
-        problem.residual.segment(parts_[part], part_rows(part));
-    whitened[part] = whitener_->whiten_part(static_cast<std::size_t>(parts_[part]), rows);
-    residual[part] = whitened[part].rightCols(1);
-    accepted_[part].resize(whitened[part].rows(), 0);
-  });
-  whitened_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(whitened));
-  residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(residual));
-  if (problem.local && problem.local->columns() > 0) {
-    std::vector<std::vector<std::size_t>> order;
-    for (std::size_t part = 0; part < part_count(); ++part)
-      order.push_back(whitener_->order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
-    local_product_ = std::make_shared<const LocalProduct>(problem.local, order);
-  }
-  find_gram();
+  set_local(problem);
+  whiten_model(problem.residual);
   factorise();
+}
+
+void Projector::set_local(const NoiseProblem& problem) {
+  if (!problem.local || problem.local->columns() == 0) return;
+  std::vector<std::vector<std::size_t>> order;
+  for (std::size_t part = 0; part < part_count(); ++part)
+    order.push_back(whitener_->order_of_part(static_cast<std::size_t>(parts_[part]), part_rows(part)));
+  local_product_ = std::make_shared<const LocalProduct>(problem.local, order);
+}
+
+/// Their products, and what of them is kept.
+void Projector::whiten_model(const Eigen::VectorXd& residual) {
+  std::vector<Eigen::MatrixXd> others(part_count()), residuals(part_count()), products(part_count());
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    const auto first = static_cast<std::size_t>(parts_[part]);
+    residuals[part] = whitened_part(part, residual);
+    Eigen::MatrixXd rows(residuals[part].rows(), base_parameters_ + 1);
+    whitener_->whiten_part(first, jacobian_.middleRows(parts_[part], part_rows(part)),
+                           rows.leftCols(base_parameters_));
+    rows.rightCols(1) = residuals[part];
+    products[part] = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+    add_gram_upper(rows, 1.0, products[part]);
+    others[part] = rows.middleCols(local_columns(), other_columns());
+    accepted_[part].resize(rows.rows(), 0);
+  });
+  gram_ = std::move(products[0]);
+  for (std::size_t part = 1; part < part_count(); ++part) gram_ += products[part];
+  symmetrise_from_upper(gram_);
+  residual_squares_ = gram_(base_parameters_, base_parameters_);
+  others_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(others));
+  residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(residuals));
 }
 
 Projector Projector::with_residual(const Eigen::VectorXd& residual) const {
@@ -60,38 +76,17 @@ Projector Projector::with_residual(const Eigen::VectorXd& residual) const {
   return other;
 }
 
-/// Without accepted columns.
-void Projector::find_gram() {
-  const Eigen::Index count = parameters();
-  std::vector<Eigen::MatrixXd> products(part_count());
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    products[part] = Eigen::MatrixXd::Zero(count + 1, count + 1);
-    add_gram_upper((*whitened_)[part], 1.0, products[part]);
-  });
-  gram_ = std::move(products[0]);
-  for (std::size_t part = 1; part < part_count(); ++part) gram_ += products[part];
-  symmetrise_from_upper(gram_);
-  residual_squares_ = gram_(count, count);
-}
-
 /// And its products with the columns of the model and those that were accepted.
 void Projector::replace_residual(const Eigen::VectorXd& residual) {
   const Eigen::Index count = parameters();
-  std::vector<Eigen::MatrixXd> whitened(part_count()), products(part_count());
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    whitened[part] = whitened_part(part, residual);
-    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_, 1);
-    add_transposed_product(base_columns(part), whitened[part], with_base);
-    Eigen::MatrixXd with_accepted = Eigen::MatrixXd::Zero(accepted(), 1);
-    if (accepted() > 0) add_transposed_product(accepted_[part], whitened[part], with_accepted);
-    products[part].resize(count + 1, 1);
-    products[part] << with_base, with_accepted, whitened[part].squaredNorm();
-  });
-  Eigen::VectorXd sum = products[0];
-  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
-  gram_.col(count) = sum;
-  gram_.row(count) = sum.transpose();
-  residual_squares_ = sum[count];
+  std::vector<Eigen::MatrixXd> whitened(part_count());
+  const Eigen::MatrixXd products = products_of(
+      residual, [&](std::size_t part, Eigen::MatrixXd rows) { whitened[part] = std::move(rows); });
+  residual_squares_ = 0.0;
+  for (const Eigen::MatrixXd& rows : whitened) residual_squares_ += rows.squaredNorm();
+  gram_.col(count).head(count) = products.col(0).head(count);
+  gram_.row(count).head(count) = products.col(0).head(count).transpose();
+  gram_(count, count) = residual_squares_;
   residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(whitened));
 }
 
@@ -149,7 +144,7 @@ bool Projector::extend_factor(Eigen::Index more) {
 
 Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const {
   PartialProducts products;
-  products.with_others.setZero(base_parameters_ - local_columns(), columns);
+  products.with_others.setZero(other_columns(), columns);
   products.with_residual.setZero(1, columns);
   products.with_accepted.setZero(accepted(), columns);
   if (local_product_) {
@@ -162,7 +157,7 @@ Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const 
 Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd& rows,
                                         PartialProducts& products) const {
   const auto first = static_cast<std::size_t>(parts_[part]);
-  const auto others = base_columns(part).rightCols(base_parameters_ - local_columns());
+  const Eigen::MatrixXd& others = (*others_)[part];
   Eigen::MatrixXd whitened;
   if (!local_product_) {
     whitened = whitener_->whiten_part(first, rows);
@@ -185,7 +180,7 @@ Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd&
 
 Eigen::MatrixXd Projector::combined(const PartialProducts& products, Eigen::Index columns) const {
   Eigen::MatrixXd all(parameters() + 1, columns);
-  all.middleRows(local_columns(), base_parameters_ - local_columns()) = products.with_others;
+  all.middleRows(local_columns(), other_columns()) = products.with_others;
   all.middleRows(base_parameters_, accepted()) = products.with_accepted;
   all.bottomRows(1) = products.with_residual;
   for (Eigen::Index column = 0; column < columns && local_product_; column += kColumnBlock) {
@@ -234,11 +229,23 @@ ProjectedColumns Projector::project(const Eigen::MatrixXd& columns) const {
                   }});
 }
 
+Eigen::MatrixXd Projector::products_of(const Eigen::MatrixXd& columns,
+                                       const std::function<void(std::size_t, Eigen::MatrixXd)>& visit) const {
+  std::vector<Eigen::MatrixXd> products(part_count());
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
+    PartialProducts partial = zero_products(columns.cols());
+    visit(part, add_products(part, columns.middleRows(parts_[part], part_rows(part)), partial));
+    products[part] = combined(partial, columns.cols());
+  });
+  Eigen::MatrixXd sum = std::move(products[0]);
+  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
+  return sum;
+}
+
 Eigen::MatrixXd Projector::imitation(const Eigen::MatrixXd& columns) const {
-  PartialProducts partial = zero_products(columns.cols());
-  for (std::size_t part = 0; part < part_count(); ++part)
-    add_products(part, columns.middleRows(parts_[part], part_rows(part)), partial);
-  Eigen::MatrixXd rotated = scale_.asDiagonal() * combined(partial, columns.cols()).topRows(parameters());
+  Eigen::MatrixXd rotated =
+      scale_.asDiagonal() *
+      products_of(columns, [](std::size_t, const Eigen::MatrixXd&) {}).topRows(parameters());
   solve_lower(lower_, rotated);
   return scale_.asDiagonal() * lower_.triangularView<Eigen::Lower>().transpose().solve(rotated).eval();
 }
@@ -251,32 +258,24 @@ Eigen::MatrixXd Projector::whitened_part(std::size_t part, const Eigen::MatrixXd
 void Projector::accept(const Eigen::MatrixXd& columns) {
   const Eigen::Index before = parameters(), more = columns.cols();
   if (more == 0) return;
-  std::vector<Eigen::MatrixXd> products(part_count());  // with base columns, residual, accepted ones, own
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    const Eigen::MatrixXd added = whitened_part(part, columns);
+  std::vector<Eigen::MatrixXd> added(part_count());
+  const Eigen::MatrixXd products =
+      products_of(columns, [&](std::size_t part, Eigen::MatrixXd rows) { added[part] = std::move(rows); });
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(more, more);
+  for (std::size_t part = 0; part < part_count(); ++part) {
+    add_gram_upper(added[part], 1.0, own);
     Eigen::MatrixXd& all = accepted_[part];
     all.conservativeResize(Eigen::NoChange, all.cols() + more);
-    all.rightCols(more) = added;
-    Eigen::MatrixXd with_base = Eigen::MatrixXd::Zero(base_parameters_, more);
-    add_transposed_product(base_columns(part), added, with_base);
-    Eigen::MatrixXd with_residual = Eigen::MatrixXd::Zero(1, more);
-    add_transposed_product((*residual_)[part], added, with_residual);
-    Eigen::MatrixXd with_accepted = Eigen::MatrixXd::Zero(all.cols(), more);
-    add_transposed_product(all, added, with_accepted);
-    products[part].resize(with_base.rows() + 1 + with_accepted.rows(), more);
-    products[part] << with_base, with_residual, with_accepted;
-  });
-  Eigen::MatrixXd sum = std::move(products[0]);
-  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
+    all.rightCols(more) = added[part];
+  }
   const Eigen::Index count = before + more;
   Eigen::MatrixXd gram(count + 1, count + 1);
   gram.topLeftCorner(before, before) = gram_.topLeftCorner(before, before);
   gram.col(count).head(before) = gram_.col(before).head(before);
   gram(count, count) = gram_(before, before);
-  gram.block(0, before, base_parameters_, more) = sum.topRows(base_parameters_);
-  gram.block(base_parameters_, before, count - base_parameters_, more) =
-      sum.bottomRows(count - base_parameters_);
-  gram.col(count).segment(before, more) = sum.row(base_parameters_).transpose();
+  gram.block(0, before, before, more) = products.topRows(before);
+  gram.block(before, before, more, more) = own;
+  gram.col(count).segment(before, more) = products.row(before).transpose();
   symmetrise_from_upper(gram);
   gram_ = std::move(gram);
   if (!extend_factor(more)) factorise();
@@ -288,7 +287,9 @@ Eigen::VectorXd Projector::solution() const {
 
 Eigen::MatrixXd Projector::left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
                                         const Eigen::MatrixXd& at) const {
-  Eigen::MatrixXd left = whitened - base_columns(part) * at.topRows(base_parameters_);
+  const Eigen::MatrixXd imitated =
+      jacobian_.middleRows(parts_[part], part_rows(part)) * at.topRows(base_parameters_);
+  Eigen::MatrixXd left = whitened - whitener_->whiten_part(static_cast<std::size_t>(parts_[part]), imitated);
   if (accepted() > 0) left -= accepted_[part] * at.bottomRows(accepted());
   return left;
 }
@@ -302,16 +303,18 @@ void Projector::put_in_place(std::size_t part, const Eigen::MatrixXd& rows, Eige
 Eigen::VectorXd Projector::weighed_residual() const {
   const Eigen::VectorXd at = solution();
   Eigen::MatrixXd whitened = Eigen::MatrixXd::Zero(parts_.back(), 1);
-  for (std::size_t part = 0; part < part_count(); ++part)
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
     put_in_place(part, left_of_part(part, (*residual_)[part], at), whitened);
+  });
   return whitener_->whiten_transposed(whitened.col(0));
 }
 
 Eigen::MatrixXd Projector::weighed_projection(const Eigen::MatrixXd& columns) const {
   const Eigen::MatrixXd at = imitation(columns);
   Eigen::MatrixXd weighed = Eigen::MatrixXd::Zero(parts_.back(), columns.cols());
-  for (std::size_t part = 0; part < part_count(); ++part)
+  run_parallel(part_count(), threads_, [&](std::size_t part) {
     put_in_place(part, left_of_part(part, whitened_part(part, columns), at), weighed);
+  });
   for (Eigen::Index k = 0; k < weighed.cols(); ++k)
     weighed.col(k) = whitener_->whiten_transposed(weighed.col(k));
   return weighed;

@@ -8,7 +8,8 @@
 ///
 /// (added variables in generalised least squares; the prior counts as further observations). Nothing of size
 /// N x N and no orthogonal basis is formed. Where the problem tells which columns are local (local_rows.h),
-/// their part of b is J^T (Sigma^-1 g), knot cell by knot cell; equal to rounding.
+/// their part of b is J^T (Sigma^-1 g), knot cell by knot cell, equal to rounding, and no whitened row of
+/// them is kept: hundreds of megabytes at 10^5 readings.
 
 #include <Eigen/Core>
 #include <functional>
@@ -104,12 +105,13 @@ class Projector {
     std::vector<Eigen::MatrixXd> with_local;  ///< of kColumnBlock columns each
   };
 
-  void find_gram();
+  void set_local(const NoiseProblem& problem);
+  void whiten_model(const Eigen::VectorXd& residual);
   void replace_residual(const Eigen::VectorXd& residual);
   void factorise();
   void rotate_residual();
   bool extend_factor(Eigen::Index more);
-  /// L^-1 (rows - rows of the model times `at`), whitened, of a part.
+  /// `whitened` rows of a part less L^-1 of the model's rows times `at`.
   Eigen::MatrixXd left_of_part(std::size_t part, const Eigen::MatrixXd& whitened,
                                const Eigen::MatrixXd& at) const;
   /// Puts whitened rows of a part at their observations.
@@ -117,13 +119,17 @@ class Projector {
   /// L^-1 rows of a part of all observations.
   Eigen::MatrixXd whitened_part(std::size_t part, const Eigen::MatrixXd& columns) const;
   PartialProducts zero_products(Eigen::Index columns) const;
+  /// Products of all columns, those with the residual last, parts added up; a part's whitened columns go to
+  /// `visit(part, whitened)`, from several threads at once.
+  Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns,
+                              const std::function<void(std::size_t, Eigen::MatrixXd)>& visit) const;
   /// Adds the products with a part's rows; gives L^-1 rows.
   Eigen::MatrixXd add_products(std::size_t part, const Eigen::MatrixXd& rows,
                                PartialProducts& products) const;
   /// (parameters + 1) x columns, those with the residual last.
   Eigen::MatrixXd combined(const PartialProducts& products, Eigen::Index columns) const;
   Eigen::Index local_columns() const { return local_product_ ? local_product_->columns() : 0; }
-  auto base_columns(std::size_t part) const { return (*whitened_)[part].leftCols(base_parameters_); }
+  Eigen::Index other_columns() const { return base_parameters_ - local_columns(); }
   std::size_t part_count() const { return parts_.size() - 1; }
   Eigen::Index part_rows(std::size_t part) const { return parts_[part + 1] - parts_[part]; }
 
@@ -132,8 +138,9 @@ class Projector {
   std::shared_ptr<const LocalProduct> local_product_;
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
-  /// Per part, (observations in use) x (base parameters + 1), the residual that it was made with last.
-  std::shared_ptr<const std::vector<Eigen::MatrixXd>> whitened_;
+  SharedMatrix jacobian_;
+  /// Per part, (observations in use) x columns: whitened, those of the model that are not local.
+  std::shared_ptr<const std::vector<Eigen::MatrixXd>> others_;
   std::shared_ptr<const std::vector<Eigen::MatrixXd>> residual_;  ///< per part, one column
   std::vector<Eigen::MatrixXd> accepted_;                         ///< per part, the same of accepted columns
   Eigen::MatrixXd precision_;                                     ///< of the base parameters, not scaled

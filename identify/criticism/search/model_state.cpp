@@ -157,8 +157,9 @@ NoiseEstimate ModelState::readjusted_noise(const Projector& without_effects) con
   with_effects.accept(columns);
   const Eigen::VectorXd solution = with_effects.solution();
   NoiseProblem left;
-  left.jacobian = columns;
-  left.jacobian.noalias() -= own.jacobian * without_effects.imitation(columns).topRows(own.jacobian.cols());
+  Eigen::MatrixXd apart = columns;
+  apart.noalias() -= own.jacobian * without_effects.imitation(columns).topRows(own.jacobian.cols());
+  left.jacobian = std::move(apart);
   left.residual = own.residual - own.jacobian * solution.head(own.jacobian.cols()) -
                   columns * solution.tail(columns.cols());
   left.data = own.data;
@@ -245,7 +246,16 @@ Eigen::VectorXd ModelState::residual() const {
 
 NoiseProblem ModelState::problem() const {
   NoiseProblem problem = model_.problem();
-  for (const AddedEffect& effect : added_) append_columns(effect.columns, problem.jacobian);
+  if (added_.empty()) return problem;
+  Eigen::Index at = problem.jacobian.cols(), all = at;
+  for (const AddedEffect& effect : added_) all += effect.columns.cols();
+  Eigen::MatrixXd columns(problem.jacobian.rows(), all);
+  columns.leftCols(at) = problem.jacobian;
+  for (const AddedEffect& effect : added_) {
+    columns.middleCols(at, effect.columns.cols()) = effect.columns;
+    at += effect.columns.cols();
+  }
+  problem.jacobian = std::move(columns);
   const Eigen::Index before = problem.prior_mean.size(), count = problem.jacobian.cols();
   Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
   precision.topLeftCorner(before, before) = problem.prior_precision;

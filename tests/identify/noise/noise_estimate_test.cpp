@@ -165,8 +165,10 @@ TEST(NoiseEstimate, BeginsAtThePreviousEnd) {
   NoiseProblem problem = grid(generator, {1.0, 0.5e-6, 60.0, 0.4e-6, 0.0}, {8, 5, 4}, 3);
   const NoiseEstimate before = estimate_noise(problem);
   const Eigen::Index p = problem.jacobian.cols();
-  problem.jacobian.conservativeResize(Eigen::NoChange, p + 1);
-  problem.jacobian.col(p) = test::random_matrix(generator, problem.jacobian.rows(), 1);
+  problem.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, p + 1);
+    jacobian.col(p) = test::random_matrix(generator, jacobian.rows(), 1);
+  });
   if (problem.prior_precision.size() > 0) {
     problem.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(p + 1, p + 1));
   }
@@ -193,8 +195,10 @@ TEST(NoiseEstimate, ReadjustedToWhatAColumnExplains) {
   ASSERT_GT(before.instruments[0].parameters.line, 1e-6);
 
   NoiseProblem all = problem;
-  all.jacobian.conservativeResize(Eigen::NoChange, p + 1);
-  all.jacobian.col(p) = column.col(0);
+  all.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, p + 1);
+    jacobian.col(p) = column.col(0);
+  });
   if (all.prior_precision.size() > 0)
     all.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(p + 1, p + 1));
   const NoiseEstimate anew = estimate_noise(all);
@@ -218,8 +222,8 @@ TEST(NoiseEstimate, ReadjustedToWhatAColumnExplains) {
 
   // Nothing added: nothing to give back.
   few.residual = problem.residual - problem.jacobian * solved(problem.jacobian, problem.residual);
-  few.jacobian = test::random_matrix(generator, count, 1);
-  few.jacobian -= problem.jacobian * solved(problem.jacobian, few.jacobian);
+  const Eigen::MatrixXd other = test::random_matrix(generator, count, 1);
+  few.jacobian = other - problem.jacobian * solved(problem.jacobian, other);
   const NoiseEstimate same = readjust_noise(few, {}, before);
   EXPECT_NEAR(std::log(same.instruments[0].parameters.line / before.instruments[0].parameters.line), 0.0,
               0.05);

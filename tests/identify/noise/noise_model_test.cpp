@@ -255,5 +255,48 @@ TEST(Whitener, RefusesWhatIsNoNoise) {
   EXPECT_THROW(Whitener(good, one).whiten(Eigen::MatrixXd::Zero(3, 1), out, 1), std::invalid_argument);
 }
 
+/// Many noise models side by side give what each gives by dense algebra.
+TEST(Whitener, MisfitsOfManyModels) {
+  std::mt19937_64 generator(21);
+  std::uniform_real_distribution<double> uniform;
+  for (const Lines lines : {Lines::None, Lines::Following}) {
+    for (const bool timed : {true, false}) {
+      Sample sample = random_sample(generator, lines, timed, true);
+      for (NoiseSequence& sequence : sample.data.sequences) sequence.group = 0;
+      const Eigen::VectorXd column =
+          test::random_matrix(generator, static_cast<Eigen::Index>(sample.data.sigma.size()), 1);
+      std::vector<NoiseParameters> noises;
+      for (int k = 0; k < 19; ++k) {
+        noises.push_back({0.5 + uniform(generator), k % 4 == 0 ? 0.0 : uniform(generator),
+                          1.0 + 50.0 * uniform(generator), k % 5 == 0 ? 0.0 : uniform(generator),
+                          uniform(generator)});
+        if (k % 3 == 0) noises.back().tau = noises.front().tau;
+      }
+      const Whitener whitener(sample.data, {noises.data(), 1});
+      ASSERT_FALSE(whitener.has_open_lines());
+      const std::vector<double> found = whitener.misfits(noises, column, 1);
+      EXPECT_EQ(found, whitener.misfits(noises, column, 3));
+      for (std::size_t k = 0; k < noises.size(); ++k) {
+        sample.noise.assign(1, noises[k]);
+        const auto [kept, covariance] = dense(sample);
+        const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+        const Eigen::VectorXd used = column(kept);
+        const double expected = 2.0 * Eigen::MatrixXd(factor.matrixL()).diagonal().array().log().sum() +
+                                used.dot(factor.solve(used));
+        EXPECT_NEAR(found[k], expected, 1e-9 * std::abs(expected)) << k;
+      }
+    }
+  }
+}
+
+TEST(Whitener, MisfitsTakeOneLineAtATime) {
+  std::mt19937_64 generator(22);
+  Sample sample = random_sample(generator, Lines::Resumed, true, false);
+  const Eigen::VectorXd column = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(sample.data.sigma.size()));
+  const Whitener two_groups(sample.data, sample.noise);
+  EXPECT_TRUE(two_groups.has_open_lines());
+  EXPECT_THROW(two_groups.misfits(sample.noise, column, 1), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace volcal

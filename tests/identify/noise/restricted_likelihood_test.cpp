@@ -147,9 +147,11 @@ TEST(RestrictedLikelihood, DependentColumnsAreLeftOut) {
   RestrictedLikelihood likelihood(problem, 1);
   const Eigen::Index p = problem.jacobian.cols();
   NoiseProblem twice = problem;
-  twice.jacobian.conservativeResize(Eigen::NoChange, p + 2);
-  twice.jacobian.col(p) = problem.jacobian.col(0) - 2.0 * problem.jacobian.col(3);
-  twice.jacobian.col(p + 1).setZero();
+  twice.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, p + 2);
+    jacobian.col(p) = problem.jacobian.col(0) - 2.0 * problem.jacobian.col(3);
+    jacobian.col(p + 1).setZero();
+  });
   RestrictedLikelihood same(twice, 1);
   EXPECT_EQ(same.variables(), p);
   const std::vector<NoiseParameters> other{{1.0, 0.1e-6, 100.0, 0.5e-6, 0.0},

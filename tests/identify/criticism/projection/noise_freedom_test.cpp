@@ -23,7 +23,7 @@ NoiseProblem balanced_layout(double line_offset) {
   std::normal_distribution<double> normal;
   NoiseProblem problem;
   NoiseSequence sequence;
-  problem.jacobian.setOnes(kAll, 1);
+  problem.jacobian = Eigen::MatrixXd::Ones(kAll, 1);
   problem.residual.resize(kAll);
   double offset = 0.0;
   for (Eigen::Index i = 0; i < kAll; ++i) {

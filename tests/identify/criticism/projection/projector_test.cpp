@@ -166,8 +166,10 @@ TEST(Projector, LocalColumnsChangeNothing) {
   const Eigen::MatrixXd others = problem.jacobian;
   Eigen::MatrixXd local_columns;
   const auto local = std::make_shared<LocalRows>(random_local_rows(random, local_columns));
-  problem.jacobian.resize(kObservations, local_columns.cols() + others.cols());
-  problem.jacobian << local_columns, others;
+  problem.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.resize(kObservations, local_columns.cols() + others.cols());
+    jacobian << local_columns, others;
+  });
   const Eigen::Index p = problem.jacobian.cols();
   problem.prior_precision = 0.1 * Eigen::MatrixXd::Identity(p, p);
   problem.prior_mean = random_matrix(random, p, 1);
@@ -259,8 +261,10 @@ TEST(Projector, AcceptedColumnsAreExplained) {
 NoiseProblem with_columns(const NoiseProblem& problem, const Eigen::MatrixXd& columns) {
   NoiseProblem larger = problem;
   const Eigen::Index before = problem.jacobian.cols(), count = before + columns.cols();
-  larger.jacobian.conservativeResize(Eigen::NoChange, count);
-  larger.jacobian.rightCols(columns.cols()) = columns;
+  larger.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, count);
+    jacobian.rightCols(columns.cols()) = columns;
+  });
   larger.prior_precision = Eigen::MatrixXd::Zero(count, count);
   larger.prior_precision.topLeftCorner(before, before) = problem.prior_precision;
   larger.prior_mean = Eigen::VectorXd::Zero(count);
@@ -311,7 +315,7 @@ TEST(Projector, AcceptsColumnsOfAModelThatIsNotDetermined) {
   EXPECT_TRUE(own.is_regular());
   own.accept(problem.jacobian.col(2));
   EXPECT_TRUE(own.solution().allFinite());
-  problem.jacobian.col(3).setZero();
+  problem.jacobian.edit([](Eigen::MatrixXd& jacobian) { jacobian.col(3).setZero(); });
   const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
   const NoiseProblem larger = with_columns(problem, columns);
   Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);

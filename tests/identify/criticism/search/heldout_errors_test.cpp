@@ -26,7 +26,7 @@ struct Example {
   Eigen::MatrixXd sigma = Eigen::MatrixXd::Zero(kHeldoutReadings, kHeldoutReadings);  // by its formula
 
   Example() {
-    problem.jacobian.setZero(kHeldoutReadings, 1 + kSetups);
+    problem.jacobian = Eigen::MatrixXd::Zero(kHeldoutReadings, 1 + kSetups);
     problem.residual.setZero(kHeldoutReadings);
     problem.prior_precision = Eigen::Vector3d(2.0, 0.0, 0.0).asDiagonal();
     problem.data.sigma.assign(kHeldoutReadings, 1.0);
@@ -43,8 +43,10 @@ struct Example {
     }
     for (Eigen::Index i = 0; i < kOfSetup; ++i) {
       const Eigen::Index row = setup * kOfSetup + i;
-      problem.jacobian(row, 0) = std::sin(0.3 * static_cast<double>(i));
-      problem.jacobian(row, 1 + setup) = 1.0;
+      problem.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+        jacobian(row, 0) = std::sin(0.3 * static_cast<double>(i));
+        jacobian(row, 1 + setup) = 1.0;
+      });
       heldout.push_back((row / 8) % 4 == 3);
       for (Eigen::Index j = 0; j < kOfSetup; ++j) {
         const Eigen::Index other = setup * kOfSetup + j;
@@ -119,11 +121,13 @@ TEST(HeldoutErrors, AcceptedColumnsGiveThoseOfAModelWithThem) {
   const Example example;
   NoiseProblem larger = example.problem;
   const Eigen::Index before = larger.jacobian.cols();
-  larger.jacobian.conservativeResize(Eigen::NoChange, before + 2);
-  for (Eigen::Index i = 0; i < larger.jacobian.rows(); ++i) {
-    larger.jacobian(i, before) = std::sin(0.7 * static_cast<double>(i));
-    larger.jacobian(i, before + 1) = i % 3 == 0 ? 1.0 : -0.4;
-  }
+  larger.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
+    jacobian.conservativeResize(Eigen::NoChange, before + 2);
+    for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
+      jacobian(i, before) = std::sin(0.7 * static_cast<double>(i));
+      jacobian(i, before + 1) = i % 3 == 0 ? 1.0 : -0.4;
+    }
+  });
   larger.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(before + 2, before + 2));
   const Eigen::MatrixXd columns = larger.jacobian.rightCols(2);
   Projector projector = example.projector(example.problem);

@@ -347,6 +347,8 @@ TEST(ScanVariables, OfAnEffect) {
   EXPECT_EQ(names({"run-offset", "readings of S1", "run 2", "step"}), (Names{"run"}));
   EXPECT_EQ(names({"ball-bar-length", "readings", "ball-bar", "step"}), Names{"instrument ball-bar"});
   EXPECT_EQ(names({"tracker-angles", "readings", "azimuth", "periodic"}), Names{});
+  EXPECT_EQ(names({"empirical", "EXX", "t since_x", "surface"}), (Names{"time", "travel since dir_x"}))
+      << "as users write of them";
 }
 
 }  // namespace

@@ -74,17 +74,17 @@ Conditions stated_conditions(const FitResult& result, const std::map<std::string
   Conditions conditions = default_conditions(result);
   for (const auto& [name, text] : given) {
     const double value = number_of(name, text);
-    const Variable variable = variable_named(name).value_or(Variable{Variable::Kind::Run});
-    if (variable.kind == Variable::Kind::Temperature &&
-        conditions.temperature_degC.contains(variable.subject)) {
+    const auto variable = variable_named(name);
+    const auto is = [&](Variable::Kind kind) { return variable && variable->kind == kind; };
+    if (is(Variable::Kind::Temperature) && conditions.temperature_degC.contains(variable->subject)) {
       require_plausible(name, value, -80.0, 200.0);
-      conditions.temperature_degC[variable.subject] = value;
-    } else if (variable.kind == Variable::Kind::Time && conditions.time) {
+      conditions.temperature_degC[variable->subject] = value;
+    } else if (is(Variable::Kind::Time) && conditions.time) {
       require_plausible(name, value, -1e9, 1e9);
       conditions.time = value;
-    } else if (variable.kind == Variable::Kind::Feed && conditions.feed) {
+    } else if (is(Variable::Kind::Feed) && conditions.feed) {
       require_plausible(name, value, 0.0, 1e6);
-      conditions.feed = value * variable.unit().si_per_unit;
+      conditions.feed = value * variable->unit().si_per_unit;
     } else {
       throw InputError({}, "--conditions " + name + ": the result does not know this condition",
                        recorded_names(result));

@@ -1,16 +1,15 @@
 #include "volcal/model/effects/shared_motions.h"
 
 #include <algorithm>
-#include <iterator>
 #include <set>
-#include <sstream>
+
+#include "volcal/model/description/variable.h"
 
 namespace volcal {
 namespace {
 
 std::vector<std::string> words_of(const EffectTable& table, const char* key, const char* remedy) {
-  std::istringstream text(table.text(key, remedy));
-  std::vector<std::string> words{std::istream_iterator<std::string>(text), {}};
+  std::vector<std::string> words = words_in(table.text(key, remedy));
   if (words.size() < 2) table.fail("one cause in several places needs two or more", remedy);
   if (std::set<std::string>(words.begin(), words.end()).size() < words.size())
     table.fail("it names one twice", remedy);

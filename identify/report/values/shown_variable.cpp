@@ -50,9 +50,11 @@ std::string title_of(const Variable& variable) {
 
 ShownVariable shown_variable(const Variable& variable) {
   if (variable.kind == Kind::Time) return {title_of(variable), "min", 1.0 / kSecondsPerMinute};
-  const Unit unit = variable.unit();
-  const std::string text = variable.kind == Kind::Temperature ? "°C" : unit_text(unit.suffix);
-  return {title_of(variable), text, 1.0 / unit.si_per_unit};
+  return {title_of(variable), shown_unit_of(variable), 1.0 / variable.unit().si_per_unit};
+}
+
+std::string shown_unit_of(const Variable& variable) {
+  return variable.kind == Kind::Temperature ? "°C" : unit_text(variable.unit().suffix);
 }
 
 ShownVariable shown_variable(const std::string& name) {

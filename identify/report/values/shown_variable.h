@@ -13,7 +13,10 @@ struct ShownVariable {
   double factor = 1.0;  ///< edge value = factor x SI value
 };
 
+/// Time in min, all else in the unit in which users write of it.
 ShownVariable shown_variable(const Variable& variable);
+/// That unit: "mm", "°C", "mm/min"; empty for what has none.
+std::string shown_unit_of(const Variable& variable);
 /// By the name of a variable, or of what groups readings: "setup", "station", "tool".
 ShownVariable shown_variable(const std::string& name);
 

@@ -166,6 +166,14 @@ TEST(DiagnosisJson, SaysWhatIsWrongWithAFile) {
   Json document = written();
   document["verdict"] = "PERHAPS";
   EXPECT_THAT(message(document.dump()), HasSubstr("PERHAPS"));
+  const auto with = [](const char* key, const Json& value) {
+    Json changed = written();
+    changed.at("unknown").at(0)[key] = value;
+    return changed.dump();
+  };
+  EXPECT_THAT(message(with("variables", {"x", "humour"})), HasSubstr("\"humour\" is no variable"));
+  EXPECT_THAT(message(with("direction", "upwards")), HasSubstr("\"upwards\" is no direction of a scan"));
+  EXPECT_THAT(message(with("rotation", "EQX")), HasSubstr("\"EQX\" is no error motion"));
   const testing::ScratchFolder folder;
   EXPECT_THROW(read_diagnosis(folder.path().string()), InputError);
 }

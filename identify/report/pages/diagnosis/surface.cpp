@@ -4,6 +4,7 @@
 
 #include "volcal/identify/report/finding_json.h"
 #include "volcal/identify/report/numbers.h"
+#include "volcal/identify/report/values/shown_variable.h"
 #include "volcal/identify/result/result.h"
 
 namespace volcal::report {
@@ -11,8 +12,7 @@ namespace {
 
 /// "y [mm]", "t [s]", "T_column [°C]", "c [°]".
 std::string axis_title(const Variable& driver) {
-  const std::string unit =
-      driver.kind == Variable::Kind::Temperature ? "°C" : unit_text(driver.unit().suffix);
+  const std::string unit = shown_unit_of(driver);
   return driver.written() + (unit.empty() ? "" : " [" + unit + "]");
 }
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <sstream>
 
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/formula_effect.h"
 #include "volcal/model/effects/registry.h"
 
@@ -42,9 +42,8 @@ std::string driver_text(const Factors& factors) {
 Factors factors_of(const EffectTable& table) {
   const std::string remedy = "write axes = \"Y Z Z\" for y z^2";
   const std::string text = table.text("axes", remedy);
-  std::istringstream words(text);
   std::vector<AxisName> axes;
-  for (std::string word; words >> word;) {
+  for (const std::string& word : words_in(text)) {
     const auto axis = word.size() == 1 ? axis_from_letter(word[0]) : std::nullopt;
     if (!axis) table.fail("\"" + word + "\" is no axis", remedy);
     axes.push_back(*axis);

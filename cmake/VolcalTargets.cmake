@@ -31,9 +31,9 @@ endfunction()
 
 # With VOLCAL_UNITY_BUILD neighbouring files of a target are compiled together, as many as VOLCAL_UNITY_SIZE and all groups
 # of one size, so that the headers they share are read once and a template is instantiated once. Names in unnamed
-# namespaces are therefore unique within a target. A file that renames what it includes (VOLCAL_VECTOR_LOOPS), or is
-# for one instruction set, is compiled alone, and so is one that lists what is registered: another list can then take
-# its place when a program is linked.
+# namespaces are therefore unique within a target (scripts/check-names). A file that renames what it includes
+# (VOLCAL_VECTOR_LOOPS), or is for one instruction set, is compiled alone, and so is one that lists what is registered:
+# another list can then take its place when a program is linked.
 function(volcal_unity_build target)
   if(NOT VOLCAL_UNITY_BUILD)
     return()

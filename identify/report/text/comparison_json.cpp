@@ -16,18 +16,18 @@ Json micro(const std::optional<double>& value) { return value ? Json(*value / kM
 Json micro(double value) { return value / kMicro; }
 Json micro(const Eigen::Vector3d& v) { return {v.x() / kMicro, v.y() / kMicro, v.z() / kMicro}; }
 
-Json size_json(const ResidualSize& size) {
+Json written_size(const ResidualSize& size) {
   return {{"n", size.count}, {"mean", micro(size.mean)}, {"rms", micro(size.rms)}, {"max", micro(size.max)}};
 }
 
-Json cell_json(const ComparisonCell& cell) {
+Json written_cell(const ComparisonCell& cell) {
   Json json = {{"label", cell.label},
                {"observations", cell.observations},
                {"chi2", cell.chi2},
                {"dof", cell.dof},
                {"reduced_chi2", cell.reduced_chi2()}};
-  if (cell.lengths.count > 0) json["lengths_um"] = size_json(cell.lengths);
-  if (cell.angles.count > 0) json["angles_urad"] = size_json(cell.angles);
+  if (cell.lengths.count > 0) json["lengths_um"] = written_size(cell.lengths);
+  if (cell.angles.count > 0) json["angles_urad"] = written_size(cell.angles);
   json["probability"] = cell.probability;
   json["significant"] = cell.significant;
   json["stands_out"] = cell.stands_out;
@@ -77,7 +77,7 @@ Json circular_json(const CircleTest& test, const CircularFigures& figures) {
           {"reversals", reversals}};
 }
 
-Json volumetric_json(const VolumetricFigures& figures) {
+Json written_volumetric(const VolumetricFigures& figures) {
   return {{"points", figures.points},
           {"range_um", micro(figures.range)},
           {"rms_um", micro(figures.rms)},
@@ -196,9 +196,9 @@ Json figures_json(const StandardFigures& figures) {
   }
   for (const PointsTest& test : figures.points) {
     json["volumetric"].push_back({{"setup", test.setup},
-                                  {"readings", volumetric_json(test.figures.readings)},
-                                  {"model", volumetric_json(test.figures.model)},
-                                  {"difference", volumetric_json(test.difference)}});
+                                  {"readings", written_volumetric(test.figures.readings)},
+                                  {"model", written_volumetric(test.figures.model)},
+                                  {"difference", written_volumetric(test.difference)}});
     add_findings("notes", test.notes, json["volumetric"].back());
   }
   add_rotary_figures(figures, json);
@@ -230,7 +230,7 @@ Json breakdowns_json(const Comparison& comparison) {
   Json breakdowns = Json::object();
   for (const Breakdown& breakdown : comparison.breakdowns) {
     Json cells = Json::array();
-    for (const ComparisonCell& cell : breakdown.cells) cells.push_back(cell_json(cell));
+    for (const ComparisonCell& cell : breakdown.cells) cells.push_back(written_cell(cell));
     breakdowns[breakdown.by] = std::move(cells);
   }
   return breakdowns;
@@ -239,7 +239,7 @@ Json breakdowns_json(const Comparison& comparison) {
 Json model_json(const Campaign& campaign, const ComparedModel& model) {
   Json json = {{"name", model.name},
                {"where_it_fails", failure_sentence(model)},
-               {"total", cell_json(model.comparison.total)},
+               {"total", written_cell(model.comparison.total)},
                {"removed", model.comparison.removed},
                {"cells_tested", model.comparison.cells},
                {"by", breakdowns_json(model.comparison)},
@@ -267,7 +267,7 @@ std::string comparison_json(const Campaign& campaign, std::span<const ComparedMo
   for (const HeldOutModel& model : heldout) {
     json["held_out"].push_back({{"name", model.name},
                                 {"fitted_without_them", model.fitted},
-                                {"total", cell_json(model.comparison.total)},
+                                {"total", written_cell(model.comparison.total)},
                                 {"by", breakdowns_json(model.comparison)}});
   }
   return json_text(json, 2) + '\n';

@@ -22,7 +22,7 @@
 namespace volcal {
 namespace {
 
-constexpr double kRounding = 1e-15;  // of the radius
+constexpr double kOfRadius = 1e-15;  // of the radius
 
 void expect_normals(const std::vector<double>& first, const std::vector<double>& second) {
   std::vector<double> cosine = first, sine = second;
@@ -30,7 +30,7 @@ void expect_normals(const std::vector<double>& first, const std::vector<double>&
   for (std::size_t i = 0; i < first.size(); ++i) {
     const long double radius = std::sqrt(-2.0L * std::log(static_cast<long double>(first[i])));
     const long double angle = 2.0L * std::numbers::pi_v<long double> * second[i];
-    const auto tolerance = static_cast<double>(kRounding * radius);
+    const auto tolerance = static_cast<double>(kOfRadius * radius);
     EXPECT_NEAR(cosine[i], static_cast<double>(radius * std::cos(angle)), tolerance) << first[i] << second[i];
     EXPECT_NEAR(sine[i], static_cast<double>(radius * std::sin(angle)), tolerance) << first[i] << second[i];
   }

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kRounding = 1e-14;
+constexpr double kTileRounding = 1e-14;
 
 class TileKernelOn : public ::testing::TestWithParam<InstructionSet> {
  protected:
@@ -51,7 +51,7 @@ TEST_P(TileKernelOn, FormsAndAddsOuterProducts) {
         kernel_->outer_upper(rows.data(), stride, size, observations, add, product.data());
         const MatrixXd expected = (add ? 1.0 : 0.0) * before + rows * rows.transpose();
         const MatrixXd wrong = (product - expected).topLeftCorner(size, size).triangularView<Eigen::Upper>();
-        EXPECT_LT(wrong.cwiseAbs().maxCoeff(), kRounding * observations) << size << " x " << observations;
+        EXPECT_LT(wrong.cwiseAbs().maxCoeff(), kTileRounding * observations) << size << " x " << observations;
       }
     }
   }
@@ -75,7 +75,7 @@ TEST_P(TileKernelOn, Multiplies) {
         const MatrixXd expected = (add ? 1.0 : 0.0) * before.topLeftCorner(size + columns, columns) +
                                   used * used.bottomRows(columns).transpose();
         EXPECT_LT((product.topLeftCorner(size + columns, columns) - expected).cwiseAbs().maxCoeff(),
-                  kRounding * observations)
+                  kTileRounding * observations)
             << size << " x " << columns;
         EXPECT_TRUE(product.bottomRows(16) == before.bottomRows(16)) << "written beyond the rows";
       }

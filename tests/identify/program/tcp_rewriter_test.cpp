@@ -77,9 +77,9 @@ std::vector<SaidPose> said_poses(const std::string& text) {
   return poses;
 }
 
-constexpr double kToolLength = 0.18;      // m
+constexpr double kToolInHolder = 0.18;    // m
 const Vector3d kWork{0.02, -0.03, 0.02};  // m, G54
-const Vector3d kTcpTool{0.0, 0.0, -kToolLength};
+const Vector3d kTcpTool{0.0, 0.0, -kToolInHolder};
 
 Vector3d said_point(const SaidPose& pose) {
   return kWork + 1e-3 * Vector3d(pose.words.at('X'), pose.words.at('Y'), pose.words.at('Z'));
@@ -158,7 +158,7 @@ RunErrors run_on(const sim::TruthMachine& machine, const std::string& original, 
 NcSetup tcp_setup() {
   NcSetup setup;
   setup.work_offsets[0] = kWork;
-  setup.tool_lengths[1] = kToolLength;
+  setup.tool_lengths[1] = kToolInHolder;
   return setup;
 }
 

@@ -23,7 +23,7 @@ namespace {
 using testing::ScratchFolder;
 namespace fs = std::filesystem;
 
-constexpr const char* kReversal = "reversal:EXX:dir_x:step";
+constexpr const char* kReversalOfX = "reversal:EXX:dir_x:step";
 
 /// JSON and columns of an answer.
 struct Framed {
@@ -117,7 +117,7 @@ TEST_F(WorkbenchOnACampaign, SendsColumns) {
 TEST_F(WorkbenchOnACampaign, RanksSuspectsInPlainWords) {
   const Json ranking = page().told("rank");
   const Json& first = ranking["effects"][0];
-  EXPECT_EQ(first["name"], kReversal);
+  EXPECT_EQ(first["name"], kReversalOfX);
   EXPECT_THAT(first["words"].get<std::string>(), ::testing::HasSubstr("stops at two different places"));
   EXPECT_FALSE(first["causes"].get<std::string>().empty());
   EXPECT_GT(first["amplitudes"][0]["value"], 3.0 * first["amplitudes"][0]["u95"].get<double>());
@@ -127,15 +127,15 @@ TEST_F(WorkbenchOnACampaign, RanksSuspectsInPlainWords) {
 }
 
 TEST_F(WorkbenchOnACampaign, APreviewIsWhatAddingGives) {
-  const Framed preview(page().ask("preview", {{"effect", kReversal}}).body);
-  page().told("add", {{"effect", kReversal}});
+  const Framed preview(page().ask("preview", {{"effect", kReversalOfX}}).body);
+  page().told("add", {{"effect", kReversalOfX}});
   const Json state = page().state();
   const std::string model = std::to_string(state["current"].get<int>());
   EXPECT_EQ(state["models"].back()["standing"], "preview");
   EXPECT_TRUE(state["can_undo"]);
   const Framed added(page().ask("columns", {{"names", {"residual@" + model}}}).body);
   for (std::size_t i = 0; i < 1536; ++i) EXPECT_NEAR(added.columns[0][i], preview.columns[0][i], 1e-3);
-  EXPECT_EQ(page().ask("add", {{"effect", kReversal}}).status, 422) << "it is in the model";
+  EXPECT_EQ(page().ask("add", {{"effect", kReversalOfX}}).status, 422) << "it is in the model";
 }
 
 TEST_F(WorkbenchOnACampaign, DrawsWavesAndMeaning) {
@@ -167,7 +167,7 @@ TEST_F(WorkbenchOnACampaign, AFormulaNamesItsErrorAndItsPlace) {
 }
 
 TEST_F(WorkbenchOnACampaign, OnePageWrites) {
-  page().told("add", {{"effect", kReversal}});
+  page().told("add", {{"effect", kReversalOfX}});
   EXPECT_EQ(page().ask("undo", {}, "two").status, 409);
   EXPECT_EQ(page().ask("take", {}, "two").status, 200);
   EXPECT_EQ(page().ask("undo").status, 409);
@@ -189,11 +189,11 @@ TEST_F(WorkbenchOnACampaign, RequestsThatAreNoneAreRefused) {
 /// The page, the library and the command line: the same numbers to the bit.
 TEST(WorkbenchDoors, GiveTheSameNumbers) {
   Page page;
-  page.told("add", {{"effect", kReversal}});
+  page.told("add", {{"effect", kReversalOfX}});
   page.bench->wait_until_idle();
   ASSERT_EQ(page.ask("formula", {{"text", "EZX += x * z"}}).status, 200);
   const Json state = page.state();
-  EXPECT_EQ(state["commands"][0], std::string("add ") + kReversal);
+  EXPECT_EQ(state["commands"][0], std::string("add ") + kReversalOfX);
   EXPECT_EQ(state["commands"][1], "refit 1");
   EXPECT_EQ(state["commands"][2], "confirm 1");
   const Json& confirmed = state["models"][1];
@@ -238,7 +238,7 @@ TEST(WorkbenchDoors, LeaveOutAndCancelAndExport) {
 TEST(WorkbenchDoors, AReaderWritesNothing) {
   Page page(false, true);
   EXPECT_EQ(page.ask("export", {{"what", "model"}}).status, 403);
-  EXPECT_EQ(page.ask("add", {{"effect", kReversal}}).status, 200) << "it may look and try";
+  EXPECT_EQ(page.ask("add", {{"effect", kReversalOfX}}).status, 200) << "it may look and try";
   EXPECT_FALSE(fs::exists(page.folder.path() / "out"));
 }
 

@@ -14,13 +14,13 @@ using Kind = Variable::Kind;
 using ::testing::ElementsAre;
 
 /// A variable with its name in results, in expressions (empty: not there), its column and its unit.
-struct Case {
+struct ExpectedVariable {
   Variable variable;
   std::string name, written, column, unit;
 };
 
-const std::vector<Case>& cases() {
-  static const std::vector<Case> kCases = {
+const std::vector<ExpectedVariable>& expected_variables() {
+  static const std::vector<ExpectedVariable> kVariables = {
       {position_of(AxisName::Y), "y", "y", "y_mm", "mm"},
       {position_of(AxisName::C), "c", "c", "c_deg", "deg"},
       {position_of(AxisName::W), "w", "w", "w_mm", "mm"},
@@ -44,11 +44,11 @@ const std::vector<Case>& cases() {
       {{Kind::ToolLength}, "tool_length", "tool_length", "tool_length", "mm"},
       {{.kind = Kind::ToolOffset, .component = 2}, "tool_z", "tool_z", "tool_z", "mm"},
   };
-  return kCases;
+  return kVariables;
 }
 
 TEST(Variable, NamesAreReadAgain) {
-  for (const Case& each : cases()) {
+  for (const ExpectedVariable& each : expected_variables()) {
     EXPECT_EQ(each.variable.name(), each.name);
     EXPECT_EQ(Variable::parse(each.name), each.variable) << each.name;
     EXPECT_EQ(each.variable.unit().suffix, each.unit) << each.name;
@@ -58,7 +58,7 @@ TEST(Variable, NamesAreReadAgain) {
 }
 
 TEST(Variable, ExpressionsHaveTheWordsOfUsers) {
-  for (const Case& each : cases()) {
+  for (const ExpectedVariable& each : expected_variables()) {
     if (each.written.empty()) {
       EXPECT_EQ(Variable::parse_written(each.name), std::nullopt) << each.name;
       continue;
@@ -71,7 +71,7 @@ TEST(Variable, ExpressionsHaveTheWordsOfUsers) {
 }
 
 TEST(Variable, ColumnsAreThoseOfReadingsFiles) {
-  for (const Case& each : cases()) {
+  for (const ExpectedVariable& each : expected_variables()) {
     EXPECT_EQ(each.variable.column(), each.column);
     EXPECT_EQ(Variable::parse_column(each.column), each.variable) << each.column;
   }

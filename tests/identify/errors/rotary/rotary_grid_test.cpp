@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 using testing::GivenErrors;
 using testing::result_with;
 
-constexpr double kStep = 30.0 * kRadianPerDegree;
+constexpr double kGridStep = 30.0 * kRadianPerDegree;
 
 std::vector<RotaryGrid> grids_of(const FitResult& result, const RotaryShares& shares = {}) {
-  return rotary_grids(result, default_conditions(result), kStep, shares);
+  return rotary_grids(result, default_conditions(result), kGridStep, shares);
 }
 
 /// An axis line of a table that lies 10 um towards x, or leans by 100 urad about x, takes the table with it:
@@ -164,15 +164,15 @@ TEST(RotaryNodes, CoverATurnOrTheTravelInEqualSteps) {
   const auto wave = [](double q) { return 5e-6 * std::sin(q); };
   const auto ramp = [](double q) { return 5e-6 * q; };
   const RotaryNodes turn =
-      rotary_nodes(result_with(machine, {.functions = {{"ECC", wave}}}, 36), AxisName::C, kStep);
+      rotary_nodes(result_with(machine, {.functions = {{"ECC", wave}}}, 36), AxisName::C, kGridStep);
   EXPECT_TRUE(turn.full_turn);
   EXPECT_EQ(turn.positions.size(), 13U);
   EXPECT_DOUBLE_EQ(turn.positions.back() - turn.positions.front(), 2.0 * std::numbers::pi);
   const RotaryNodes not_periodic =
-      rotary_nodes(result_with(machine, {.functions = {{"ECC", ramp}}}, 36), AxisName::C, kStep);
+      rotary_nodes(result_with(machine, {.functions = {{"ECC", ramp}}}, 36), AxisName::C, kGridStep);
   EXPECT_FALSE(not_periodic.full_turn);
   const RotaryNodes tilt =
-      rotary_nodes(result_with(machine, {.functions = {{"EAA", wave}}}, 36), AxisName::A, kStep);
+      rotary_nodes(result_with(machine, {.functions = {{"EAA", wave}}}, 36), AxisName::A, kGridStep);
   EXPECT_FALSE(tilt.full_turn);
   EXPECT_EQ(tilt.positions.size(), 9U);  // 220 degrees in 8 steps of 27.5
   EXPECT_DOUBLE_EQ(tilt.positions.front(), -110.0 * kRadianPerDegree);

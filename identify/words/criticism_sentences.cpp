@@ -49,8 +49,9 @@ std::string unnamed(const Finding& finding) {
   } else if (finding.has("period")) {
     action += fmt::format(", every {:.4g} mm", finding.number("period").si * 1e3);
   }
-  return fmt::format("it depends on {}, acts along {}, and is {:.2g} um RMS on the readings",
-                     dependence(finding), action, finding.number("rms").si * 1e6);
+  return fmt::format(
+      "it depends on {}, and acts along {}; its strongest test alone explains {:.2g} um RMS of the readings",
+      dependence(finding), action, finding.number("rms").si * 1e6);
 }
 
 std::string unknown(const Finding& finding) {
@@ -116,7 +117,7 @@ std::string drawn(const Finding& finding) {
   std::string place;
   for (std::size_t i = 0; i < at.size(); ++i)
     place +=
-        fmt::format("{}{} = {:.4g}{}", i > 0 ? ", " : "", drivers[i], at[i].si, unit_of_driver(drivers[i]));
+        fmt::format("{}{} = {:.3g}{}", i > 0 ? ", " : "", drivers[i], at[i].si, unit_of_driver(drivers[i]));
   const FindingNumber& largest = finding.number("largest");
   std::string text = fmt::format(
       "Drawn for it: {}, up to {:.3g} +- {:.2g} {} at {}; extend the model with it and the error falls.",

@@ -76,7 +76,8 @@ TEST(Verdict, NamesKeepAReserveWhileSomethingIsOpen) {
   conclude({}, beside);
   EXPECT_EQ(to_string(beside.verdict), "NAMED_MORE_REMAINS");
   EXPECT_EQ(sentence(beside.findings.back()),
-            "More remains: it depends on z, acts along X, and is 0.5 um RMS on the readings");
+            "More remains: it depends on z, and acts along X; its strongest test alone explains 0.5 um RMS of "
+            "the readings");
 }
 
 TEST(Verdict, WhatHasNoNameGoesBeforeSetsAndSetsBeforeNothing) {

@@ -272,24 +272,25 @@ const std::vector<WordedFinding>& examples() {
       {{FindingCode::DiagnosisNamed, {{"effect", "many"}, {"kind", "custom"}, {"shape", ""}}},
        "The missing effect is: many (custom)"},
       {{FindingCode::DiagnosisUnknown, {{"direction", "X"}, {"rms", FindingNumber{0.5e-6, "um", 1e-6}}}},
-       "An effect that is in no catalogue: it depends on nothing recorded that was tried, acts along X, and "
-       "is 0.5 um "
-       "RMS on the readings"},
+       "An effect that is in no catalogue: it depends on nothing recorded that was tried, and acts along X; "
+       "its strongest test alone explains 0.5 um RMS of the readings"},
       {{FindingCode::DiagnosisMoreUnknown,
         {{"direction", "X"},
          {"rms", FindingNumber{0.5e-6, "um", 1e-6}},
          {"depends_on", Texts{"dir_x", "z"}},
          {"and_one_of", Texts{"T_air", "time"}},
          {"period", FindingNumber{10.02e-3, "mm", 1e-3}}}},
-       "More remains: it depends on dir_x and z and one of T_air, time, acts along X, every 10.02 mm, and is "
-       "0.5 um RMS "
-       "on the readings"},
+       "More remains: it depends on dir_x and z and one of T_air, time, and acts along X, every 10.02 mm; "
+       "its "
+       "strongest test alone explains 0.5 um RMS of the readings"},
       {{FindingCode::DiagnosisMoreUnknown,
         {{"direction", "Z"},
          {"rms", FindingNumber{0.5e-6, "um", 1e-6}},
          {"depends_on", Texts{"x"}},
          {"rotation", "EBX"}}},
-       "More remains: it depends on x, acts along Z, as EBX, and is 0.5 um RMS on the readings"},
+       "More remains: it depends on x, and acts along Z, as EBX; its strongest test alone explains 0.5 um "
+       "RMS "
+       "of the readings"},
       {{FindingCode::DiagnosisOneOf, {{"effects", Texts{"a", "b"}}}},
        "One of these is missing, and these readings do not tell them apart: a; b"},
       {{FindingCode::DiagnosisNearest, {{"effects", Texts{"a", "b"}}}},

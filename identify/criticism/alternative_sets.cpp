@@ -205,8 +205,10 @@ class SetJudge {
     for (std::size_t i = 0; i < reached_.added().size(); ++i) {
       const AddedEffect& other = reached_.added()[i];
       if (i == left_out) continue;
-      if (const Family& own = reached_.family_of(other); own.effect)
-        rows.middleCols(at, own.amplitudes()) = volume_.columns(0, rows_, *own.effect, other.test.shape);
+      if (const Family& own = reached_.family_of(other); own.effect) {
+        const Eigen::Index count = std::min(own.amplitudes(), other.columns.cols());
+        rows.middleCols(at, count) = volume_.columns(0, rows_, *own.effect, other.test.shape).leftCols(count);
+      }
       at += other.columns.cols();
     }
     return rows;

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/catalogue/detectable.h"
+#include "volcal/identify/criticism/catalogue/left_out.h"
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/result/result.h"
@@ -26,7 +28,7 @@ constexpr std::size_t kListed = 40;
 void state_values(const Family& family, const Eigen::VectorXd& shape, const Eigen::VectorXd& u,
                   EffectFinding& out) {
   const auto& amplitudes = family.effect->amplitudes();
-  for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+  for (std::size_t k = 0; k < out.amplitudes.size(); ++k) {
     out.spec.options.set(std::string(stem_of_key(amplitudes[k].key)), out.amplitudes[k].value);
   }
   const auto& shapes = family.effect->shapes();
@@ -117,13 +119,19 @@ EffectFinding finding(const SearchSetting& setting, const FamilyTest& test) {
   out.resolution = family.resolution.has_value();
   if (!family.effect) return out;
   const double found_from = std::sqrt(setting.detectable_noncentrality(test.score.dof));
-  for (const EffectAmplitude& amplitude : family.effect->amplitudes()) {
+  const auto& amplitudes = family.effect->amplitudes();
+  const std::size_t count =
+      family.orders.empty() ? amplitudes.size() : static_cast<std::size_t>(test.shape[0]);
+  for (const EffectAmplitude& amplitude : std::span(amplitudes).first(count)) {
     const auto at = static_cast<Eigen::Index>(out.amplitudes.size());
     const double u = std::sqrt(std::max(0.0, test.score.covariance(at, at)));
-    out.amplitudes.push_back({amplitude.label, test.score.amplitude[at], u,
+    std::string label = amplitude.label;
+    if (!family.orders.empty()) label = label.substr(label.rfind(' ') + 1);  // its degree alone
+    out.amplitudes.push_back({std::move(label), test.score.amplitude[at], u,
                               u > 0.0 ? u * found_from : std::nan(""), amplitude.unit(),
                               amplitude.si_per_unit()});
   }
+  if (!family.orders.empty()) state_order(static_cast<Eigen::Index>(test.shape[0]), out.spec);
   state_values(family, test.shape, Eigen::VectorXd::Zero(test.shape.size()), out);
   return out;
 }

@@ -50,6 +50,8 @@ std::string Family::label() const {
   return label;
 }
 
+bool Family::is_left_out() const { return effect && effect->name().kind == kLeftOut; }
+
 Eigen::Index Family::amplitudes() const {
   return resolution ? kHighestExtraDegree - kLowestExtraDegree + 1
                     : static_cast<Eigen::Index>(effect->amplitudes().size());
@@ -94,7 +96,11 @@ std::vector<Family> families(const LinearModel& model, std::span<const EffectSpe
     }
   }
   for (LeftOutError& error : left_out_errors(model.model())) {
-    all.push_back({std::move(error.spec), std::move(error.effect), std::nullopt, {Eigen::VectorXd()}});
+    all.push_back({std::move(error.spec),
+                   std::move(error.effect),
+                   std::nullopt,
+                   {Eigen::VectorXd()},
+                   std::move(error.orders)});
   }
   for (const ErrorSymbol symbol : model.model().layout().symbols()) {
     all.push_back({{}, nullptr, symbol, {Eigen::VectorXd()}});

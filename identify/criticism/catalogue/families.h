@@ -19,10 +19,15 @@ struct Family {
   std::shared_ptr<const Effect> effect;
   std::optional<ErrorSymbol> resolution;
   std::vector<Eigen::VectorXd> scan;  ///< shapes to look at; one when the shape is known
+  /// Of an error that the model leaves out: how many of the first amplitudes may stand alone, ascending, the
+  /// last all of them. The shape of a test says how many do: those of the greatest gain.
+  std::vector<Eigen::Index> orders = {};
 
   std::string label() const;
   EffectName name() const;
   Eigen::Index amplitudes() const;
+  /// An error of the machine that the model holds at zero (left_out.h).
+  bool is_left_out() const;
   /// The amplitudes act on different things (components of a displacement), so that each may be absent; the
   /// sine and cosine of a period are one thing.
   bool independent_components() const;

@@ -42,8 +42,35 @@ std::vector<Hypothesis> all_shapes(const std::vector<Family>& families,
   return all;
 }
 
+/// Of the first columns alone, the amplitudes of the others zero.
+ScoreTest score_of_first(const ProjectedColumns& projected, Eigen::Index first, Eigen::Index count,
+                         Eigen::Index all) {
+  ScoreTest test = score_test(projected, first, count);
+  test.amplitude.conservativeResizeLike(Eigen::VectorXd::Zero(all));
+  test.covariance.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
+  test.gram.conservativeResizeLike(Eigen::MatrixXd::Zero(all, all));
+  test.score.conservativeResizeLike(Eigen::VectorXd::Zero(all));
+  return test;
+}
+
+/// The order of the greatest gain.
+FamilyTest at_best_order(const ProjectedColumns& projected, const Family& family, std::size_t place,
+                         Eigen::Index first, const Projector& projector) {
+  FamilyTest best;
+  for (const Eigen::Index order : family.orders) {
+    FamilyTest test;
+    test.family = place;
+    test.multiplicity = static_cast<double>(family.orders.size());
+    update_test(test, family, Eigen::VectorXd::Constant(1, static_cast<double>(order)),
+                score_of_first(projected, first, order, family.amplitudes()), projector);
+    if (order == family.orders.front() || test.gain > best.gain) best = std::move(test);
+  }
+  return best;
+}
+
 FamilyTest at_best_shape(const ProjectedColumns& projected, const Family& family, std::size_t place,
                          Eigen::Index first, const Projector& projector) {
+  if (!family.orders.empty()) return at_best_order(projected, family, place, first, projector);
   const Eigen::Index columns = family.amplitudes();
   FamilyTest best;
   best.family = place;

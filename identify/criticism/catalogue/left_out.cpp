@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/model/description/unknowns.h"
@@ -15,9 +14,9 @@
 namespace volcal {
 namespace {
 
-constexpr int kDegrees = 6;                  // of one function
-constexpr int kSharedDegrees = 4;            // of each of several
+constexpr int kDegrees = 6;                  // polynomials of an axis' position, or sines and cosines
 constexpr const char* kHeldAtZero = "zero";  // a basis without functions
+constexpr const char* kHarmonics = "harmonics";
 
 using Polynomials = std::array<double, kDegrees + 1>;  // by degree
 
@@ -37,22 +36,25 @@ Polynomials harmonics(double angle) {
   return values;
 }
 
-/// Polynomials of an axis' position over its measured range, of one that turns fully harmonics; zero at home.
+/// Polynomials of an axis' position over its measured range, of a rotary axis harmonics: what a bearing, a
+/// droop or a line out of true do goes on as a sine where no reading stood. Zero at home.
 class OwnPosition {
  public:
   OwnPosition(const Campaign& campaign, AxisName axis)
       : axis_(axis),
-        periodic_(turns_fully(campaign.machine.axis(axis))),
         range_(measured_range(campaign, axis)),
         home_(values(campaign.machine.axis(axis).home)) {}
 
   bool varies() const { return range_.max > range_.min; }
-  void fill(const SetupView& view, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  /// From the degree `lowest` on; columns beyond the first `order` are zero.
+  void fill(const SetupView& view, int lowest, Eigen::Index order,
+            Eigen::Ref<Eigen::MatrixXd> columns) const {
+    columns.setZero();
     const auto& position = view.setup.readings.position[index_of(axis_)];
     for (Eigen::Index row = 0; row < columns.rows(); ++row) {
       const Polynomials values = this->values(position[static_cast<std::size_t>(row)]);
-      for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-        const auto degree = static_cast<std::size_t>(k) + 1;
+      for (Eigen::Index k = 0; k < order; ++k) {
+        const auto degree = static_cast<std::size_t>(lowest + k);
         columns(row, k) = values[degree] - home_[degree];
       }
     }
@@ -60,40 +62,69 @@ class OwnPosition {
 
  private:
   Polynomials values(double position) const {
-    return periodic_ ? harmonics(position) : legendre(range_.scaled(position));
+    return is_rotary(axis_) ? harmonics(position) : legendre(range_.scaled(position));
   }
 
   AxisName axis_;
-  bool periodic_;
   MeasuredRange range_;
   Polynomials home_;
 };
 
 EffectSpec left_out_spec(const std::string& symbols) { return effect_spec(kLeftOut, {{"symbol", symbols}}); }
 
-/// Functions of the given symbols, `degrees` amplitudes each.
-std::unique_ptr<Effect> functions(const Campaign& campaign, const std::vector<ErrorSymbol>& symbols,
-                                  int degrees, const EffectName& name, const std::string& label) {
+/// "displacement along X", "rotation about X"
+std::string words_of(Component component) {
+  return std::string(is_rotation(component) ? "rotation about " : "displacement along ") +
+         "XYZ"[direction_of(component)];
+}
+
+/// "EAC, error motion of C: rotation about X"
+std::string words_of(ErrorSymbol symbol) {
+  return symbol.name() + ", error motion of " + letter_of(symbol.axis) + ": " + words_of(symbol.component);
+}
+
+/// "EC0Y, squareness of Y: rotation about Z"
+std::string words_of(LocationSymbol location) {
+  return location.name() + (is_rotary(location.axis) ? ", location error of " : ", squareness of ") +
+         letter_of(location.axis) + ": " + words_of(location.component);
+}
+
+/// Lowest degree of an error function: the straight part of a straightness that is a squareness belongs to
+/// that.
+int lowest_degree(const Machine& machine, ErrorSymbol symbol) {
+  const auto is_its_straight_part = [symbol](LocationSymbol location) {
+    return motion_of_squareness(location).symbol == symbol;
+  };
+  return std::ranges::any_of(squareness_errors(machine), is_its_straight_part) ? 2 : 1;
+}
+
+/// Of rotary axes whole harmonics, cosine and sine together.
+std::vector<Eigen::Index> orders_of(ErrorSymbol symbol, std::size_t amplitudes) {
+  std::vector<Eigen::Index> orders;
+  const auto most = static_cast<Eigen::Index>(amplitudes);
+  const Eigen::Index step = is_rotary(symbol.axis) ? 2 : 1;
+  for (Eigen::Index order = step; order <= most; order += step) orders.push_back(order);
+  return orders;
+}
+
+/// An error function.
+std::unique_ptr<Effect> function(const Campaign& campaign, ErrorSymbol symbol) {
   std::vector<EffectAmplitude> amplitudes;
-  std::vector<OwnPosition> positions;
-  for (const ErrorSymbol symbol : symbols) {
-    positions.emplace_back(campaign, symbol.axis);
-    const std::string own = symbols.size() > 1 ? symbol.name() + ":" : "";
-    for (int degree = 1; degree <= degrees; ++degree) {
-      const std::string number = std::to_string(degree);
-      amplitudes.push_back({.label = label + " " + own + "P" + number,
-                            .target = {.kind = TargetKind::Motion, .symbol = symbol},
-                            .key = own + "P" + number + "_" + std::string(edge_unit(symbol.component))});
-    }
+  const int lowest = lowest_degree(campaign.machine, symbol);
+  for (int degree = lowest; degree <= kDegrees; ++degree) {
+    const std::string number = "P" + std::to_string(degree);
+    amplitudes.push_back({.label = words_of(symbol) + " " + number,
+                          .target = {.kind = TargetKind::Motion, .symbol = symbol},
+                          .key = number + "_" + std::string(edge_unit(symbol.component))});
   }
   return std::make_unique<FormulaEffect>(
-      name, std::move(amplitudes),
-      [positions, degrees](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
-        Eigen::MatrixXd drivers(static_cast<Eigen::Index>(view.rows()),
-                                degrees * static_cast<Eigen::Index>(positions.size()));
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-          positions[i].fill(view, drivers.middleCols(degrees * static_cast<Eigen::Index>(i), degrees));
-        }
+      EffectName{kLeftOut, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "function"},
+      std::move(amplitudes),
+      [position = OwnPosition(campaign, symbol.axis), lowest](
+          const SetupView& view, const Eigen::VectorXd& shape) -> Eigen::MatrixXd {
+        const Eigen::Index most = kDegrees - lowest + 1;
+        Eigen::MatrixXd drivers(static_cast<Eigen::Index>(view.rows()), most);
+        position.fill(view, lowest, shape.size() > 0 ? static_cast<Eigen::Index>(shape[0]) : most, drivers);
         return drivers;
       },
       [](const Campaign& /*campaign*/, const SourcePlace& /*place*/) {});
@@ -104,7 +135,7 @@ std::unique_ptr<Effect> squareness(LocationSymbol location) {
   const std::string driver(1, lower_letter_of(location.axis));
   return std::make_unique<FormulaEffect>(
       EffectName{kLeftOut, location.name(), driver, "squareness"},
-      std::vector<EffectAmplitude>{{.label = location.name() + " left out",
+      std::vector<EffectAmplitude>{{.label = words_of(location),
                                     .target = {.kind = TargetKind::Motion, .symbol = motion.symbol},
                                     .key = "amplitude_urad"}},
       [axis = location.axis, sign = motion.sign](const SetupView& view,
@@ -123,7 +154,7 @@ std::unique_ptr<Effect> axis_location(const Machine& machine, LocationSymbol loc
   return std::make_unique<FormulaEffect>(
       EffectName{kLeftOut, location.name(), std::string(1, lower_letter_of(location.axis)), "location"},
       std::vector<EffectAmplitude>{
-          {.label = location.name() + " left out",
+          {.label = words_of(location),
            .target = {.kind = TargetKind::Motion, .symbol = {location.component, location.axis}},
            .key = "amplitude_" + std::string(edge_unit(location.component))}},
       [sign](const SetupView& view, const Eigen::VectorXd& /*shape*/) -> Eigen::MatrixXd {
@@ -152,45 +183,30 @@ std::vector<ErrorSymbol> lacking_functions(const MeasurementModel& model) {
   return symbols;
 }
 
-std::string joined_names(const std::vector<ErrorSymbol>& symbols) {
-  std::string text;
-  for (const ErrorSymbol symbol : symbols) text += (text.empty() ? "" : " ") + symbol.name();
-  return text;
-}
-
 }  // namespace
 
 std::vector<LeftOutError> left_out_errors(const MeasurementModel& model) {
   const Campaign& campaign = model.campaign();
   std::vector<LeftOutError> errors;
-  std::vector<ErrorSymbol> rotations;
-  std::map<AxisName, std::vector<ErrorSymbol>> of_rotary_axis;
   for (const ErrorSymbol symbol : lacking_functions(model)) {
-    if (is_rotary(symbol.axis)) of_rotary_axis[symbol.axis].push_back(symbol);
-    if (is_rotation(symbol.component)) rotations.push_back(symbol);
-    const EffectName name{kLeftOut, symbol.name(), std::string(1, lower_letter_of(symbol.axis)), "function"};
-    errors.push_back({left_out_spec(symbol.name()),
-                      functions(campaign, {symbol}, kDegrees, name, symbol.name() + " left out")});
-  }
-  const auto add_together = [&](const std::vector<ErrorSymbol>& symbols, const std::string& driver,
-                                const std::string& label) {
-    if (symbols.size() < 2) return;
-    const std::string names = joined_names(symbols);
-    errors.push_back({left_out_spec(names), functions(campaign, symbols, kSharedDegrees,
-                                                      {kLeftOut, names, driver, "functions"}, label)});
-  };
-  add_together(rotations, "position", "rotations left out");
-  for (const auto& [axis, symbols] : of_rotary_axis) {
-    add_together(symbols, std::string(1, lower_letter_of(axis)),
-                 std::string("error motions of ") + letter_of(axis) + " left out");
+    std::unique_ptr<Effect> effect = function(campaign, symbol);
+    std::vector<Eigen::Index> orders = orders_of(symbol, effect->amplitudes().size());
+    errors.push_back({left_out_spec(symbol.name()), std::move(effect), std::move(orders)});
   }
   for (const LocationSymbol& location : locations_in_campaign(campaign)) {
     if (model.layout().find_location(location)) continue;
-    errors.push_back({left_out_spec(location.name()), is_rotary(location.axis)
-                                                          ? axis_location(campaign.machine, location)
-                                                          : squareness(location)});
+    errors.push_back(
+        {left_out_spec(location.name()),
+         is_rotary(location.axis) ? axis_location(campaign.machine, location) : squareness(location),
+         {}});
   }
   return errors;
+}
+
+void state_order(Eigen::Index order, EffectSpec& spec) {
+  const auto symbol = ErrorSymbol::parse(spec.options.text("symbol").value_or(""));
+  if (symbol && is_rotary(symbol->axis) && order < kDegrees)
+    spec.options.set(kHarmonics, static_cast<double>(order) / 2.0);
 }
 
 bool is_left_out(const std::string& symbol, const ModelSpec& model) {
@@ -202,6 +218,24 @@ bool is_left_out(const std::string& symbol, const ModelSpec& model) {
   return function && model.function(*function).basis == kHeldAtZero;
 }
 
+namespace {
+
+/// In the usual basis of its axis, or in as many harmonics as were found.
+void restore(ErrorSymbol symbol, const EffectSpec& spec, const Machine& machine, ModelSpec& model) {
+  if (const auto harmonics = spec.options.number(kHarmonics)) {
+    FunctionSpec function;
+    function.basis = "fourier";
+    function.degree = static_cast<int>(*harmonics);
+    model.functions[symbol] = function;
+  } else if (model.default_function.basis == kHeldAtZero) {
+    model.functions[symbol] = usual_function(machine.axis(symbol.axis));
+  } else {
+    model.functions.erase(symbol);
+  }
+}
+
+}  // namespace
+
 bool restore_left_out(const EffectSpec& spec, const Machine& machine, ModelSpec& model) {
   if (spec.kind != kLeftOut) return false;
   for (const std::string& name : left_out_symbols(spec)) {
@@ -210,12 +244,7 @@ bool restore_left_out(const EffectSpec& spec, const Machine& machine, ModelSpec&
       if (is_rotary(location->axis)) model.locations.try_emplace(*location, 0.0);
     }
     const auto symbol = ErrorSymbol::parse(name);
-    if (!symbol || !is_left_out(name, model)) continue;
-    if (model.default_function.basis == kHeldAtZero) {
-      model.functions[*symbol] = usual_function(machine.axis(symbol->axis));
-    } else {
-      model.functions.erase(*symbol);
-    }
+    if (symbol && is_left_out(name, model)) restore(*symbol, spec, machine, model);
   }
   return true;
 }

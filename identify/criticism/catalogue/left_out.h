@@ -14,13 +14,17 @@ namespace volcal {
 
 struct LeftOutError {
   EffectSpec spec;
-  std::unique_ptr<Effect> effect;  ///< functions of the axis' own position; amplitudes m or rad
+  std::unique_ptr<Effect> effect;    ///< functions of the axis' own position; amplitudes m or rad
+  std::vector<Eigen::Index> orders;  ///< of an error motion: how many amplitudes may stand alone
 };
 
 /// One for every error motion and location error that the model lacks, of linear axes and of rotary axes that
-/// move, and one for all lacking rotations together, and for all lacking motions of a
-/// rotary axis, when there are several.
+/// move: polynomials to the sixth degree, of rotary axes three harmonics.
 std::vector<LeftOutError> left_out_errors(const MeasurementModel& model);
+
+/// Writes into the specification of an error motion of a rotary axis in how many harmonics it was found,
+/// where that is fewer than were looked for.
+void state_order(Eigen::Index order, EffectSpec& spec);
 
 /// Whether the model holds this function or location error ("EAX", "EC0Y") at zero.
 bool is_left_out(const std::string& symbol, const ModelSpec& model);

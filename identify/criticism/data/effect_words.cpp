@@ -23,7 +23,6 @@ constexpr auto kModelChanges = std::to_array<ModelChange>({
 
 constexpr auto kTargets = std::to_array<EffectWord>({
     {"SYMBOL", "error motion of an axis (EXX, EAY), or a squareness (EC0Y)"},
-    {"SYMBOL SYMBOL ...", "several error functions together", kLeftOut},
     {"SYMBOL SYMBOL ...", "several error motions, all by the same amount", kCommon},
     {"tool", "offset of every tool, tool coordinates"},
     {"tool TOOL", "offset of one tool, tool coordinates"},
@@ -43,7 +42,6 @@ constexpr auto kDrivers = std::to_array<EffectWord>({
     {"AXIS", "position of an axis"},
     {"AXIS AXIS", "positions of two axes"},
     {"AXIS AXIS AXIS", "positions of three axes"},
-    {"position", "positions of the axes that the errors belong to", kLeftOut},
     {"dir_AXIS", "direction of approach of an axis"},
     {"dir_AXIS dir_AXIS ...", "directions of approach of several axes, each for its own error motion"},
     {"dir_AXIS AXIS", "direction of approach, and position, of an axis"},
@@ -101,7 +99,6 @@ constexpr auto kShapes = std::to_array<EffectWord>({
     {"exp(-s/l)", "less the further it has travelled; the length is given or looked for"},
     {"lag", "follows the driver late; the time constant is given or looked for"},
     {"function", "an error function of its own axis", kLeftOut},
-    {"functions", "error functions of their own axes", kLeftOut},
     {"location", "the place or tilt of an axis of rotation", kLeftOut},
     {"sine", "with the sine of the tilt"},
     {"one-minus-cosine", "with one minus the cosine of the tilt"},

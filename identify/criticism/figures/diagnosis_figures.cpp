@@ -82,8 +82,9 @@ class FigureMaker {
     Projector readings(problem_, problem_.data, state_.noise(), setting_.threads, model_.parts());
     for (const Eigen::MatrixXd& other : others) readings.accept(other);
     figures_.leading.accepted = true;
-    add_leading(readings, others,
-                {leading->test.family, leading->columns.leftCols(state_.family_of(*leading).amplitudes())});
+    const Eigen::Index amplitudes =
+        std::min(state_.family_of(*leading).amplitudes(), leading->columns.cols());
+    add_leading(readings, others, {leading->test.family, leading->columns.leftCols(amplitudes)});
   }
 
   struct Leading {

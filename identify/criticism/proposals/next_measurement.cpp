@@ -86,7 +86,8 @@ class Proposer {
       if (finding.resolution || out.size() == kMostAlternatives) continue;
       auto hypothesis = hypothesis_of(finding, state_.families);
       if (!hypothesis) continue;
-      Eigen::VectorXd amplitude(static_cast<Eigen::Index>(finding.amplitudes.size()));
+      Eigen::VectorXd amplitude =
+          Eigen::VectorXd::Zero(state_.families[hypothesis->family].amplitudes());  // some may not stand
       for (std::size_t k = 0; k < finding.amplitudes.size(); ++k) {
         amplitude[static_cast<Eigen::Index>(k)] = finding.amplitudes[k].value;
       }

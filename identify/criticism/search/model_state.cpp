@@ -21,6 +21,8 @@ void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all) {
 Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const FamilyTest& effect,
                        Projector& projector) {
   Eigen::MatrixXd columns = family_columns(model, family, effect.shape);
+  if (!family.orders.empty())
+    columns.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(effect.shape[0]));
   projector.accept(columns);
   const auto derivative = shape_derivative(model, family, effect.shape, effect.score.amplitude);
   if (!derivative) return columns;
@@ -176,8 +178,9 @@ std::vector<FamilyTest> ModelState::moved_effects(const Projector& all) const {
   for (const AddedEffect& effect : added_) {
     FamilyTest& test = moved.emplace_back(effect.test);
     const Family& family = family_of(effect);
-    const Eigen::Index amplitudes = family.amplitudes();
-    test.score.amplitude = solution.segment(at, amplitudes);
+    const Eigen::Index amplitudes = std::min(family.amplitudes(), effect.columns.cols());
+    test.score.amplitude.setZero(family.amplitudes());
+    test.score.amplitude.head(amplitudes) = solution.segment(at, amplitudes);
     if (effect.columns.cols() > amplitudes) {
       const double wanted = test.shape[0] + solution[at + amplitudes];
       const auto [low, high] =

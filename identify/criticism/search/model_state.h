@@ -131,8 +131,8 @@ class ModelState {
 
 void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all);
 
-/// Takes an effect into the model of `projector`: columns of its amplitudes, and of its shape where the
-/// readings see it move.
+/// Takes an effect into the model of `projector`: columns of its amplitudes, of those alone that stand
+/// (orders of Family), and of its shape where the readings see it move.
 Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const FamilyTest& effect,
                        Projector& projector);
 

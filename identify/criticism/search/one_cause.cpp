@@ -20,7 +20,7 @@ namespace {
 /// Nothing for what moves no single error motion, or several at once.
 std::optional<UnknownFinding> finding_of(const ModelState& state, const AddedEffect& added) {
   const Family& family = state.family_of(added);
-  if (!family.effect || family.effect->terms().size() != 1) return std::nullopt;
+  if (!family.effect || family.is_left_out() || family.effect->terms().size() != 1) return std::nullopt;
   const EffectTarget& target = family.effect->amplitudes().front().target;
   if (target.kind != TargetKind::Motion) return std::nullopt;
   const Eigen::VectorXd moved = displacement(state.model(), family, added.test);
@@ -85,11 +85,12 @@ class OneCauseSearch {
   bool may_be_one(std::size_t first, std::size_t second) const {
     const Family &one = state_.family_of(state_.added()[first]),
                  &other = state_.family_of(state_.added()[second]);
-    return !other.resolution && !is_part_of(one, other);
+    return !other.resolution && !other.is_left_out() && !is_part_of(one, other);
   }
 
   /// What a surface of its own variable and those of the name would be drawn for.
   std::optional<UnknownFinding> wider(const AddedSurface& surface, const AddedEffect& added) const {
+    if (state_.family_of(added).is_left_out()) return std::nullopt;
     const auto& options = surface.spec.options;
     const EffectTarget& target = surface.effect->amplitudes().front().target;
     if (target.kind != TargetKind::Motion || options.has("factor") || options.has("only"))
@@ -135,7 +136,7 @@ class OneCauseSearch {
   void judge(const Projector& without, const EffectSpec& spec, const UnknownFinding& finding, double of_pair,
              const std::set<std::size_t>& names, std::optional<std::size_t> surface) {
     std::shared_ptr<const Effect> effect = find_effect(spec.kind)->make(spec, {});
-    if (state_.has_surface(effect->name())) return;
+    if (state_.has_surface(effect->name()) || is_error_left_out(state_, *effect)) return;
     const double evidence = surface_evidence(state_.model(), without, *effect);
     const double margin = evidence - log_families_ - of_pair;
     if (evidence < kThresholds.surface_evidence || margin <= best_margin_) return;

@@ -51,20 +51,9 @@ double log10_constancy_over_places(const ModelState& state, const FamilyTest& te
 /// `first`: of its columns among the projector's parameters.
 ConstancyTest constancy_of(const ModelState& state, const Family& family, const Eigen::MatrixXd& columns,
                            Eigen::Index first, const Projector& projector) {
-  const Eigen::Index count = family.amplitudes();
+  const Eigen::Index count = std::min(family.amplitudes(), columns.cols());
   const Eigen::VectorXd moved = columns.leftCols(count) * projector.solution().segment(first, count);
   return least_constant(family, moved, state.setting().constancy_variables, projector);
-}
-
-/// The model that was given has no errors of a rotary axis that moves. Until every axis has its errors an
-/// error of the rigid body is not to be judged by what the others leave.
-bool lacks_rotary_errors(const ModelState& state) {
-  return std::ranges::any_of(state.setting().families, [](const Family& family) {
-    const EffectName name = family.name();
-    if (name.kind != kLeftOut) return false;
-    const auto symbol = ErrorSymbol::parse(name.target.substr(0, name.target.find(' ')));
-    return symbol && is_rotary(symbol->axis);
-  });
 }
 
 }  // namespace
@@ -101,6 +90,7 @@ Reasons Rejection::rejection_reasons() const {
 }
 
 bool Rejection::leaves_more(const AddedEffect& effect) const {
+  if (state_.family_of(effect).is_left_out()) return false;
   const double own = state_.setting().family_wise_log10_p(effect.test);
   return rules().decide(SearchRule::LeavesMore, [&] {
     return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
@@ -112,8 +102,8 @@ bool Rejection::leaves_more(const AddedEffect& effect) const {
 std::optional<Finding> Rejection::rejection_reason(std::size_t added) const {
   const AddedEffect& effect = state_.added()[added];
   const Family& family = state_.family_of(effect);
+  if (family.is_left_out()) return std::nullopt;
   if (leaves_more(effect)) return rejected(FindingCode::RejectedLeavesMore, family);
-  if (family.name().kind == kLeftOut && lacks_rotary_errors(state_)) return std::nullopt;
   const auto drivers = scan_variables_of(family.name());
   if (still_moves(drivers)) {
     Finding moved = rejected(FindingCode::RejectedDriverStillMoves, family);

@@ -127,8 +127,14 @@ bool Search::draw_surface() {
   return true;
 }
 
+/// Not beside error functions that came back: the model that is fitted with them holds more of each than the
+/// search does, and what it leaves is for the next diagnosis.
 bool Search::may_draw() const {
-  return static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces;
+  const auto came_back = [this](const AddedEffect& each) {
+    return !setting_->families[each.test.family].orders.empty();
+  };
+  return static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces &&
+         std::ranges::none_of(state_->added(), came_back);
 }
 
 /// Where two names stand for one cause whose shape no name has. False: none does.
@@ -239,10 +245,10 @@ void Search::climb() {
   for (;;) {
     const std::size_t added = state_->added().size();
     report(fmt::format("tests, step {}", added + 1),
-           0.2 + 0.7 * static_cast<double>(added) / (options_.most + 1.0));
+           0.2 + 0.7 * std::min(1.0, static_cast<double>(added) / (options_.most + 1.0)));
     test();
     if (!given_->is_tested()) given_ = state_;
-    if (static_cast<int>(added) >= options_.most) return;
+    if (effects_added() >= options_.most) return;
     if (!add_leading() && !add_several() && (something_exceeds() || !add_absorbed())) return;
   }
 }
@@ -255,23 +261,42 @@ bool Search::may_be_added(const FamilyTest& test) const {
 
 /// The best of those that are not in the model; null: none.
 const FamilyTest* Search::leading_exceeding() const {
+  return leading_exceeding([](const FamilyTest& /*any*/) { return true; });
+}
+
+const FamilyTest* Search::leading_exceeding(const std::function<bool(const FamilyTest&)>& among) const {
   const ModelTests& tests = state_->tests();
-  const auto found =
-      std::ranges::find_if(tests.exceeding, [&](std::size_t i) { return may_be_added(tests.families[i]); });
+  const auto found = std::ranges::find_if(tests.exceeding, [&](std::size_t i) {
+    return among(tests.families[i]) && may_be_added(tests.families[i]);
+  });
   return found == tests.exceeding.end() ? nullptr : &tests.families[*found];
+}
+
+int Search::effects_added() const {
+  return static_cast<int>(std::ranges::count_if(
+      state_->added(), [this](const AddedEffect& each) { return !is_left_out(each.test); }));
 }
 
 bool Search::something_exceeds() const {
   return leading_exceeding() != nullptr || state_->tests().any_scan_exceeds();
 }
 
-/// False when nothing exceeds, or something that is in no catalogue does better.
+/// False when nothing exceeds, or something that is in no catalogue does better. An error that the model
+/// holds at zero is no effect beyond the machine's own errors: it comes before what is no better, and what
+/// has no name is nothing against it.
 bool Search::add_leading() {
   const FamilyTest* best = leading_exceeding();
-  if (best == nullptr ||
-      rules().decide(SearchRule::ScanVeto, [&] { return any_scan_does_better(*state_, *best); }))
-    return false;
-  add(*best);
+  if (best == nullptr) return false;
+  const FamilyTest* own = leading_exceeding([this](const FamilyTest& test) { return is_left_out(test); });
+  const auto does_better_than = [&](const FamilyTest& name) {
+    return rules().decide(SearchRule::ScanVeto, [&] { return any_scan_does_better(*state_, name); });
+  };
+  if (own == nullptr) {
+    if (does_better_than(*best)) return false;
+    add(*best);
+    return true;
+  }
+  add(comes_before(*best, *own) && !does_better_than(*best) ? *best : *own);
   return true;
 }
 
@@ -285,7 +310,7 @@ bool Search::add_several() {
   for (const FamilyTest& test : kept) start.insert(test.family);
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kThresholds.most_together; ++names) {
-    if (static_cast<int>(state_->added().size()) >= options_.most) break;
+    if (effects_added() >= options_.most) break;
     const FamilyTest* best = leading_exceeding();
     if (best == nullptr && names == 1) best = best_by_variables_of_scan();
     if (best == nullptr) break;
@@ -384,9 +409,7 @@ bool Search::compare_with_rivals(bool may_change) {
       return true;
     }
     const FamilyTest* best = leading(tests, own.family);
-    const auto is_better = [&] {
-      return best != nullptr && best->gain > own.gain + kThresholds.indistinguishable_gain;
-    };
+    const auto is_better = [&] { return best != nullptr && comes_before(*best, own); };
     if (may_change && rules().decide(SearchRule::Exchange, is_better)) {
       kept[i] = *best;
       restart_with(kept);
@@ -395,7 +418,8 @@ bool Search::compare_with_rivals(bool may_change) {
     added[i].test = own;
     added[i].rivals.clear();
     for (const FamilyTest& test : tests) {
-      const bool known = state_->has(test.family) || rejected_.contains(test.family);
+      const bool known = state_->has(test.family) || rejected_.contains(test.family) ||
+                         (is_left_out(own) && !is_left_out(test));
       if (test.score.dof > 0 && !known && near(own, test)) added[i].rivals.push_back(test);
     }
     std::ranges::sort(added[i].rivals, std::greater{}, &FamilyTest::gain);
@@ -413,14 +437,24 @@ bool Search::near(const FamilyTest& own, const FamilyTest& other) const {
   });
 }
 
-/// Best of those that are not in the model, `but` one that is.
+/// Does better by more than chance; an error that the model holds at zero before an effect that does not do
+/// better than it by as much.
+bool Search::comes_before(const FamilyTest& one, const FamilyTest& other) const {
+  const double margin = kThresholds.indistinguishable_gain;
+  const bool favoured = is_left_out(one) && !is_left_out(other);
+  return one.gain > other.gain + (favoured ? -margin : margin);
+}
+
+/// Best of those that are not in the model, `but` one that is; an error that the model holds at zero before
+/// effects.
 const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, std::size_t but) const {
-  const FamilyTest* best = nullptr;
+  const FamilyTest *best = nullptr, *own = nullptr;
   for (const FamilyTest& test : tests) {
     if (!may_be_added(test) && (test.family != but || test.score.dof == 0)) continue;
     if (best == nullptr || test.gain > best->gain) best = &test;
+    if (is_left_out(test) && (own == nullptr || test.gain > own->gain)) own = &test;
   }
-  return best;
+  return own != nullptr && comes_before(*own, *best) ? own : best;
 }
 
 void Search::reject() {

@@ -165,6 +165,13 @@ std::vector<UnknownFinding> combinations(const SearchRules& rules,
 
 }  // namespace
 
+bool is_error_left_out(const ModelState& state, const Effect& surface) {
+  const EffectName name = surface.name();
+  return std::ranges::any_of(state.setting().families, [&](const Family& family) {
+    return family.is_left_out() && family.name().target == name.target && family.name().driver == name.driver;
+  });
+}
+
 std::optional<SurfaceTest> best_surface(const ModelState& state,
                                         const std::vector<UnknownFinding>& findings) {
   std::optional<SurfaceTest> best;
@@ -179,6 +186,7 @@ std::optional<SurfaceTest> best_surface(const ModelState& state,
       if (std::ranges::find(tried, effect->name()) != tried.end() || state.has_surface(effect->name()))
         continue;
       tried.push_back(effect->name());
+      if (is_error_left_out(state, *effect)) continue;
       const double evidence = surface_evidence(state.model(), state.projector(), *effect);
       if (evidence < kThresholds.surface_evidence || (best && evidence <= best->log_evidence)) continue;
       best = SurfaceTest{std::move(spec), std::move(effect), finding, evidence};

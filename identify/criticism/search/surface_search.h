@@ -32,6 +32,10 @@ ProjectedColumns projected_effect(const LinearModel& model, const Projector& pro
 /// Over the model of a projector, which has not got the surface.
 double surface_evidence(const LinearModel& model, const Projector& projector, const Effect& surface);
 
+/// A curve over its own axis of an error function that the given model holds at zero: no effect without a
+/// name, but that function, which the search gives back.
+bool is_error_left_out(const ModelState& state, const Effect& surface);
+
 /// Nothing where none has an evidence above the threshold (thresholds.h).
 std::optional<SurfaceTest> best_surface(const ModelState& state, const std::vector<UnknownFinding>& findings);
 

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <limits>
 #include <mutex>
+#include <set>
 
+#include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/numeric/parallel.h"
@@ -65,8 +67,11 @@ HiddenDatasetRow row_of(const std::filesystem::path& file) {
   options.compare = false;
   options.figures = false;
   options.climb = true;
+  std::set<SearchRule> decided;
+  options.rules.decided = [&decided](SearchRule rule) { decided.insert(rule); };
   const Diagnosis diagnosis = diagnose(simulated.campaign, given, options);
   row.verdict = to_string(diagnosis.verdict);
+  for (const SearchRule rule : decided) row.decided.emplace_back(name_of(rule));
   const std::vector<EffectFinding> accepted = accepted_effects(diagnosis);
   for (const EffectFinding& effect : accepted) row.offered.push_back(effect.label);
 

@@ -22,7 +22,8 @@ struct HiddenDatasetRow {
   double given_um = 0.0;             ///< root mean squares of the prediction error
   double offered_um = 0.0;
   double clean_um = 0.0;
-  double share = 0.0;  ///< that is removed; NaN where nothing is hidden
+  double share = 0.0;                ///< that is removed; NaN where nothing is hidden
+  std::vector<std::string> decided;  ///< rules of the search that decided something (search_rules.h)
 };
 
 struct HiddenDatasetOptions {

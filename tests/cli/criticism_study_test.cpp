@@ -128,10 +128,12 @@ TEST(CriticismStudy, CountsWhatTheOfferedModelRemovesOfADataset) {
   EXPECT_EQ(nothing.at("verdict"), "NOTHING_ABOVE");
   EXPECT_TRUE(nothing.at("removed").is_null());
   EXPECT_EQ(nothing.at("signal"), 0.0);
+  EXPECT_TRUE(nothing.at("rules_decided").is_array());
   EXPECT_NEAR(nothing.at("given_um").get<double>(), nothing.at("nothing_hidden_um").get<double>(), 1e-9);
   if (testing::long_tests()) {
     const Json& backlash = study.at("campaigns").at(1);
     EXPECT_GT(backlash.at("removed").get<double>(), 0.9);
+    EXPECT_THAT(backlash.at("rules_decided"), ::testing::Contains("estimated-noise"));
     EXPECT_LT(backlash.at("offered_um").get<double>(), backlash.at("given_um").get<double>());
   }
   for (const auto& [arguments, part] :

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 #include "volcal/identify/cli/commands/studies/studies.h"
 #include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/progress.h"
+#include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/studies/criticism/hidden_datasets.h"
 
@@ -50,6 +52,18 @@ std::string listed(const std::vector<std::string>& labels) {
   return labels.size() > shown ? text + fmt::format(" and {} more", labels.size() - shown) : text;
 }
 
+/// "exchange 3", of every rule.
+std::vector<std::string> rules_with_counts(const HiddenRows& rows) {
+  std::vector<std::string> counts;
+  for (const SearchRule rule : search_rules()) {
+    const auto count = std::ranges::count_if(rows, [name = name_of(rule)](const HiddenDatasetRow& row) {
+      return std::ranges::find(row.decided, name) != row.decided.end();
+    });
+    counts.push_back(fmt::format("{} {}", name_of(rule), count));
+  }
+  return counts;
+}
+
 std::string hidden_rows_text(const HiddenRows& rows) {
   TextTable table({{"campaign", Align::Left},
                    {"hidden", Align::Left},
@@ -69,8 +83,10 @@ std::string hidden_rows_text(const HiddenRows& rows) {
                    listed(row.offered)});
   }
   const StrongRows strong = count_strong(rows);
-  return fmt::format("{}\n{} of {} campaigns with s >= {:g} lose {:g} of their systematic error or more\n",
-                     table.text(), strong.removed, strong.all, kStrong, kRemoved);
+  return fmt::format(
+      "{}\n{} of {} campaigns with s >= {:g} lose {:g} of their systematic error or more\n"
+      "Campaigns in which a rule of the search decided something: {}\n",
+      table.text(), strong.removed, strong.all, kStrong, kRemoved, fmt::join(rules_with_counts(rows), ", "));
 }
 
 nlohmann::ordered_json hidden_rows_json(const HiddenRows& rows) {
@@ -86,7 +102,8 @@ nlohmann::ordered_json hidden_rows_json(const HiddenRows& rows) {
                                  {"given_um", row.given_um},
                                  {"offered_um", row.offered_um},
                                  {"nothing_hidden_um", row.clean_um},
-                                 {"removed", share}});
+                                 {"removed", share},
+                                 {"rules_decided", row.decided}});
   }
   const StrongRows strong = count_strong(rows);
   json["strong"] = {{"signal", kStrong}, {"share", kRemoved}, {"count", strong.removed}, {"of", strong.all}};

@@ -70,6 +70,9 @@ CampaignPlan plan_of(const Machine& machine, const Model* model, std::optional<i
   settings.seed = seed;
   settings.threads = threads;
   if (extend && campaign == nullptr) throw InputError({}, "there is no campaign to extend", "give campaign=");
+  settings.linear_axes_known =
+      model == nullptr && !extend && plan_instrument_of(settings).turns_rotary_axes();
+  if (settings.linear_axes_known) settings.model = with_known_linear_axes(settings.model, machine);
   check_plan_settings(settings);
   set_target(minimise, separate, campaign.get(), settings);
   if (extend) settings.existing = campaign.get();

@@ -77,7 +77,8 @@ PlanJson layout_json(const CampaignPlan& plan) {
     PlanJson json = {{"setup", name},
                      {"station", layout.station_names[run.station]},
                      {"tool", plan.settings.machine.tools[run.tool].name}};
-    if (!run.part.empty()) json["plane"] = run.part;
+    const bool turns = plan_instrument_of(plan.settings).turns_rotary_axes();
+    if (!run.part.empty()) json[turns ? "path" : "plane"] = run.part;
     json["positions"] = run.positions.size();
     json["readings"] = 2 * run.positions.size();
     json["points"] = "campaign/" + readings_file_name(named);
@@ -161,7 +162,7 @@ std::string points_of(const Setup& setup) { return toml_text("campaign/" + readi
 
 /// Where a setup of the plan's instrument stands.
 std::optional<NamedPlace> simulated_at(const CampaignPlan& plan, const Setup& setup) {
-  if (setup.instrument != plan.settings.instrument) return std::nullopt;
+  if (setup.instrument != plan_instrument_of(plan.settings).instrument()) return std::nullopt;
   return plan_instrument_of(plan.settings).place_of(setup, plan.settings.machine);
 }
 
@@ -241,11 +242,11 @@ std::string sphere_runs_toml(const CampaignPlan& plan) {
 
 /// [[measurements]] of a study that takes the planned readings.
 std::string planned_measurement_toml(const CampaignPlan& plan) {
-  const InstrumentTraits& traits = find_instrument(plan.settings.instrument)->schema().traits;
-  if (plan_instrument_of(plan.settings).turns_rotary_axes())
-    return measurement_toml(plan.settings, traits) + sphere_runs_toml(plan);
-  return measurement_toml(plan.settings, traits) +
-         (traits.has_bar ? bar_runs_toml(plan) : station_runs_toml(plan));
+  const PlanInstrument& planned = plan_instrument_of(plan.settings);
+  const InstrumentTraits& traits = find_instrument(planned.instrument())->schema().traits;
+  const std::string head = measurement_toml(plan.settings, traits);
+  if (traits.has_bar) return head + bar_runs_toml(plan);
+  return head + (planned.stays_at_its_place() ? sphere_runs_toml(plan) : station_runs_toml(plan));
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ std::vector<PlanRun> LineOfSight::candidate_runs(const Eigen::Vector3d& station_
 
 std::vector<AxisPosition> LineOfSight::volume(std::size_t tool, int per_axis) const {
   if (!instrument_.turns_rotary_axes()) return grid_positions(settings_.machine, per_axis);
-  return poses_in_box(settings_.machine, swept_, stations_w_, tool, per_axis);
+  return poses_in_box(settings_.machine, swept_, instrument_.judged_region_w(scene()), tool, per_axis);
 }
 
 PlanRun LineOfSight::moved(const Eigen::Vector3d& station_w, const PlanRun& run) const {

@@ -22,6 +22,14 @@ bool are_alike(const AxisPosition& a, const AxisPosition& b, bool rotary_alone) 
   });
 }
 
+bool turns_rotary_axes(const Setup& setup) {
+  return std::ranges::any_of(kAllAxes, [&](AxisName axis) {
+    const std::vector<double>& positions = setup.readings.position[index_of(axis)];
+    return is_rotary(axis) &&
+           std::ranges::adjacent_find(positions, std::ranges::not_equal_to{}) != positions.end();
+  });
+}
+
 }  // namespace
 
 MeasuredPositions::MeasuredPositions(const PlanSettings& settings)
@@ -29,7 +37,7 @@ MeasuredPositions::MeasuredPositions(const PlanSettings& settings)
   if (settings.apart_from == nullptr) return;
   for (const Setup& setup : settings.apart_from->setups) {
     const PlanInstrument* instrument = find_plan_instrument(setup.instrument);
-    if (rotary_alone_ && (instrument == nullptr || !instrument->turns_rotary_axes())) continue;
+    if (rotary_alone_ && !turns_rotary_axes(setup)) continue;
     if (instrument != nullptr) {
       if (const auto place = instrument->place_of(setup, settings.apart_from->machine))
         places_w_.push_back(place->place_w);

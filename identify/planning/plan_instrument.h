@@ -37,7 +37,7 @@ struct InstrumentWords {
 
 /// How dense the positions are that are chosen from, where they are exchanged one by one.
 struct CandidateGrid {
-  std::size_t positions = 0;  ///< of a run, about
+  std::size_t positions = 0;  ///< of a run, about; 0: as it is measured
   double jitter = 0.0;        ///< of a grid step
   std::uint64_t stream = 0;   ///< of random numbers
 };
@@ -53,8 +53,11 @@ class PlanInstrument {
  public:
   virtual ~PlanInstrument() = default;
 
-  /// As in model/instruments/registry.h.
+  /// What `--instrument` of `volcal plan` takes.
   virtual std::string name() const = 0;
+  /// Of its setups, as in model/instruments/registry.h: what turns rotary axes beside it has a name of its
+  /// own.
+  virtual std::string instrument() const { return name(); }
   virtual InstrumentWords words() const = 0;
   /// Kind of the measurement of a study file that simulates what is planned.
   virtual std::string study_kind() const = 0;
@@ -74,8 +77,12 @@ class PlanInstrument {
   /// What everybody would do.
   virtual std::vector<Eigen::Vector3d> textbook_places_w(const PlanScene& scene, int count) const = 0;
 
-  /// Its runs move the rotary axes, the linear axes following; otherwise rotary axes stand at home.
+  /// Its runs move the rotary axes; otherwise they stand at home.
   virtual bool turns_rotary_axes() const { return false; }
+  /// The tool stays at the place, a sphere, while they turn.
+  virtual bool stays_at_its_place() const { return false; }
+  /// Where the error of the machine is judged, of an instrument that turns rotary axes.
+  virtual Eigen::AlignedBox3d judged_region_w(const PlanScene& scene) const { return region_w(scene); }
   /// A run is taken whole or not at all; otherwise its positions are exchanged one by one.
   virtual bool takes_runs_whole() const = 0;
   /// Runs of one tool at a place with all the positions that can be chosen of; none where nothing is reached.

@@ -75,7 +75,7 @@ class SetupMaker {
   Setup make(const PlanRun& run, bool both, double start) const {
     Setup setup;
     setup.name = run_name(layout_, run, settings_.machine);
-    setup.instrument = settings_.instrument;
+    setup.instrument = instrument_.instrument();
     setup.tool = run.tool;
     instrument_.describe(settings_, {layout_.station_names[run.station], layout_.stations_w[run.station]},
                          setup);

@@ -162,7 +162,7 @@ class OptionSearch {
   }
 
   std::optional<NamedPlace> place_of(const Setup& setup) const {
-    if (setup.instrument != settings_.instrument) return std::nullopt;
+    if (setup.instrument != plan_instrument_of(settings_).instrument()) return std::nullopt;
     return plan_instrument_of(settings_).place_of(setup, settings_.machine);
   }
 

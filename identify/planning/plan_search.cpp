@@ -16,6 +16,7 @@ namespace volcal {
 namespace {
 
 constexpr std::size_t kCoarsePositions = 60;  // of a run while stations are looked for
+constexpr std::size_t kMeasuredWhole = 0;        // positions of a run that is taken whole
 constexpr std::size_t kLeastPool = 400;       // positions of a run to choose from
 constexpr std::size_t kPoolPerPosition = 3;
 constexpr double kPoolJitter = 0.5;    // of a grid step: the whole travel is met
@@ -74,6 +75,10 @@ class PlanSearch {
 
   /// Positions of a coarse grid that the stations see; all tools at all stations, or the runs that are left.
   PlanLayout coarse(const std::vector<Eigen::Vector3d>& stations) const {
+    return all_runs(stations, kCoarsePositions);
+  }
+
+  PlanLayout all_runs(const std::vector<Eigen::Vector3d>& stations, std::size_t positions) const {
     PlanLayout layout;
     layout.stations_w = stations;
     layout.station_names.assign(names_.begin(),
@@ -81,7 +86,7 @@ class PlanSearch {
     for (std::size_t station = 0; station < stations.size(); ++station) {
       for (const std::size_t tool : tools_) {
         if (is_dropped(station, tool)) continue;
-        for (PlanRun& run : candidate_runs(stations, station, tool, kCoarsePositions, kCoarseStream)) {
+        for (PlanRun& run : candidate_runs(stations, station, tool, positions, kCoarseStream)) {
           if (run.positions.size() >= kLeastOfRun) layout.runs.push_back(std::move(run));
         }
       }
@@ -312,7 +317,7 @@ class PlanSearch {
 
   /// Of all runs at these stations, whole ones that are best.
   PlanLayout whole_runs(const std::vector<Eigen::Vector3d>& stations) {
-    const PlanLayout all = coarse(stations);
+    const PlanLayout all = all_runs(stations, kMeasuredWhole);
     ChosenPaths chosen = choose_paths(settings_, problem_, all, threads_);
     found_.pool = all.positions();
     found_.converged = chosen.converged;

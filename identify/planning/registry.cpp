@@ -13,7 +13,9 @@ namespace volcal {
   INSTRUMENT(planned_laser_tracker)         \
   INSTRUMENT(planned_ball_bar)              \
   INSTRUMENT(planned_r_test)                \
-  INSTRUMENT(planned_probed_sphere)
+  INSTRUMENT(planned_probed_sphere)         \
+  INSTRUMENT(planned_rotary_ball_bar)       \
+  INSTRUMENT(planned_turning_tracer)
 
 #define VOLCAL_DECLARE_PLANNED(name) const PlanInstrument& name();
 #define VOLCAL_ADDRESS_OF_PLANNED(name) &(name)(),

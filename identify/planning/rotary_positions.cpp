@@ -6,6 +6,7 @@
 #include <optional>
 #include <random>
 
+#include "volcal/model/description/errors.h"
 #include "volcal/model/description/unknowns.h"
 
 namespace volcal {
@@ -13,6 +14,9 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kFewestNodes = 3;
+constexpr double kTableShare =
+    0.25;  // of the smallest side of the swept box, to either side of a table's axis
+constexpr double kCircleShare = 0.7;  // of the region's half width: a textbook's circle of places
 
 double in_tenths_of_degrees(double angle) {
   constexpr double kTenth = std::numbers::pi / 1800.0;
@@ -76,6 +80,63 @@ std::vector<RotaryStretch> rotary_stretches(const Machine& machine) {
   }
   std::ranges::stable_sort(stretches, std::ranges::greater{}, &RotaryStretch::length);
   return stretches;
+}
+
+void require_rotary_axes(const Machine& machine, const std::string& instrument) {
+  const std::size_t rotary = rotary_stretches(machine).size();
+  if (rotary > 0 && rotary <= 3) return;
+  throw InputError({machine.file, 0},
+                   rotary == 0 ? "the machine has no rotary axis"
+                               : "the machine has more rotary axes than a grid can have",
+                   "plan a " + instrument + " for machines with one to three of A, B and C");
+}
+
+const Axis* innermost_table(const Machine& machine) {
+  for (const Joint& joint : machine.structure.joints) {
+    if (!joint.workpiece_side) return nullptr;
+    if (is_rotary(joint.axis)) return &machine.axis(joint.axis);
+  }
+  return nullptr;
+}
+
+Eigen::AlignedBox3d rotary_region_w(const Machine& machine, const SweptVolume& swept) {
+  const int along = swept.along_spindle();
+  const bool up = swept.spindle_w()[along] > 0.0;
+  Eigen::AlignedBox3d region = swept.box_w();
+  (up ? region.max() : region.min())[along] = region.center()[along];
+  const Axis* table = innermost_table(machine);
+  if (table == nullptr) return region;
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(kTableShare * swept.box_w().sizes().minCoeff());
+  const Eigen::Vector3d& centre_w = table->centre;
+  region = Eigen::AlignedBox3d(centre_w - half, centre_w + half);
+  (up ? region.min() : region.max())[along] = centre_w[along];
+  return region;
+}
+
+std::vector<Eigen::Vector3d> places_on_circle_w(const Eigen::AlignedBox3d& region_w, int along_spindle,
+                                                int count) {
+  const int first = (along_spindle + 1) % 3, second = (along_spindle + 2) % 3;
+  const double radius = 0.5 * kCircleShare * std::min(region_w.sizes()[first], region_w.sizes()[second]);
+  std::vector<Eigen::Vector3d> places;
+  for (int i = 0; i < count; ++i) {
+    const double angle = kTurn * i / count;
+    Eigen::Vector3d place = region_w.center();
+    place[first] += radius * std::cos(angle);
+    place[second] += radius * std::sin(angle);
+    places.emplace_back((place * 1e3).array().round() * 1e-3);
+  }
+  return places;
+}
+
+std::vector<PlanPosition> rotary_sweep(const Machine& machine, const RotaryStretch& stretch, int count) {
+  std::vector<PlanPosition> sweep;
+  for (int i = 0; i < count; ++i) {
+    PlanPosition each{home_position(machine), {i, 0, 0}};
+    each.position[index_of(stretch.axis)] =
+        std::clamp(in_tenths_of_degrees(stretch.node(i, count)), stretch.min, stretch.max);
+    sweep.push_back(each);
+  }
+  return sweep;
 }
 
 std::vector<PlanPosition> rotary_grid(const Machine& machine, std::size_t positions, double jitter,

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "volcal/identify/planning/plan_layout.h"
@@ -28,6 +29,24 @@ struct RotaryStretch {
 
 /// Of every rotary axis, the longest first.
 std::vector<RotaryStretch> rotary_stretches(const Machine& machine);
+
+/// Refuses a machine without rotary axes, or with more than a grid can have; `instrument`: what is planned.
+void require_rotary_axes(const Machine& machine, const std::string& instrument);
+
+/// The rotary axis that carries the workpiece, if one does.
+const Axis* innermost_table(const Machine& machine);
+
+/// Where workpieces stand that rotary axes turn, m: about the axis of the innermost rotary table, a quarter
+/// of the smallest side of the swept box to either side and as high above its centre; of a machine whose tool
+/// alone turns the half of the swept box away from the spindle.
+Eigen::AlignedBox3d rotary_region_w(const Machine& machine, const SweptVolume& swept);
+
+/// `count` places on a circle about the middle of a region, at one height, in whole millimetres.
+std::vector<Eigen::Vector3d> places_on_circle_w(const Eigen::AlignedBox3d& region_w, int along_spindle,
+                                                int count);
+
+/// One axis goes through its stretch in `count` positions, in whole tenths of a degree, all others at home.
+std::vector<PlanPosition> rotary_sweep(const Machine& machine, const RotaryStretch& stretch, int count);
 
 /// About `positions` of them in a grid over all rotary axes, counts in proportion to the stretches, 3 at
 /// least; each moved by up to `jitter` of a step, others for every `stream`, in whole tenths of a degree. The

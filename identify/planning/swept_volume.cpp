@@ -108,7 +108,8 @@ std::optional<AxisPosition> SweptVolume::position_at(const Eigen::Vector3d& want
 bool SweptVolume::passes_spindle(const Eigen::Vector3d& from_w, const AxisPosition& position,
                                  std::size_t tool) const {
   const Eigen::Vector3d reference = chain_.nominal_point_w(position, Eigen::Vector3d::Zero());
-  return distance_from_half_line(from_w, point_w(position, tool), reference, spindle_w_) >=
+  const Eigen::Vector3d spindle_w = chain_.nominal_rotation_wt(position) * spindle_w_;
+  return distance_from_half_line(from_w, point_w(position, tool), reference, spindle_w) >=
          settings_.surroundings.spindle_radius;
 }
 

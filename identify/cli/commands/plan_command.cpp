@@ -273,7 +273,9 @@ void define_budget(CLI::App& app, PlanArguments& arguments) {
 void define_instrument(CLI::App& app, PlanArguments& arguments) {
   std::vector<std::string> instruments;
   for (const PlanInstrument* each : plan_instruments()) instruments.push_back(each->name());
-  app.add_option("--instrument", arguments.settings.instrument)
+  app.add_option(
+         "--instrument", arguments.settings.instrument,
+         "r-test, probed-sphere and those named -rotary move the rotary axes, others leave them at home")
       ->check(CLI::IsMember(instruments))
       ->capture_default_str();
   app.add_option("--bar-mm", arguments.bar_mm, "length of the ball-bar, between the ball centres")
@@ -371,7 +373,9 @@ const Command& plan_command() {
       "  volcal plan machine.toml --with campaign.toml --extend --stations 1 --readings 200 -o more\n"
       "  volcal plan machine.toml --instrument ball-bar --bar-mm 100 --bar-sigma-um 0.5 --stations 3 "
       "--readings 1200 -o plan\n"
-      "  volcal plan five-axis/machine.toml --instrument r-test --stations 3 --readings 720 -o spheres\n",
+      "  volcal plan five-axis/machine.toml --instrument r-test --stations 3 --readings 720 -o spheres\n"
+      "  volcal plan five-axis/machine.toml --instrument ball-bar-rotary --bar-mm 100 --bar-sigma-um 0.5 "
+      "--stations 2 --readings 1500 -o bars\n",
       define_plan};
   return command;
 }

@@ -3,15 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "volcal/identify/planning/plan_instrument.h"
-#include "volcal/model/description/errors.h"
+#include "volcal/identify/planning/instruments/bar_instrument.h"
 
 namespace volcal {
 namespace {
 
 constexpr int kPositionsPerTurn = 36;
 constexpr std::size_t kLeastPositions = 10;  // of an arc: a quarter of a turn
-constexpr double kHalfStroke = 1e-3;         // m, that a bar is longer or shorter than nominal
 
 /// Coordinate plane of the workpiece, its circle turning from the first direction to the second.
 struct CirclePlane {
@@ -41,11 +39,9 @@ std::vector<PlanPosition> longest_arc(const Around& around) {
 }
 
 /// Telescoping ball-bar (ISO 230-4): circles about a centre ball, both ways round.
-class PlannedBallBar : public PlanInstrument {
+class PlannedBallBar : public BarInstrument {
  public:
   std::string name() const override { return "ball-bar"; }
-
-  std::string study_kind() const override { return "ball-bar-circles"; }
 
   InstrumentWords words() const override {
     return {
@@ -61,26 +57,8 @@ class PlannedBallBar : public PlanInstrument {
 
   std::vector<std::string> own_options() const override { return {"--bar-mm", "--bar-sigma-um"}; }
 
-  double usual_reading_time() const override { return 0.1; }
-
-  void check(const PlanSettings& settings) const override {
-    if (settings.bar.length > kHalfStroke) return;
-    throw InputError({}, "the length of the ball-bar is missing", "give --bar-mm, between the ball centres");
-  }
-
   Eigen::AlignedBox3d region_w(const PlanScene& scene) const override {
     return scene.settings.surroundings.stations_w.value_or(scene.swept.box_w());
-  }
-
-  bool can_stand(const PlanScene& scene, const Eigen::Vector3d& place_w) const override {
-    return region_w(scene).contains(place_w);
-  }
-
-  bool reaches(const PlanScene& scene, const Eigen::Vector3d& place_w, const AxisPosition& position,
-               std::size_t tool) const override {
-    const double length = (scene.swept.point_w(position, tool) - place_w).norm();
-    return std::abs(length - scene.settings.bar.length) <= kHalfStroke &&
-           scene.swept.passes_spindle(place_w, position, tool);
   }
 
   /// Through the middle of the volume, evenly along its longest side.
@@ -96,8 +74,6 @@ class PlannedBallBar : public PlanInstrument {
     return places;
   }
 
-  bool takes_runs_whole() const override { return true; }
-
   /// A run in each plane where a quarter of a turn at least is reached.
   std::vector<PlanRun> candidate_runs(const PlanScene& scene, const Eigen::Vector3d& place_w,
                                       const PlanRun& at, const CandidateGrid& /*grid*/) const override {
@@ -109,41 +85,6 @@ class PlannedBallBar : public PlanInstrument {
       if (run.positions.size() >= kLeastPositions) runs.push_back(std::move(run));
     }
     return runs;
-  }
-
-  /// The arc in the same plane about the new place.
-  PlanRun moved(const PlanScene& scene, const Eigen::Vector3d& place_w, const PlanRun& run) const override {
-    for (const PlanRun& each : candidate_runs(scene, place_w, run, {})) {
-      if (each.part == run.part) return each;
-    }
-    PlanRun lost = run;
-    lost.positions.clear();
-    return lost;
-  }
-
-  void describe(const PlanSettings& settings, const NamedPlace& place, Setup& setup) const override {
-    setup.options.set("centre", place.place_w);
-    if (settings.bar.length_sigma) setup.options.set("length_sigma", *settings.bar.length_sigma);
-    setup.has_noise = true;
-    setup.noise.set("constant", settings.noise.constant);
-    setup.noise.set("per_metre", settings.noise.per_metre);
-    setup.repeatability = settings.noise.repeatability;
-  }
-
-  std::vector<double> nominal_reading(const Eigen::Vector3d& place_w,
-                                      const Eigen::Vector3d& point_w) const override {
-    return {(point_w - place_w).norm()};
-  }
-
-  /// Setups of a plan are called PLACE_TOOL_PLANE; others name their place themselves.
-  std::optional<NamedPlace> place_of(const Setup& setup, const Machine& machine) const override {
-    const auto place_w = setup.options.vector("centre");
-    if (!place_w) return std::nullopt;
-    const std::string tool = "_" + machine.tools[setup.tool].name + "_";
-    const std::size_t place_ends = setup.name.rfind(tool);
-    const std::string part =
-        place_ends == std::string::npos ? "" : setup.name.substr(place_ends + tool.size());
-    return NamedPlace{setup.name.substr(0, place_ends), *place_w, part};
   }
 
  private:

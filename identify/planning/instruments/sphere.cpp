@@ -6,15 +6,11 @@
 
 #include "volcal/identify/planning/plan_instrument.h"
 #include "volcal/identify/planning/rotary_positions.h"
-#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kOnSphere = 5e-6;  // m: linear axes stand in whole micrometres
-constexpr double kTableShare =
-    0.25;  // of the smaller side of the swept box, to either side of a table's axis
-constexpr double kCircleShare = 0.7;     // of the region's half width: a textbook's circle of spheres
+constexpr double kOnSphere = 5e-6;       // m: linear axes stand in whole micrometres
 constexpr std::size_t kUsualGrid = 108;  // positions, where none are asked for
 
 /// Spheres on the table that the tool stays on while all combinations of the rotary axes' positions are met:
@@ -44,31 +40,15 @@ class PlannedSphere : public PlanInstrument {
 
   double usual_reading_time() const override { return probed_ ? 30.0 : 2.0; }
 
-  void check(const PlanSettings& settings) const override {
-    const std::size_t rotary = rotary_stretches(settings.machine).size();
-    if (rotary > 0 && rotary <= 3) return;
-    throw InputError({settings.machine.file, 0},
-                     rotary == 0 ? "the machine has no rotary axis"
-                                 : "the machine has more rotary axes than a grid can have",
-                     "plan a " + name() + " for machines with one to three of A, B and C");
-  }
+  void check(const PlanSettings& settings) const override { require_rotary_axes(settings.machine, name()); }
 
   bool turns_rotary_axes() const override { return true; }
 
+  bool stays_at_its_place() const override { return true; }
+
   Eigen::AlignedBox3d region_w(const PlanScene& scene) const override {
     if (scene.settings.surroundings.stations_w) return *scene.settings.surroundings.stations_w;
-    const Eigen::AlignedBox3d& swept = scene.swept.box_w();
-    const int along = scene.swept.along_spindle();
-    const bool up = scene.swept.spindle_w()[along] > 0.0;
-    Eigen::AlignedBox3d region = swept;
-    (up ? region.max() : region.min())[along] = swept.center()[along];
-    const Axis* table = innermost_table(scene.settings.machine);
-    if (table == nullptr) return region;
-    Eigen::Vector3d half = Eigen::Vector3d::Constant(kTableShare * swept.sizes().minCoeff());
-    const Eigen::Vector3d& centre_w = table->centre;
-    region = Eigen::AlignedBox3d(centre_w - half, centre_w + half);
-    (up ? region.min() : region.max())[along] = centre_w[along];
-    return region;
+    return rotary_region_w(scene.settings.machine, scene.swept);
   }
 
   bool can_stand(const PlanScene& scene, const Eigen::Vector3d& place_w) const override {
@@ -85,21 +65,8 @@ class PlannedSphere : public PlanInstrument {
            scene.swept.position_at(place_w, tool, position).has_value();
   }
 
-  /// On a circle about the middle of the region, at one height.
   std::vector<Eigen::Vector3d> textbook_places_w(const PlanScene& scene, int count) const override {
-    const Eigen::AlignedBox3d region = region_w(scene);
-    const int up = scene.swept.along_spindle();
-    const int first = (up + 1) % 3, second = (up + 2) % 3;
-    const double radius = 0.5 * kCircleShare * std::min(region.sizes()[first], region.sizes()[second]);
-    std::vector<Eigen::Vector3d> places;
-    for (int i = 0; i < count; ++i) {
-      const double angle = 2.0 * std::numbers::pi * i / count;
-      Eigen::Vector3d place = region.center();
-      place[first] += radius * std::cos(angle);
-      place[second] += radius * std::sin(angle);
-      places.emplace_back((place * 1e3).array().round() * 1e-3);
-    }
-    return places;
+    return places_on_circle_w(region_w(scene), scene.swept.along_spindle(), count);
   }
 
   bool takes_runs_whole() const override { return false; }
@@ -152,15 +119,6 @@ class PlannedSphere : public PlanInstrument {
   }
 
  private:
-  /// The rotary axis that carries the workpiece, if one does.
-  static const Axis* innermost_table(const Machine& machine) {
-    for (const Joint& joint : machine.structure.joints) {
-      if (!joint.workpiece_side) return nullptr;
-      if (is_rotary(joint.axis)) return &machine.axis(joint.axis);
-    }
-    return nullptr;
-  }
-
   bool probed_;
 };
 

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "volcal/identify/planning/plan_instrument.h"
+#include "volcal/identify/planning/rotary_positions.h"
+#include "volcal/model/kinematics/rotary_datum.h"
 
 namespace volcal {
 namespace {
@@ -16,9 +20,11 @@ class PlannedTracking : public PlanInstrument {
  public:
   explicit PlannedTracking(bool angles) : angles_(angles) {}
 
-  std::string name() const override { return angles_ ? "laser-tracker" : "laser-tracer"; }
+  std::string name() const override { return instrument(); }
 
-  std::string study_kind() const override { return name(); }
+  std::string instrument() const override { return angles_ ? "laser-tracker" : "laser-tracer"; }
+
+  std::string study_kind() const override { return instrument(); }
 
   InstrumentWords words() const override {
     return {
@@ -151,7 +157,106 @@ class PlannedTracking : public PlanInstrument {
   bool angles_;
 };
 
+/// The same tracing interferometer while rotary axes move: on the table, with which it turns, or beside the
+/// volume of a machine whose tool alone turns. Every combination of the rotary axes' positions is met, the
+/// linear axes anywhere in their travel.
+class PlannedTurningTracer : public PlannedTracking {
+ public:
+  PlannedTurningTracer() : PlannedTracking(false) {}
+
+  std::string name() const override { return "laser-tracer-rotary"; }
+
+  InstrumentWords words() const override {
+    InstrumentWords words = PlannedTracking::words();
+    words.checked =
+        "Checked: range and elevation of the instrument, as it turns with the table that it stands on, and "
+        "that beams pass by the spindle as it stands at every pose; not whether spindle, table and "
+        "instrument "
+        "keep clear of each other, nor whether the reflector looks at the station.";
+    words.unreached_remedy =
+        "give a wider --range-mm or --elevation-deg, a smaller --spindle-mm, or --region-mm, where stations "
+        "may "
+        "stand on the table";
+    return words;
+  }
+
+  std::vector<std::string> own_options() const override {
+    std::vector<std::string> options = PlannedTracking::own_options();
+    options.emplace_back("--turn-deg-s");
+    std::erase(options, "--angle-noise-urad");
+    return options;
+  }
+
+  void check(const PlanSettings& settings) const override { require_rotary_axes(settings.machine, name()); }
+
+  bool turns_rotary_axes() const override { return true; }
+
+  Eigen::AlignedBox3d judged_region_w(const PlanScene& scene) const override {
+    return rotary_region_w(scene.settings.machine, scene.swept);
+  }
+
+  Eigen::AlignedBox3d region_w(const PlanScene& scene) const override {
+    if (scene.settings.surroundings.stations_w || !stands_on_table(scene))
+      return PlannedTracking::region_w(scene);
+    return rotary_region_w(scene.settings.machine, scene.swept);
+  }
+
+  /// On a table the beam's range keeps spindle and tool away.
+  bool can_stand(const PlanScene& scene, const Eigen::Vector3d& place_w) const override {
+    if (stands_on_table(scene)) return region_w(scene).contains(place_w);
+    return PlannedTracking::can_stand(scene, place_w);
+  }
+
+  /// On a circle about the table's axis, every fourth as high as it may stand.
+  std::vector<Eigen::Vector3d> textbook_places_w(const PlanScene& scene, int count) const override {
+    if (!stands_on_table(scene)) return PlannedTracking::textbook_places_w(scene, count);
+    const int up = scene.swept.along_spindle();
+    std::vector<Eigen::Vector3d> places = places_on_circle_w(region_w(scene), up, count);
+    for (std::size_t i = 3; i < places.size(); i += 4) places[i][up] = region_w(scene).max()[up];
+    return places;
+  }
+
+  std::vector<PlanRun> candidate_runs(const PlanScene& scene, const Eigen::Vector3d& place_w,
+                                      const PlanRun& at, const CandidateGrid& grid) const override {
+    const Machine& machine = scene.settings.machine;
+    PlanRun run = at;
+    run.positions = rotary_grid(machine, grid.positions > 0 ? grid.positions : kUsualPoses, grid.jitter,
+                                scene.settings.seed, grid.stream);
+    int number = 1 + static_cast<int>(grid.stream % kOtherStart);
+    for (PlanPosition& each : run.positions) {
+      place_linear_axes(machine, number, each.position);
+      ++number;
+    }
+    run = moved(scene, place_w, run);
+    run.positions = in_path_order(std::move(run.positions));
+    return {run};
+  }
+
+ private:
+  static constexpr std::size_t kUsualPoses = 108;
+  static constexpr std::uint64_t kOtherStart = 1009;
+
+  static bool stands_on_table(const PlanScene& scene) {
+    return innermost_table(scene.settings.machine) != nullptr;
+  }
+
+  static void place_linear_axes(const Machine& machine, int number, AxisPosition& position) {
+    constexpr std::array<int, 3> kBases = {2, 3, 5};
+    for (const AxisName name : kLinearAxes) {
+      const Axis& axis = machine.axis(name);
+      const double share = radical_inverse(number, kBases[static_cast<std::size_t>(direction_of(name))]);
+      position[index_of(name)] = std::clamp(programmed_position(axis.travel_min + share * axis.travel()),
+                                            axis.travel_min, axis.travel_max);
+    }
+  }
+};
+
 }  // namespace
+
+const PlanInstrument& planned_turning_tracer() {
+  static const PlannedTurningTracer instrument;
+  return instrument;
+}
 
 const PlanInstrument& planned_laser_tracer() {
   static const PlannedTracking instrument(false);

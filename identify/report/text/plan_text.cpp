@@ -83,7 +83,8 @@ std::string assumed_of_axes(const CampaignPlan& plan) {
   std::string letters;
   for (const RotaryStretch& each : rotary)
     letters += (letters.empty() ? "" : ", ") + std::string(1, letter_of(each.axis));
-  return "rotary axes " + letters + " stand at home; their errors: --instrument r-test\n";
+  return "rotary axes " + letters +
+         " stand at home; their errors: --instrument r-test, ball-bar-rotary or laser-tracer-rotary\n";
 }
 
 /// What holds for a campaign on a compensated machine (ISO/TR 16907:2015, 11.3).

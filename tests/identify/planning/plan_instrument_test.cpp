@@ -57,7 +57,7 @@ TEST(PlanInstruments, AreInstrumentsOfTheModel) {
   std::set<std::string> names;
   for (const PlanInstrument* each : plan_instruments()) {
     EXPECT_TRUE(names.insert(each->name()).second) << each->name();
-    EXPECT_NE(find_instrument(each->name()), nullptr) << each->name();
+    EXPECT_NE(find_instrument(each->instrument()), nullptr) << each->name();
     EXPECT_EQ(find_plan_instrument(each->name()), each);
     EXPECT_GT(each->usual_reading_time(), 0.0);
     for (const std::string& option : each->own_options()) EXPECT_TRUE(option.starts_with("--")) << option;

@@ -7,7 +7,6 @@
 
 #include "volcal/identify/compensation/compensation.h"
 #include "volcal/model/description/errors.h"
-#include "volcal/model/description/parallel_axes.h"
 
 namespace volcal {
 namespace {
@@ -63,7 +62,6 @@ struct FiveAxisCompensation::Shares {
 FiveAxisCompensation::FiveAxisCompensation(const Machine& machine, const FiveAxisSettings& settings,
                                            JointErrorSource errors)
     : chain_(machine), settings_(settings), errors_(std::move(errors)) {
-  require_no_parallel_axes(machine, "compensation of rotary axes");
   centre_.fill(Vector3d::Zero());
   for (const Axis& axis : machine.axes) {
     if (is_rotary(axis.name)) centre_[rotary_index(axis.name)] = axis.centre;
@@ -151,7 +149,8 @@ Matrix3d linear_directions(const JointLever* levers, std::size_t count) {
   Matrix3d directions = Matrix3d::Zero();
   for (std::size_t i = 0; i < count; ++i) {
     const int direction = direction_of(levers[i].axis);
-    if (!is_rotary(levers[i].axis)) directions.col(direction) = levers[i].rotation_ws.col(direction);
+    if (is_rotary(levers[i].axis) || is_parallel(levers[i].axis)) continue;
+    directions.col(direction) = levers[i].rotation_ws.col(direction);
   }
   return directions;
 }

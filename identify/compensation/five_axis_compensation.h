@@ -9,8 +9,10 @@
 ///   R-RAX  e + tilt x ref      R-ANG  tilt x (x - ref)      R-POR  s (dp + alpha_tilt x x)
 /// and the linear axes get dx = -J^-1 delta, J their directions and delta the sum of these displacements in
 /// workpiece coordinates. Directions that they hardly move (singular values of J below a twentieth) are left.
-/// R-VOL, the sum of all, depends on no reference. L-VOL is here with the rotary axes where they stand, zero
-/// at home approached towards +; the parts L-POS to L-ANG are those of compensation.h.
+/// R-VOL, the sum of all, depends on no reference. A parallel axis U, V, W is at its position in all levers
+/// and its errors are among those of L-VOL; X, Y, Z move, as far as there is a direction that they move.
+/// L-VOL is here with the rotary axes where they stand, zero at home approached towards +; the parts L-POS to
+/// L-ANG are those of compensation.h.
 ///
 /// FOR turns two rotary axes so that the tool's axis, z of the tool, has its nominal direction in the
 /// workpiece. Errors of all axes count (8.2.6, note). Near a pole one rotary axis hardly turns it; the moves

@@ -32,11 +32,21 @@ std::vector<AxisName> rotary_axes_of(const Machine& machine) {
   return axes;
 }
 
-/// X Y Z A B C.
+/// X Y Z U V W A B C.
 std::vector<AxisName> axes_in_order(const Machine& machine) {
   std::vector<AxisName> axes = linear_axes_of(machine);
+  for (const AxisName axis : machine.parallel_axes()) axes.push_back(axis);
   for (const AxisName axis : rotary_axes_of(machine)) axes.push_back(axis);
   return axes;
+}
+
+/// Which axes move, where two are parallel.
+std::string who_moves(const Machine& machine) {
+  std::string letters;
+  for (const AxisName axis : machine.parallel_axes())
+    letters += (letters.empty() ? "" : ", ") + std::string(1, letter_of(axis));
+  if (letters.empty()) return {};
+  return fmt::format("X, Y, Z move for it; {} where the command has it\n", letters);
 }
 
 }  // namespace
@@ -65,7 +75,7 @@ std::string corrections_text(const Machine& machine, const CompensationTables& t
       table.add_row(std::move(cells));
     }
   }
-  return table.text();
+  return table.text() + who_moves(machine);
 }
 
 nlohmann::ordered_json corrections_json(const Machine& machine, const CompensationTables& tables,

@@ -372,6 +372,40 @@ TEST_P(RotaryResiduals, MovesAreBoundedAtThePole) {
   }
 }
 
+/// A quill W at random positions, on a trunnion and inside a swivelling head, where it goes along x at B = 90
+/// degrees: X, Y and Z undo what the rotary axes do at the end of it and, in L-VOL, what the quill itself
+/// does.
+TEST(RotaryCompensation, ReachesTheEndOfAQuill) {
+  for (const char* structure : {"w C' A' b X Y Z W t", "w X' b Y Z C B W t"}) {
+    sim::TruthMachine truth = truth_of(structure, 5);
+    truth.set_error({Component::X, AxisName::W}, [](double q) { return 2e-4 * q * q; });
+    truth.set_error({Component::B, AxisName::W}, [](double q) { return 4e-5 * q; });
+    truth.set_location({Component::A, AxisName::W}, 3e-5);
+    double all = 0.0, without_quill = 0.0;
+    for (const char* type : {"L-VOL+R-VOL", "R-VOL"}) {
+      FiveAxisSettings settings;
+      settings.type = CompensationType::parse(type);
+      settings.tool_offset = tool_of_length(kToolLength);
+      const FiveAxisCompensation compensation(truth.machine(), settings, true_errors(truth));
+      sim::RandomStream random(8, "poses");
+      for (int i = 0; i < 200; ++i) {
+        sim::MachineState programmed, commanded;
+        programmed.position = random_pose(random);
+        programmed.position[index_of(AxisName::W)] = random.uniform(-0.2, 0.2);
+        commanded.position = compensation.correction(programmed.position).applied_to(programmed.position);
+        const double left = (truth.pose(commanded, settings.tool_offset) -
+                             truth.nominal_pose(programmed, settings.tool_offset))
+                                .topRightCorner<3, 1>()
+                                .norm();
+        double& largest = settings.type.has(Part::Positioning) ? all : without_quill;
+        largest = std::max(largest, left);
+      }
+    }
+    EXPECT_LT(all, 1e-8) << structure;
+    EXPECT_GT(without_quill, 5e-6) << structure;  // 8 um of EXW, 6 um of EA0W and their like
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Structures, RotaryResiduals, ::testing::Values(testing::kTrunnion, testing::kHead),
                          [](const auto& tested) {
                            return std::string(tested.param) == testing::kTrunnion ? "Trunnion" : "Head";

@@ -37,8 +37,8 @@ class LineOfSight {
                                       const CandidateGrid& grid) const;
   PlanRun moved(const Eigen::Vector3d& station_w, const PlanRun& run) const;
   /// Poses of a tool over which the error of the machine is judged: a grid of the linear axes with rotary
-  /// axes at home; of an instrument that turns rotary axes corners and middle of its judged region, `per_axis`
-  /// positions of every rotary axis.
+  /// axes at home; of an instrument that turns rotary axes corners and middle of its judged region,
+  /// `per_axis` positions of every rotary axis.
   std::vector<AxisPosition> volume(std::size_t tool, int per_axis) const;
 
  private:

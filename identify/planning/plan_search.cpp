@@ -16,7 +16,7 @@ namespace volcal {
 namespace {
 
 constexpr std::size_t kCoarsePositions = 60;  // of a run while stations are looked for
-constexpr std::size_t kMeasuredWhole = 0;        // positions of a run that is taken whole
+constexpr std::size_t kMeasuredWhole = 0;     // positions of a run that is taken whole
 constexpr std::size_t kLeastPool = 400;       // positions of a run to choose from
 constexpr std::size_t kPoolPerPosition = 3;
 constexpr double kPoolJitter = 0.5;    // of a grid step: the whole travel is met

@@ -16,6 +16,7 @@ namespace volcal {
   EFFECT(common_reversal_effect)      \
   EFFECT(lead_error_effect)           \
   EFFECT(growing_lead_error_effect)   \
+  EFFECT(rack_error_effect)           \
   EFFECT(encoder_subdivision_effect)  \
   EFFECT(worm_error_effect)           \
   EFFECT(ring_eccentricity_effect)    \

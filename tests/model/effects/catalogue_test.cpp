@@ -425,6 +425,26 @@ TEST_F(Catalogue, AWaveGrowsWithTheWayFromHome) {
   EXPECT_EQ(find_effect(spec.kind)->make(spec, "")->amplitudes()[1].unit(), "um/m");
 }
 
+/// Circumference of the pinion; ball screws end at some 2.5 m.
+TEST_F(Catalogue, ARackRepeatsItsErrorWithThePinionOnLongAxesAlone) {
+  const EffectSpec spec = effect_spec("rack-error", {{"symbol", std::string("EXX")}, {"period", 0.125}});
+  const double phase = 2.0 * std::numbers::pi * readings("S1").position[0][7] / 0.125;
+  const Eigen::MatrixXd driver = drivers(spec, "S1");
+  EXPECT_NEAR(driver(7, 0), std::cos(phase), 1e-12);
+  EXPECT_NEAR(driver(7, 1), std::sin(phase), 1e-12);
+  const EffectKind* kind = find_effect("rack-error");
+  EXPECT_TRUE(kind->candidates(campaign_).empty()) << "no axis is longer than two metres";
+  campaign_.machine.axes.front().travel_max = campaign_.machine.axes.front().travel_min + 3.35;
+  ASSERT_EQ(kind->candidates(campaign_).size(), 1U);
+  EXPECT_EQ(*kind->candidates(campaign_).front().options.text("symbol"), "EXX");
+  const std::vector<Eigen::VectorXd> periods = kind->make(spec, "")->scan(campaign_);
+  EXPECT_NEAR(periods.front()[0], 0.6, 1e-12);
+  EXPECT_GT(periods.back()[0], 0.06);
+  for (std::size_t i = 1; i < periods.size(); ++i)
+    EXPECT_NEAR(1.0 / periods[i][0] - 1.0 / periods[i - 1][0], 0.5 / 3.35, 1e-9)
+        << "half a period over the travel";
+}
+
 /// Of a ramp r t the core lags by r tau (1 - exp(-t / tau)), in the end by tau times the rate.
 TEST_F(Catalogue, WhatFollowsTheRateOfATemperature) {
   constexpr double kRate = 0.5 / 3600.0, kConstant = 900.0;

@@ -1,4 +1,5 @@
-// Periodic errors of drive and scale: ball-screw lead error, interpolation error of an encoder.
+// Periodic errors of drive and scale: lead error of a ball screw, pinion on a rack, interpolation of an
+// encoder.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -19,6 +20,7 @@ struct PeriodRange {
   double max;
   double finest_scan = 4e-3;  ///< m: ranges above are scanned evenly, others at the usual signal periods
   bool grows = false;         ///< in proportion to the travel from home
+  double least_travel = 0.0;  ///< m: shorter axes have no such drive
 };
 constexpr PeriodRange kLead = {"lead-error", "lead error", 10e-3, 4e-3, 60e-3};
 constexpr PeriodRange kGrowingLead = {.kind = "growing-lead-error",
@@ -27,6 +29,15 @@ constexpr PeriodRange kGrowingLead = {.kind = "growing-lead-error",
                                       .min = 4e-3,
                                       .max = 60e-3,
                                       .grows = true};
+/// Circumference of the pitch circle, pi times module times teeth: from module 1 with 20 teeth to module 6
+/// with
+/// 32. Ball screws end where they whip, at some 2.5 m.
+constexpr PeriodRange kRack = {.kind = "rack-error",
+                               .label = "rack error",
+                               .usual = 125e-3,
+                               .min = 60e-3,
+                               .max = 600e-3,
+                               .least_travel = 2.5};
 constexpr PeriodRange kEncoder = {"encoder-subdivision", "subdivision error", 1e-3, 20e-6, 3e-3};
 
 /// Evenly spaced frequencies, half a period over the travel apart: no line can hide between them.
@@ -106,10 +117,12 @@ std::unique_ptr<FormulaEffect> make_periodic(const EffectTable& table, const Per
   return effect;
 }
 
-std::vector<EffectSpec> positioning_motions(const Campaign& campaign, const char* kind) {
+std::vector<EffectSpec> positioning_motions(const Campaign& campaign, const char* kind,
+                                            double least_travel = 0.0) {
   std::vector<EffectSpec> specs;
   for (const ErrorSymbol symbol : linear_axis_motions(campaign.machine)) {
-    if (symbol.is_positioning()) specs.push_back(effect_spec(kind, {{"symbol", symbol.name()}}));
+    if (symbol.is_positioning() && campaign.machine.axis(symbol.axis).travel() >= least_travel)
+      specs.push_back(effect_spec(kind, {{"symbol", symbol.name()}}));
   }
   return specs;
 }
@@ -134,6 +147,16 @@ const EffectKind& growing_lead_error_effect() {
           "ISO 3408-3 (periodic travel deviation of ball screws)"),
       [](const EffectTable& table) { return make_periodic(table, kGrowingLead); },
       [](const Campaign& campaign) { return positioning_motions(campaign, kGrowingLead.kind); });
+  return kind;
+}
+
+const EffectKind& rack_error_effect() {
+  static const FormulaKind kind(
+      periodic_schema(kRack, "a rack repeats its error with every turn of the pinion that runs on it",
+                      "ISO 1328-1 (total cumulative pitch deviation of a gear, over a turn)"),
+      [](const EffectTable& table) { return make_periodic(table, kRack); },
+      [](const Campaign& campaign) { return positioning_motions(campaign, kRack.kind, kRack.least_travel); },
+      [](const Campaign& campaign) { return positioning_motions(campaign, kRack.kind); });
   return kind;
 }
 

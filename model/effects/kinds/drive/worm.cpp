@@ -43,7 +43,8 @@ std::vector<Eigen::VectorXd> periods_of_wheels(const Campaign& campaign, AxisNam
 ErrorSymbol rotary_symbol(const EffectTable& table) {
   const ErrorSymbol symbol = table.symbol();
   if (!is_rotary(symbol.axis))
-    table.fail(symbol.name() + " is of a linear axis", "use lead-error, or name a motion of a rotary axis");
+    table.fail(symbol.name() + " is of a linear axis",
+               "use lead-error or rack-error, or name a motion of a rotary axis");
   return symbol;
 }
 

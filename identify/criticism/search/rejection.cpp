@@ -9,6 +9,7 @@
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
 #include "volcal/identify/criticism/data/effect_words.h"
 #include "volcal/identify/criticism/data/thresholds.h"
+#include "volcal/identify/criticism/search/errors_first.h"
 #include "volcal/model/description/finding_codes.h"
 
 namespace volcal {
@@ -53,7 +54,10 @@ ConstancyTest constancy_of(const ModelState& state, const Family& family, const 
                            Eigen::Index first, const Projector& projector) {
   const Eigen::Index count = std::min(family.amplitudes(), columns.cols());
   const Eigen::VectorXd moved = columns.leftCols(count) * projector.solution().segment(first, count);
-  return least_constant(family, moved, state.setting().constancy_variables, projector);
+  std::vector<ScanVariable> variables = state.setting().constancy_variables;
+  std::erase_if(variables,
+                [&](const ScanVariable& each) { return is_held_in_few_terms(state, each.variable); });
+  return least_constant(family, moved, variables, projector);
 }
 
 }  // namespace
@@ -64,7 +68,7 @@ bool Rejection::still_moves(const std::vector<Variable>& drivers) const {
   const auto moves = [&](const GenericTest* scan) {
     if (scan->period > 0.0) return false;
     return std::ranges::any_of(scan->variables, [&](const Variable& variable) {
-      return std::ranges::find(drivers, variable) != drivers.end();
+      return std::ranges::find(drivers, variable) != drivers.end() && !is_held_in_few_terms(state_, variable);
     });
   };
   return rules().decide(SearchRule::DriverStillMoves,
@@ -94,7 +98,9 @@ bool Rejection::leaves_more(const AddedEffect& effect) const {
   const double own = state_.setting().family_wise_log10_p(effect.test);
   return rules().decide(SearchRule::LeavesMore, [&] {
     return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
-      return state_.tests().family_wise_log10_p(*scan) < own;
+      const bool judges = !std::ranges::all_of(
+          scan->variables, [&](const Variable& each) { return is_held_in_few_terms(state_, each); });
+      return judges && state_.tests().family_wise_log10_p(*scan) < own;
     });
   });
 }

@@ -10,6 +10,7 @@
 
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/scans/amplitude_constancy.h"
+#include "volcal/identify/criticism/search/errors_first.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
 #include "volcal/identify/criticism/search/one_cause.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
@@ -130,11 +131,8 @@ bool Search::draw_surface() {
 /// Not beside error functions that came back: the model that is fitted with them holds more of each than the
 /// search does, and what it leaves is for the next diagnosis.
 bool Search::may_draw() const {
-  const auto came_back = [this](const AddedEffect& each) {
-    return !setting_->families[each.test.family].orders.empty();
-  };
   return static_cast<int>(base_->surfaces().size()) < kThresholds.most_surfaces &&
-         std::ranges::none_of(state_->added(), came_back);
+         !any_function_came_back(*state_);
 }
 
 /// Where two names stand for one cause whose shape no name has. False: none does.
@@ -248,7 +246,7 @@ void Search::climb() {
            0.2 + 0.7 * std::min(1.0, static_cast<double>(added) / (options_.most + 1.0)));
     test();
     if (!given_->is_tested()) given_ = state_;
-    if (effects_added() >= options_.most) return;
+    if (effects_beyond_errors(*state_) >= options_.most) return;
     if (!add_leading() && !add_several() && (something_exceeds() || !add_absorbed())) return;
   }
 }
@@ -272,31 +270,21 @@ const FamilyTest* Search::leading_exceeding(const std::function<bool(const Famil
   return found == tests.exceeding.end() ? nullptr : &tests.families[*found];
 }
 
-int Search::effects_added() const {
-  return static_cast<int>(std::ranges::count_if(
-      state_->added(), [this](const AddedEffect& each) { return !is_left_out(each.test); }));
-}
-
 bool Search::something_exceeds() const {
   return leading_exceeding() != nullptr || state_->tests().any_scan_exceeds();
 }
 
-/// False when nothing exceeds, or something that is in no catalogue does better. An error that the model
-/// holds at zero is no effect beyond the machine's own errors: it comes before what is no better, and what
-/// has no name is nothing against it.
+/// False when nothing exceeds, or something that is in no catalogue does better.
 bool Search::add_leading() {
   const FamilyTest* best = leading_exceeding();
   if (best == nullptr) return false;
-  const FamilyTest* own = leading_exceeding([this](const FamilyTest& test) { return is_left_out(test); });
-  const auto does_better_than = [&](const FamilyTest& name) {
+  const FamilyTest* own =
+      leading_exceeding([this](const FamilyTest& test) { return is_left_out(*setting_, test); });
+  const FamilyTest* first = first_to_add(*setting_, *best, own, [this](const FamilyTest& name) {
     return rules().decide(SearchRule::ScanVeto, [&] { return any_scan_does_better(*state_, name); });
-  };
-  if (own == nullptr) {
-    if (does_better_than(*best)) return false;
-    add(*best);
-    return true;
-  }
-  add(comes_before(*best, *own) && !does_better_than(*best) ? *best : *own);
+  });
+  if (first == nullptr) return false;
+  add(*first);
   return true;
 }
 
@@ -310,7 +298,7 @@ bool Search::add_several() {
   for (const FamilyTest& test : kept) start.insert(test.family);
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kThresholds.most_together; ++names) {
-    if (effects_added() >= options_.most) break;
+    if (effects_beyond_errors(*state_) >= options_.most) break;
     const FamilyTest* best = leading_exceeding();
     if (best == nullptr && names == 1) best = best_by_variables_of_scan();
     if (best == nullptr) break;
@@ -392,7 +380,7 @@ void Search::settle(const std::function<void()>& after_a_change) {
 }
 
 /// Each added effect against all others, now that the rest is in the model: true when one was exchanged or
-/// left, and the climb goes on from there.
+/// left, and the climb goes on from there. Error functions take as many terms as they have beside the others.
 bool Search::compare_with_rivals(bool may_change) {
   std::vector<AddedEffect> added = state_->added();
   std::vector<FamilyTest> kept = added_tests(added);
@@ -409,7 +397,7 @@ bool Search::compare_with_rivals(bool may_change) {
       return true;
     }
     const FamilyTest* best = leading(tests, own.family);
-    const auto is_better = [&] { return best != nullptr && comes_before(*best, own); };
+    const auto is_better = [&] { return best != nullptr && comes_before(*setting_, *best, own); };
     if (may_change && rules().decide(SearchRule::Exchange, is_better)) {
       kept[i] = *best;
       restart_with(kept);
@@ -419,10 +407,17 @@ bool Search::compare_with_rivals(bool may_change) {
     added[i].rivals.clear();
     for (const FamilyTest& test : tests) {
       const bool known = state_->has(test.family) || rejected_.contains(test.family) ||
-                         (is_left_out(own) && !is_left_out(test));
+                         (is_left_out(*setting_, own) && !is_left_out(*setting_, test));
       if (test.score.dof > 0 && !known && near(own, test)) added[i].rivals.push_back(test);
     }
     std::ranges::sort(added[i].rivals, std::greater{}, &FamilyTest::gain);
+  }
+  if (any_order_differs(*state_, added)) {
+    restart_with(added_tests(added));
+    test();
+    std::vector<AddedEffect> anew = state_->added();
+    for (std::size_t i = 0; i < anew.size(); ++i) anew[i].rivals = std::move(added[i].rivals);
+    added = std::move(anew);
   }
   state_ = state_->with_comparisons(std::move(added));
   return false;
@@ -437,24 +432,11 @@ bool Search::near(const FamilyTest& own, const FamilyTest& other) const {
   });
 }
 
-/// Does better by more than chance; an error that the model holds at zero before an effect that does not do
-/// better than it by as much.
-bool Search::comes_before(const FamilyTest& one, const FamilyTest& other) const {
-  const double margin = kThresholds.indistinguishable_gain;
-  const bool favoured = is_left_out(one) && !is_left_out(other);
-  return one.gain > other.gain + (favoured ? -margin : margin);
-}
-
-/// Best of those that are not in the model, `but` one that is; an error that the model holds at zero before
-/// effects.
+/// Of those that are not in the model, `but` one that is.
 const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, std::size_t but) const {
-  const FamilyTest *best = nullptr, *own = nullptr;
-  for (const FamilyTest& test : tests) {
-    if (!may_be_added(test) && (test.family != but || test.score.dof == 0)) continue;
-    if (best == nullptr || test.gain > best->gain) best = &test;
-    if (is_left_out(test) && (own == nullptr || test.gain > own->gain)) own = &test;
-  }
-  return own != nullptr && comes_before(*own, *best) ? own : best;
+  return leading_errors_first(*setting_, tests, [&](const FamilyTest& test) {
+    return may_be_added(test) || (test.family == but && test.score.dof > 0);
+  });
 }
 
 void Search::reject() {

@@ -7,7 +7,7 @@
 ///   1. climb: the leading effect of the catalogue is added while it exceeds the noise and no scan does
 ///      better; where a scan does, up to three names together; where nothing exceeds, what the noise may have
 ///      absorbed (joint_noise.h). An error of the machine that the model holds at zero comes before effects
-///      that are no better, whatever the scans do,
+///      that are no better, whatever the scans do (errors_first.h),
 ///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
 ///      leave,
 ///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
@@ -87,8 +87,6 @@ class Search {
   bool may_be_added(const FamilyTest& test) const;
   const FamilyTest* leading_exceeding() const;
   const FamilyTest* leading_exceeding(const std::function<bool(const FamilyTest&)>& among) const;
-  int effects_added() const;
-  bool is_left_out(const FamilyTest& test) const { return setting_->families[test.family].is_left_out(); }
   const FamilyTest* best_by_variables_of_scan() const;
   bool something_exceeds() const;
   bool add_leading();
@@ -98,7 +96,6 @@ class Search {
   void settle(const std::function<void()>& after_a_change);
   bool compare_with_rivals(bool may_change);
   bool near(const FamilyTest& own, const FamilyTest& other) const;
-  bool comes_before(const FamilyTest& one, const FamilyTest& other) const;
   const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
   void reject();
   void recheck(const std::set<std::size_t>& stood);

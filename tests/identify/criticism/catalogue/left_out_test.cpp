@@ -109,6 +109,12 @@ TEST(LeftOut, FewOfManyAreNamedOneAfterAnother) {
   const DiagnosedModel diagnosed = diagnose_model(campaign, rigid, options);
   const Diagnosis& diagnosis = diagnosed.diagnosis;
   EXPECT_EQ(targets_of(diagnosis.effects), (std::set<std::string>{"EXX", "EBX", "EC0Y"}));
+  for (const EffectFinding& found : diagnosis.effects) {
+    for (const AmplitudeFigure& amplitude : found.amplitudes) {
+      EXPECT_GT(amplitude.u, 1e-9) << found.label << ": as many amplitudes as the model has columns of it";
+      EXPECT_LT(amplitude.u, 1e-4) << found.label;
+    }
+  }
   EXPECT_TRUE(diagnosis.one_of.empty());
   EXPECT_TRUE(diagnosis.surfaces.empty());
   EXPECT_TRUE(diagnosis.unknown.empty());

@@ -6,8 +6,11 @@ import { color, series, transparent } from '../theme.js';
 export const stepName = (step) => (step.added === '' ? 'as given' : `+ ${step.added}`);
 
 /** Names of the steps under the plot, broken where they are long. */
+// Under a bar an error of the machine stands by its symbol: "+ EXX".
+const shortName = (step) => stepName(step).replace(/, (error motion|location error|squareness) of .*/, '');
+
 export const stepAxis = (ladder) => ({
-  title: 'model', tickvals: ladder.map((_, k) => k), ticktext: ladder.map((step) => broken(stepName(step))), zeroline: false, showgrid: false, range: [-0.6, Math.max(0.6, ladder.length - 0.4)],
+  title: 'model', tickvals: ladder.map((_, k) => k), ticktext: ladder.map((step) => broken(shortName(step))), zeroline: false, showgrid: false, range: [-0.6, Math.max(0.6, ladder.length - 0.4)],
 });
 
 function broken(text) {

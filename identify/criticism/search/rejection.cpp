@@ -98,8 +98,8 @@ bool Rejection::leaves_more(const AddedEffect& effect) const {
   const double own = state_.setting().family_wise_log10_p(effect.test);
   return rules().decide(SearchRule::LeavesMore, [&] {
     return std::ranges::any_of(state_.tests().exceeding_scans(), [&](const GenericTest* scan) {
-      const bool judges = !std::ranges::all_of(
-          scan->variables, [&](const Variable& each) { return is_held_in_few_terms(state_, each); });
+      const auto is_held = [&](const Variable& each) { return is_held_in_few_terms(state_, each); };
+      const bool judges = scan->variables.empty() || !std::ranges::all_of(scan->variables, is_held);
       return judges && state_.tests().family_wise_log10_p(*scan) < own;
     });
   });

@@ -105,9 +105,8 @@ std::vector<NoiseParameters> NoiseEstimate::parameters() const {
 namespace {
 
 /// `held`: of the model that the problem holds no columns of.
-NoiseEstimate find_noise(const NoiseProblem& problem, const NoiseOptions& options,
+NoiseEstimate find_noise(RestrictedLikelihood& likelihood, const NoiseOptions& options,
                          const NoiseEstimate* previous, const NoiseEstimate* held) {
-  RestrictedLikelihood likelihood(problem, options.threads);
   NoiseEstimate estimate;
   estimate.instruments.resize(likelihood.groups());
   for (InstrumentNoise& instrument : estimate.instruments)
@@ -151,12 +150,40 @@ NoiseEstimate find_noise(const NoiseProblem& problem, const NoiseOptions& option
 
 NoiseEstimate estimate_noise(const NoiseProblem& problem, const NoiseOptions& options,
                              const NoiseEstimate* previous) {
-  return find_noise(problem, options, previous, nullptr);
+  RestrictedLikelihood likelihood(problem, options.threads);
+  return find_noise(likelihood, options, previous, nullptr);
+}
+
+NoiseEstimate estimate_noise(RestrictedLikelihood& likelihood, const NoiseOptions& options,
+                             const NoiseEstimate* previous) {
+  return find_noise(likelihood, options, previous, nullptr);
+}
+
+double nearby_log_likelihood(RestrictedLikelihood& likelihood, const NoiseOptions& options,
+                             const NoiseEstimate& previous) {
+  std::vector<InstrumentNoise> instruments(likelihood.groups());
+  std::vector<double> taken(likelihood.groups());
+  Eigen::VectorXd solution = Eigen::VectorXd::Zero(likelihood.variables());
+  find_white(likelihood, instruments, taken, solution);
+  Shares shares(likelihood);
+  for (std::size_t g = 0; g < likelihood.groups(); ++g) shares.set(g, previous.instruments[g].parameters);
+  double gain = 0.0;
+  for (std::size_t g = 0; g < likelihood.groups(); ++g) {
+    if (!instruments[g].estimated || previous.instruments[g].start.at.size() == 0) continue;
+    NoiseSearch search(likelihood, g, options, shares.rest(g), solution, instruments[g].parameters.white,
+                       taken[g]);
+    const auto nearby = search.nearby_maximum(previous.instruments[g]);
+    gain += nearby.gain;
+    shares.set(g, nearby.parameters);
+    solution = RestrictedLikelihood::solve(shares.total().gram).at;
+  }
+  return likelihood.log_likelihood(shares.total()) + 0.5 * gain;
 }
 
 NoiseEstimate readjust_noise(const NoiseProblem& problem, const NoiseOptions& options,
                              const NoiseEstimate& before) {
-  NoiseEstimate found = find_noise(problem, options, &before, &before);
+  RestrictedLikelihood likelihood(problem, options.threads);
+  NoiseEstimate found = find_noise(likelihood, options, &before, &before);
   found.log_likelihood = found.white_log_likelihood = kNone;
   return found;
 }

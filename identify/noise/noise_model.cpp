@@ -377,13 +377,11 @@ template <class Fill>
 void Whitener::add_gram(const Track& track, Eigen::Index width, const Fill& fill, Eigen::MatrixXd& sum) {
   std::vector<double> state(static_cast<std::size_t>(track.states * width), 0.0);
   Eigen::MatrixXd tile(width, static_cast<Eigen::Index>(kGramTile));
-  Eigen::MatrixXd product(width, width);
   for (std::size_t begin = 0; begin < track.steps.size(); begin += kGramTile) {
     const std::size_t end = std::min(begin + kGramTile, track.steps.size());
     fill(track, begin, end, tile);
     filter(track, begin, end, width, tile.data(), state.data());
-    outer_product_upper(tile.data(), static_cast<int>(width), static_cast<int>(end - begin), product);
-    sum.triangularView<Eigen::Upper>() += product;
+    add_outer_product_upper(tile.data(), static_cast<int>(width), static_cast<int>(end - begin), sum);
   }
 }
 

@@ -37,6 +37,8 @@ struct NoiseParameters {
   double tau = 600.0;      ///< correlation time of the drift, s
   double line = 0.0;       ///< standard deviation of the offset that the readings of a line share; 0 = off
   double per_metre = 0.0;  ///< m/m, independent per reading
+
+  bool operator==(const NoiseParameters&) const = default;
 };
 
 /// Observations of one setup, run and channel. Need not be sorted.

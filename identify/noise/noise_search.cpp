@@ -32,6 +32,7 @@ constexpr double kSettled = 0.01;           // of -2 l
 constexpr int kRefinements = 6;
 constexpr double kHopeless = 30.0;     // above the better model: not refined
 constexpr double kAddedShare = 0.2;    // of the residuals' standard deviation: a term that may come
+constexpr double kReducedDrift = 0.3;  // of the drift: where another begins beside the end of a search
 constexpr double kDoubtful = 0.5;      // of the threshold: a term may have to come
 constexpr double kOverwhelming = 5.0;  // of the threshold: evidence that one effect more does not undo
 constexpr double kChanged = 0.02;      // of the residuals' standard deviation: another maximum may be higher
@@ -423,17 +424,41 @@ NoiseSearch::Point NoiseSearch::search(InstrumentNoise& result) {
   return best;
 }
 
+/// Where an earlier search ended, in its variables.
+NoiseSearch::Point NoiseSearch::end_of(const InstrumentNoise& previous) {
+  total_ = previous.start.scale;
+  Point end;
+  end.active = previous.start.active;
+  end.at = previous.start.at;
+  end.slope = held_ ? Eigen::VectorXd::Zero(kParameters).eval() : previous.start.slope;
+  evaluate(end);
+  return end;
+}
+
+/// Begins with less correlated drift where that is better: it may be what the residuals no longer hold.
+NoiseSearch::NearbyMaximum NoiseSearch::nearby_maximum(const InstrumentNoise& previous) {
+  Point best = end_of(previous);
+  if (best.active[0]) {
+    Point less = best;
+    less.at(kDrift) = coordinate(kReducedDrift * deviation(best.at(kDrift)));
+    evaluate(less);
+    if (less.value < best.value) best = std::move(less);
+  }
+  refine(best);
+  NearbyMaximum nearby{parameters(best.at, best.active), 0.0};
+  for (std::size_t term = 0; term < kTerms; ++term) {
+    if (!possible_[term] || best.active[term]) continue;
+    nearby.gain = std::max(nearby.gain, best.value - with(best, static_cast<int>(term)).value);
+  }
+  return nearby;
+}
+
 /// From the end of an earlier search of nearly the same residuals; nothing when a term should come or go.
 std::optional<NoiseSearch::Point> NoiseSearch::resume(InstrumentNoise& result,
                                                       const InstrumentNoise& previous) {
   const std::array<TermEvidence*, kTerms> evidence{&result.drift, &result.line, &result.per_metre};
   const std::array<const TermEvidence*, kTerms> before{&previous.drift, &previous.line, &previous.per_metre};
-  total_ = previous.start.scale;  // its variables
-  Point best;
-  best.active = previous.start.active;
-  best.at = previous.start.at;
-  best.slope = held_ ? Eigen::VectorXd::Zero(kParameters).eval() : previous.start.slope;
-  evaluate(best);
+  Point best = end_of(previous);
   refine(best);
   for (std::size_t term = 0; term < kTerms; ++term) {
     if (!possible_[term]) continue;

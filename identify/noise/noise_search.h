@@ -23,6 +23,12 @@ class NoiseSearch {
   /// Parameters, evidence and uncertainties; counts its exact evaluations. `previous`: of nearly the same
   /// problem, or without a start.
   void run(InstrumentNoise& result, const InstrumentNoise& previous);
+  /// The maximum next to the end of an earlier search, with the terms that stood there.
+  struct NearbyMaximum {
+    NoiseParameters parameters;
+    double gain = 0.0;  ///< of 2 l, by the best of the terms that did not
+  };
+  NearbyMaximum nearby_maximum(const InstrumentNoise& previous);
   int evaluations() const { return evaluations_; }
 
  private:
@@ -55,6 +61,7 @@ class NoiseSearch {
   Point best_start(const Point& from, const Active& active);
   void refine(Point& point);
   void settle(Point& point);
+  Point end_of(const InstrumentNoise& previous);
   Point without(const Point& point, int term);
   Point with(const Point& point, int term);
   Point search(InstrumentNoise& result);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kSingular = 1e-12;            // of the largest eigenvalue, columns scaled to one
 constexpr Eigen::Index kCarried = 4096;        // observations at once
+constexpr std::size_t kKnownShares = 12;       // of a group
 constexpr Eigen::Index kWorthThreads = 10000;  // observations: one column of fewer is done before threads are
 
 void require_consistent(bool condition, const char* problem) {
@@ -138,20 +139,53 @@ void RestrictedLikelihood::transform(const NoiseProblem& problem) {
   }
   first_ = transform_ * (transform_.transpose() * right);  // the inverse of the information is T T^T
   const auto determined = static_cast<double>(kept);
+  all_ = transform_;
   hold_what_the_prior_decides(precision);
   carry_rows();
+  known_.clear();  // of the rows as they were
 
-  const Eigen::VectorXd pull = mean - first_;
   prior_.gram.resize(variables() + 1, variables() + 1);
   prior_.gram.topLeftCorner(variables(), variables()) = prior_in_variables(precision);
-  prior_.gram.col(variables()).head(variables()) = transform_.transpose() * (precision * pull);
-  prior_.gram.row(variables()).head(variables()) = prior_.gram.col(variables()).head(variables()).transpose();
-  prior_.gram(variables(), variables()) = pull.dot(precision * pull);
+  set_pull(precision, mean);
 
   const LogPseudoDeterminant of_prior = log_pseudo_determinant(precision);
   auto freedom = static_cast<double>(of_prior.rank) - determined;
   for (const Group& group : groups_) freedom += static_cast<double>(group.observation.size());
   constant_ = freedom * std::log(2.0 * std::numbers::pi) - of_prior.value - 2.0 * log_transform;
+}
+
+/// What the prior says of the residuals.
+void RestrictedLikelihood::set_pull(const Eigen::MatrixXd& precision, const Eigen::VectorXd& mean) {
+  const Eigen::VectorXd pull = mean - first_;
+  prior_.gram.col(variables()).head(variables()) = transform_.transpose() * (precision * pull);
+  prior_.gram.row(variables()).head(variables()) = prior_.gram.col(variables()).head(variables()).transpose();
+  prior_.gram(variables(), variables()) = pull.dot(precision * pull);
+}
+
+void RestrictedLikelihood::set_residual(const NoiseProblem& problem) {
+  require_consistent(
+      problem.jacobian.cols() == all_.rows() && problem.residual.size() == problem.jacobian.rows(),
+      "other residuals are of the same problem");
+  const Eigen::Index p = problem.jacobian.cols();
+  const Eigen::MatrixXd precision = prior_precision(problem);
+  const Eigen::VectorXd mean = problem.prior_mean.size() > 0 ? problem.prior_mean : Eigen::VectorXd::Zero(p);
+  Eigen::VectorXd weighed = Eigen::VectorXd::Zero(problem.residual.size());
+  for (const Group& group : groups_) {
+    for (std::size_t k = 0; k < group.observation.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(group.observation[k]);
+      weighed(i) = problem.residual(i) / (group.data.sigma[k] * group.data.sigma[k]);
+    }
+  }
+  const Eigen::VectorXd right = precision * mean + problem.jacobian.transpose() * weighed;
+  first_ = all_ * (all_.transpose() * right);
+  const Eigen::VectorXd left = problem.residual - problem.jacobian * first_;
+  for (Group& group : groups_) {
+    for (std::size_t k = 0; k < group.observation.size(); ++k)
+      group.rows(group.variables, static_cast<Eigen::Index>(k)) =
+          left(static_cast<Eigen::Index>(group.observation[k]));
+  }
+  set_pull(precision, mean);
+  ++residual_;
 }
 
 /// Observations in the variables, residuals from the white estimate; in place, since they are large.
@@ -175,9 +209,36 @@ void RestrictedLikelihood::carry_rows() {
 }
 
 RestrictedLikelihood::Share RestrictedLikelihood::share(std::size_t group, const NoiseParameters& noise) {
+  const auto known = std::ranges::find_if(
+      known_, [&](const KnownShare& each) { return each.group == group && each.noise == noise; });
+  if (known != known_.end()) {
+    if (known->residual != residual_) {
+      known->share = with_present_residual(group, noise, std::move(known->share));
+      known->residual = residual_;
+    }
+    return known->share;
+  }
   Whitener& whitener = groups_[group].whitener.front();
   whitener.set_parameters({&noise, 1});
-  return {whitener.gram(groups_[group].own_rows(), threads_), whitener.log_determinant()};
+  Share found{whitener.gram(groups_[group].own_rows(), threads_), whitener.log_determinant()};
+  if (known_.size() < kKnownShares * groups_.size()) known_.push_back({group, noise, residual_, found});
+  return found;
+}
+
+/// Its products with the residuals anew.
+RestrictedLikelihood::Share RestrictedLikelihood::with_present_residual(std::size_t group,
+                                                                        const NoiseParameters& noise,
+                                                                        Share share) {
+  const auto rows = groups_[group].own_rows();
+  const Eigen::Index p = variables();
+  Whitener& whitener = groups_[group].whitener.front();
+  whitener.set_parameters({&noise, 1});
+  const Eigen::VectorXd whitened = whitener.whiten(Eigen::VectorXd(rows.row(p).transpose()));
+  const Eigen::VectorXd weighed = whitener.whiten_transposed(whitened);
+  share.gram.col(p).head(p) = rows.topRows(p) * weighed;
+  share.gram.row(p).head(p) = share.gram.col(p).head(p).transpose();
+  share.gram(p, p) = whitened.squaredNorm();
+  return share;
 }
 
 Eigen::VectorXd RestrictedLikelihood::residual(std::size_t group, const Eigen::VectorXd& at) const {

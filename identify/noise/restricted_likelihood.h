@@ -57,9 +57,14 @@ class RestrictedLikelihood {
     double quadratic = 0.0;        ///< at the minimum
   };
 
+  /// `problem`: the one of the constructor with other residuals. O(N p) in place of O(N p^2 + p^3), and equal
+  /// to rounding to what is made anew: variables and information are those of the columns.
+  void set_residual(const NoiseProblem& problem);
+
   std::size_t groups() const { return groups_.size(); }
   Eigen::Index variables() const { return transform_.cols(); }
   Share prior() const { return prior_; }
+  /// The first ones that were asked for are kept: searches for other residuals begin at the same noise.
   Share share(std::size_t group, const NoiseParameters& noise);
   /// The residuals of a group were the solution `at`, in the order of group_data().
   Eigen::VectorXd residual(std::size_t group, const Eigen::VectorXd& at) const;
@@ -93,15 +98,28 @@ class RestrictedLikelihood {
   void split(const NoiseProblem& problem);
   void transform(const NoiseProblem& problem);
   void carry_rows();
+  void set_pull(const Eigen::MatrixXd& precision, const Eigen::VectorXd& mean);
+  Share with_present_residual(std::size_t group, const NoiseParameters& noise, Share share);
   Eigen::MatrixXd prior_in_variables(const Eigen::MatrixXd& precision) const;
   void hold_what_the_prior_decides(const Eigen::MatrixXd& precision);
 
+  /// A share that was asked for, and of which residuals.
+  struct KnownShare {
+    std::size_t group;
+    NoiseParameters noise;
+    std::size_t residual;
+    Share share;
+  };
+
   std::vector<Group> groups_;
   Eigen::MatrixXd transform_;  ///< x = first + transform at
+  Eigen::MatrixXd all_;        ///< transform before what the prior decides was held
   Eigen::VectorXd first_;      ///< estimate with white noise
   Share prior_;
   double constant_ = 0.0;
   int threads_;
+  std::size_t residual_ = 0;       ///< counts those that were set
+  std::vector<KnownShare> known_;  ///< the first ones: where searches begin
 };
 
 }  // namespace volcal

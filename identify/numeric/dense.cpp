@@ -226,12 +226,12 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows) {
   return eigen.vectors.leftCols((eigen.values.array() <= dependent).count());
 }
 
-void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
-  const double one = 1.0, zero = 0.0;
+void add_outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c) {
+  const double one = 1.0;
   const int ldc = static_cast<int>(c.rows());
   if (n == 0) return;
   const BlasCall call;
-  dsyrk_("U", "N", &n, &k, &one, a, &n, &zero, c.data(), &ldc);
+  dsyrk_("U", "N", &n, &k, &one, a, &n, &one, c.data(), &ldc);
 }
 
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,

@@ -50,8 +50,8 @@ LeastSquares least_squares(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, d
 /// than 3e-7 of the largest that a unit vector reaches.
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& rows);
 
-/// upper(C) = A A^T, A is n x k with leading dimension n.
-void outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
+/// upper(C) += A A^T, A is n x k with leading dimension n.
+void add_outer_product_upper(const double* a, int n, int k, Eigen::MatrixXd& c);
 /// A B.
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& a,
                         const Eigen::Ref<const Eigen::MatrixXd>& b);

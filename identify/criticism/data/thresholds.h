@@ -112,6 +112,9 @@ struct Thresholds {
   double reduced_drift = 0.3;
   /// 2 l that noise estimated jointly may add to the bound. Farther below: not worth estimating. `left-out`.
   double worth_joint_estimate = 20.0;
+  /// 2 l. Farther than this below the ratio that counts, next to the noise that was estimated without an
+  /// effect: no other maximum is looked for. No study.
+  double another_maximum = 10.0;
   /// Effects, and scans of each instrument, that are tested jointly with the noise: the best. Cost alone.
   std::size_t most_joint_tests = 3;
   /// Scans. More exceed: something is there beyond doubt, and none is judged by F; fewer may be noise that is

@@ -16,7 +16,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/criticism/search/model_state.h"
@@ -30,10 +32,29 @@ struct NoiseAlternative {
   double loss = 0.0;  ///< 2 (l - l here)
 };
 
+/// A problem and its likelihood, whose information all hypotheses share: what they move changes the residuals
+/// alone.
+class JointLikelihood {
+ public:
+  JointLikelihood(NoiseProblem problem, int threads) : problem_(std::move(problem)), threads_(threads) {}
+
+  const NoiseProblem& problem() const { return problem_; }
+  /// Of the residuals less what a hypothesis moves.
+  RestrictedLikelihood& without(const Eigen::VectorXd& moved);
+  /// Of the residuals as they are.
+  RestrictedLikelihood& whole();
+
+ private:
+  NoiseProblem problem_;
+  int threads_;
+  std::unique_ptr<RestrictedLikelihood> likelihood_;  ///< once it is asked for
+  bool is_whole_ = true;
+};
+
 /// One per instrument that drifts, the others as they are: with so little of its drift left that it holds
 /// hardly any effect.
-std::vector<NoiseAlternative> noise_with_reduced_drift(const NoiseProblem& problem,
-                                                       const NoiseEstimate& estimate, int threads);
+std::vector<NoiseAlternative> noise_with_reduced_drift(JointLikelihood& likelihood,
+                                                       const NoiseEstimate& estimate);
 
 struct LikelihoodRatio {
   double value = 0.0;
@@ -41,21 +62,23 @@ struct LikelihoodRatio {
 };
 
 /// `moved`: what a hypothesis moves the readings by, from whatever noise it was found with: another lower
-/// bound. `estimate`: for `problem`. A ratio below `least_ratio` is an upper bound, without its freedom.
+/// bound. `estimate`: for the residuals of `likelihood` as they are. A ratio below `least_ratio` is without
+/// its freedom: an upper bound, or, where it is below by more than Thresholds::another_maximum, that of the
+/// maximum next to the noise of `estimate`.
 LikelihoodRatio joint_likelihood_ratio(const LinearModel& model, const Eigen::VectorXd& moved,
-                                       NoiseProblem problem, const NoiseEstimate& estimate,
+                                       JointLikelihood& likelihood, const NoiseEstimate& estimate,
                                        const NoiseOptions& options, double least_ratio);
 
 /// Sets LM to the likelihood ratio and log10 p by it; the multiplicity of scanned shapes counts. The
 /// amplitude stays that of `test`.
-void test_jointly(const LinearModel& model, const Family& family, NoiseProblem problem,
+void test_jointly(const LinearModel& model, const Family& family, JointLikelihood& likelihood,
                   const NoiseEstimate& estimate, const NoiseOptions& options, double least_ratio,
                   FamilyTest& test);
 
 class JointNoiseTest {
  public:
   /// `state` is tested, and outlives the object.
-  explicit JointNoiseTest(const ModelState& state) : state_(state), problem_(state.problem()) {}
+  explicit JointNoiseTest(const ModelState& state);
 
   /// The least probable effect, of those that may be added, where it exceeds the noise.
   std::optional<FamilyTest> effect(const std::function<bool(const FamilyTest&)>& may_be_added) const;
@@ -75,7 +98,7 @@ class JointNoiseTest {
   std::vector<NoiseAlternative> alternatives() const;
 
   const ModelState& state_;
-  NoiseProblem problem_;
+  std::unique_ptr<JointLikelihood> likelihood_;  ///< its residuals change and return
 };
 
 }  // namespace volcal

@@ -256,6 +256,33 @@ TEST(NoiseEstimate, AnEndForOtherResidualsIsNoStart) {
   expect_same_noise(cold, estimate_noise(problem, {}, &before));
 }
 
+/// A slow swing that correlated drift holds, taken away: next to the noise that held it lies what a search
+/// from nothing finds, and the terms that have become needless add less than they need to stay.
+TEST(NoiseEstimate, LikelihoodNextToAnEarlierEnd) {
+  std::mt19937_64 generator(12);
+  NoiseProblem problem = grid(generator, {1.0, 0.2e-6, 60.0, 0.4e-6, 0.0}, {8, 5, 4}, 3);
+  Eigen::VectorXd swing(problem.residual.size());
+  for (const NoiseSequence& sequence : problem.data.sequences) {
+    for (std::size_t k = 0; k < sequence.observation.size(); ++k)
+      swing(static_cast<Eigen::Index>(sequence.observation[k])) = 1e-6 * std::sin(sequence.time[k] / 80.0);
+  }
+  problem.residual += swing;
+  const NoiseOptions options;
+  RestrictedLikelihood likelihood(problem, 1);
+  const NoiseEstimate before = estimate_noise(likelihood, options);
+  ASSERT_GT(before.instruments[0].parameters.drift, 0.4e-6);
+  for (const double share : {0.0, 0.5, 1.0}) {
+    NoiseProblem without = problem;
+    without.residual -= share * swing;
+    likelihood.set_residual(without);
+    const double nearby = nearby_log_likelihood(likelihood, options, before);
+    const double anew = estimate_noise(without, options).log_likelihood;
+    EXPECT_GT(nearby, anew - 0.5) << share;
+    EXPECT_LT(nearby, anew + 0.5 * (options.drift_threshold + 2.0 * options.threshold)) << share;
+    EXPECT_NEAR(estimate_noise(likelihood, options, &before).log_likelihood, anew, 0.05) << share;
+  }
+}
+
 /// Returns to the same points only start the search elsewhere.
 TEST(NoiseEstimate, RepeatedPointsLeadToTheSameMaximum) {
   std::mt19937_64 generator(6);

@@ -101,6 +101,41 @@ TEST(RestrictedLikelihood, HoldsWhatThePriorDecides) {
   EXPECT_LT((likelihood.coefficients(at) - estimate).norm(), 1e-9 * estimate.norm());
 }
 
+/// Shares that are known from other residuals count with those that are there now: held to the dense formula.
+TEST(RestrictedLikelihood, OtherResidualsOfTheSameColumns) {
+  std::mt19937_64 generator(7);
+  NoiseProblem problem = two_instruments(generator);
+  add_prior(problem, generator);
+  problem.data.sigma[5] = std::numeric_limits<double>::infinity();
+  RestrictedLikelihood likelihood(problem, 1);
+  const double first = likelihood.log_likelihood(kNoises);
+  const Eigen::VectorXd residual = problem.residual;
+  problem.residual = 2.0 * test::draw_noise(problem.data, kNoises, generator);
+  problem.residual(5) = 1.0;  // a blunder without weight
+  likelihood.set_residual(problem);
+  const double known = likelihood.log_likelihood(kNoises);
+  EXPECT_GT(std::abs(known - first), 10.0);
+  EXPECT_NEAR(known, RestrictedLikelihood(problem, 1).log_likelihood(kNoises), 1e-7);
+  const std::vector<NoiseParameters> unasked{{1.0, 0.1e-6, 100.0, 0.5e-6, 0.0},
+                                             {1.5, 0.0, 1.0, 0.2e-6, 0.1e-6}};
+  EXPECT_NEAR(likelihood.log_likelihood(unasked), RestrictedLikelihood(problem, 1).log_likelihood(unasked),
+              1e-7);
+
+  NoiseProblem dense = problem;  // a sigma that leaves nothing of the reading
+  dense.data.sigma[5] = 1e3;
+  const double left = 2.0 * (known - likelihood.log_likelihood(unasked));
+  const double expected =
+      2.0 * (test::dense_log_likelihood(dense, kNoises) - test::dense_log_likelihood(dense, unasked));
+  const double of_blunder = 2.0 * std::log(unasked[0].white / kNoises[0].white);
+  EXPECT_NEAR(left, expected - of_blunder, 1e-4);
+
+  problem.residual = residual;
+  likelihood.set_residual(problem);
+  EXPECT_NEAR(likelihood.log_likelihood(kNoises), first, 1e-7);
+  problem.residual.conservativeResize(3);
+  EXPECT_THROW(likelihood.set_residual(problem), std::invalid_argument);
+}
+
 /// A reading without weight is as good as one that was never taken.
 TEST(RestrictedLikelihood, MissingReadingsAreAbsent) {
   std::mt19937_64 generator(3);

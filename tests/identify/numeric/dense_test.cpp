@@ -137,7 +137,7 @@ TEST(Dense, MatricesWithoutRowsOrColumnsAreNoCase) {
   EXPECT_EQ(solve_positive_definite(none, Eigen::MatrixXd(0, 3)).cols(), 3);
   EXPECT_EQ(least_squares(Eigen::MatrixXd(3, 0), Eigen::Vector3d::Ones()).rank, 0);
   Eigen::MatrixXd outer(0, 0), right(0, 2);
-  outer_product_upper(nullptr, 0, 3, outer);
+  add_outer_product_upper(nullptr, 0, 3, outer);
   solve_lower(none, right);
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "LAPACK writes of what it refuses";
 }

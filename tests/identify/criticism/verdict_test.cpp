@@ -75,9 +75,10 @@ TEST(Verdict, NamesKeepAReserveWhileSomethingIsOpen) {
   beside.unknown = {unknown({"z"}, -5.0)};
   conclude({}, beside);
   EXPECT_EQ(to_string(beside.verdict), "NAMED_MORE_REMAINS");
-  EXPECT_EQ(sentence(beside.findings.back()),
-            "More remains: it depends on z, and acts along X; its strongest test alone explains 0.5 um RMS of "
-            "the readings");
+  EXPECT_EQ(
+      sentence(beside.findings.back()),
+      "More remains: it depends on z, and acts along X; its strongest test alone explains 0.5 um RMS of "
+      "the readings");
 }
 
 TEST(Verdict, WhatHasNoNameGoesBeforeSetsAndSetsBeforeNothing) {

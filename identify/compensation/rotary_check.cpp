@@ -37,30 +37,68 @@ RotaryLeft left_under(const FiveAxisCompensation& ideal, const std::vector<AxisP
   return left;
 }
 
+/// The machine with the errors of its rotary axes alone, and what tables add to its commands for them.
+class RotaryJudgement {
+ public:
+  RotaryJudgement(const TableFormat& format, const FitResult& result, const TableFormatOptions& options,
+                  const CompensationTables& tables)
+      : ideal_(result.machine, settings_of(result, options), errors_of(result, options)),
+        of_linear_(sampled_compensation(format, result, options)),
+        has_linear_(!options.type.linear().empty()),
+        tables_(tables) {}
+
+  const FiveAxisCompensation& ideal() const { return ideal_; }
+  Correction by_tables(const AxisPosition& pose) const {
+    Correction correction = tables_.correction(pose, {});
+    if (has_linear_) correction.linear -= of_linear_.correction(without_rotary_axes(pose), {});
+    return correction;
+  }
+
+ private:
+  static FiveAxisSettings settings_of(const FitResult& result, const TableFormatOptions& options) {
+    FiveAxisSettings settings;
+    settings.type = options.type.rotary();
+    settings.tool_offset = tool_of(result.machine, options).offset;
+    return settings;
+  }
+  static JointErrorSource errors_of(const FitResult& result, const TableFormatOptions& options) {
+    return of_rotary_axes(
+        joint_errors(result, tool_of(result.machine, options), conditions_of(result, options)));
+  }
+
+  FiveAxisCompensation ideal_;
+  Compensation of_linear_;
+  bool has_linear_;
+  const CompensationTables& tables_;
+};
+
 }  // namespace
 
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables) {
   if (options.type.rotary().empty()) return std::nullopt;
-  const Tool& tool = tool_of(result.machine, options);
-  FiveAxisSettings settings;
-  settings.type = options.type.rotary();
-  settings.tool_offset = tool.offset;
-  const FiveAxisCompensation ideal(
-      result.machine, settings, of_rotary_axes(joint_errors(result, tool, conditions_of(result, options))));
-  const Compensation of_linear = sampled_compensation(format, result, options);
-  const auto by_tables = [&](const AxisPosition& pose) {
-    Correction correction = tables.correction(pose, {});
-    if (!options.type.linear().empty())
-      correction.linear -= of_linear.correction(without_rotary_axes(pose), {});
-    return correction;
-  };
+  const RotaryJudgement judgement(format, result, options, tables);
+  const FiveAxisCompensation& ideal = judgement.ideal();
   const std::vector<AxisPosition> poses = poses_of_all_axes(result.machine, kRotaryCheckPoses);
   return RotaryCheck{
       left_under(ideal, poses, [](const AxisPosition&) { return Correction{}; }),
       left_under(ideal, poses, [&](const AxisPosition& pose) { return ideal.correction(pose); }),
-      left_under(ideal, poses, by_tables)};
+      left_under(ideal, poses, [&](const AxisPosition& pose) { return judgement.by_tables(pose); })};
+}
+
+std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const FitResult& result,
+                                                const TableFormatOptions& options,
+                                                const CompensationTables& tables,
+                                                const std::vector<AxisPosition>& poses) {
+  const RotaryJudgement judgement(format, result, options, tables);
+  std::vector<RotaryCorrected> corrected;
+  for (const AxisPosition& pose : poses) {
+    const Correction correction = judgement.by_tables(pose);
+    corrected.push_back(
+        {correction, judgement.ideal().left_by({}, pose), judgement.ideal().left_by(correction, pose)});
+  }
+  return corrected;
 }
 
 }  // namespace volcal

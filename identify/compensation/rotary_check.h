@@ -3,8 +3,10 @@
 /// with the ideal compensation of the type, and with the tables as written and read back.
 
 #include <optional>
+#include <vector>
 
 #include "volcal/identify/compensation/compensation_tables.h"
+#include "volcal/identify/compensation/five_axis_compensation.h"
 #include "volcal/identify/compensation/table_format.h"
 
 namespace volcal {
@@ -28,5 +30,18 @@ struct RotaryCheck {
 std::optional<RotaryCheck> check_rotary_axes(const TableFormat& format, const FitResult& result,
                                              const TableFormatOptions& options,
                                              const CompensationTables& tables);
+
+/// What tables do about the errors of rotary axes at one pose.
+struct RotaryCorrected {
+  Correction correction;              ///< that the tables add for them
+  FiveAxisCompensation::Left before;  ///< error of the rotary axes without the tables
+  FiveAxisCompensation::Left left;    ///< and with them
+};
+
+/// At poses of all axes, as in the check.
+std::vector<RotaryCorrected> rotary_corrections(const TableFormat& format, const FitResult& result,
+                                                const TableFormatOptions& options,
+                                                const CompensationTables& tables,
+                                                const std::vector<AxisPosition>& poses);
 
 }  // namespace volcal

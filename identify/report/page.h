@@ -83,6 +83,18 @@ Json plan_layout_page(const PlanPageInput& input);
 Json plan_errors_page(const PlanPageInput& input);
 Json plan_detectable_page(const PlanPageInput& input);
 
+/// What a section on tables is made from.
+struct TablesInput {
+  const FitResult& result;
+  const MadeTables& made;
+};
+
+using TablesPage = PageOf<TablesInput>;
+/// The one section of a picture.
+std::span<const TablesPage> tables_picture_pages();
+
+Json rotary_tables_page(const TablesInput& input);
+
 /// What a section of a certificate is made from.
 struct CertificateInput {
   const CertificateView& certificate;
@@ -97,6 +109,7 @@ Json certificate_record_page(const CertificateInput& input);
 Json certificate_figures_page(const CertificateInput& input);
 Json certificate_files_page(const CertificateInput& input);
 Json signature_page(const CertificateInput& input);
+Json certified_rotary_tables_page(const CertificateInput& input);
 
 /// What a section of a comparison's or a validation's report is made from.
 struct ComparisonInput {

@@ -74,10 +74,14 @@ constexpr std::array kPlanPages = {
 constexpr std::array kCertificatePages = {
     CertificatePage{"certified", "What is certified", certified_page},
     CertificatePage{"certificate_figures", "Before and after", certificate_figures_page},
+    CertificatePage{"rotary_tables", "Tables of rotary axes", certified_rotary_tables_page},
     CertificatePage{"certificate_record", "Record, ISO/TR 16907 clause 9.1", certificate_record_page},
     CertificatePage{"certificate_files", "Files", certificate_files_page},
     CertificatePage{"signature", "Signature", signature_page},
 };
+
+constexpr std::array kTablesPicturePages = {
+    TablesPage{"rotary_tables", "Tables of rotary axes", rotary_tables_page}};
 
 }  // namespace
 
@@ -88,6 +92,7 @@ std::span<const ComparisonPage> comparison_pages() { return kComparisonPages; }
 std::span<const ComparisonPage> validation_pages() { return kValidationPages; }
 std::span<const MonteCarloPage> montecarlo_pages() { return kMonteCarloPages; }
 std::span<const PlanPage> plan_pages() { return kPlanPages; }
+std::span<const TablesPage> tables_picture_pages() { return kTablesPicturePages; }
 std::span<const CertificatePage> certificate_pages() { return kCertificatePages; }
 
 }  // namespace volcal::report

@@ -3,9 +3,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/template_data.h"
 #include "volcal/identify/text/json_text.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -135,6 +137,20 @@ ReportPicture diagnosis_picture(const Diagnosis& diagnosis, const Campaign& camp
                      : diagnosis.surfaces.front().drivers.size() == 1 ? kHeightOfCurve
                                                                       : kHeightOfMap;
   return {filled_page(campaign.machine.name, json), kWidth, height};
+}
+
+ReportPicture tables_picture(const FitResult& result, const MadeTables& made, const ReportOptions& options) {
+  if (!made.rotary_check)
+    throw InputError(
+        {}, made.options.type.name() + " has nothing of rotary axes, whose tables are pictured",
+        "name a type of rotary axes such as R-VOL; the report of volcal fit pictures linear axes");
+  constexpr int kTablesWidth = 1240, kHeightOfAxis = 300, kHeightOfMaps = 900, kHeightOfWords = 210;
+  const std::string json =
+      document(result.machine.name, "Tables of rotary axes", {.date = options.date, .provenance = {}},
+               report::tables_picture_pages(), report::TablesInput{result, made});
+  const auto axes = static_cast<int>(identified_rotary_axes(result).size());
+  return {filled_page(result.machine.name, json), kTablesWidth,
+          kHeightOfWords + axes * kHeightOfAxis + kHeightOfMaps};
 }
 
 std::string report_json(const ComparisonView& comparison, const Campaign& campaign,

@@ -60,6 +60,11 @@ struct ReportPicture {
 ReportPicture diagnosis_picture(const Diagnosis& diagnosis, const Campaign& campaign,
                                 const ReportOptions& options = {});
 
+/// What tables add to the commands for the errors of rotary axes, and the error over the positions of two
+/// axes with and without them. Throws InputError for tables without a type of rotary axes.
+ReportPicture tables_picture(const FitResult& result, const MadeTables& made,
+                             const ReportOptions& options = {});
+
 /// One or two models on the readings of a campaign.
 struct ComparisonView {
   std::span<const ComparedModel> models;

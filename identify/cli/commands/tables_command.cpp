@@ -11,6 +11,7 @@
 #include "volcal/identify/cli/options/certificate_options.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
+#include "volcal/identify/cli/options/picture.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/compensation/made_tables.h"
 #include "volcal/identify/errors/error_tables.h"
@@ -52,6 +53,7 @@ struct TablesArguments {
   CertificateArguments certificate;
   std::string approach;
   std::string superimpose;
+  std::string picture;
   bool dry_run = false;
   bool list = false;
   bool json = false;
@@ -129,6 +131,12 @@ void require_something_to_do(const TablesArguments& arguments) {
   if (arguments.at.empty() && !makes_tables(arguments))
     throw InputError({}, "neither a folder nor a point is given",
                      "give -o FOLDER, --dry-run, or --at X=100,Y=50");
+}
+
+void require_picture_of_tables(const TablesArguments& arguments) {
+  if (!makes_tables(arguments))
+    throw InputError({}, "--picture: no tables are made that it could be of", "give -o FOLDER or --dry-run");
+  require_picture("--picture", arguments.picture);
 }
 
 /// Tables that were active, by the rules of their controller.
@@ -284,6 +292,7 @@ FitResult aligned_result(const TablesArguments& arguments) {
 int run_tables(const TablesArguments& arguments) {
   if (arguments.list) return list_formats(arguments.json);
   require_something_to_do(arguments);
+  if (!arguments.picture.empty()) require_picture_of_tables(arguments);
   const FitResult result = aligned_result(arguments);
   if (arguments.conditions.no_extrapolation && makes_tables(arguments)) require_measured_travel(result);
   const std::vector<VolumetricError> errors = errors_at_points(result, arguments);
@@ -292,6 +301,8 @@ int run_tables(const TablesArguments& arguments) {
   std::optional<MadeTables> made;
   if (makes_tables(arguments)) made = make_tables(result, arguments, sources);
   if (made && written) write_files(result, *made, arguments, sources);
+  if (made && !arguments.picture.empty())
+    write_picture("--picture", tables_picture(result, *made, report_options()), arguments.picture);
   if (arguments.json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
@@ -347,6 +358,10 @@ void add_compensation_options(CLI::App& app, TablesArguments& arguments) {
   app.add_option("--record", arguments.records,
                  fmt::format("NAME=TEXT into the metadata of the csv tables: {}",
                              fmt::join(recordable_conditions(), ", ")));
+  app.add_option(
+      "--picture", arguments.picture,
+      "draw the tables of rotary axes as a PNG file: what they add to the commands, the error with and "
+      "without them; by a headless Chromium");
   add_certificate_options(app, arguments.certificate);
   app.add_flag("--dry-run", arguments.dry_run, "write nothing: say what the tables would leave");
   app.add_flag("--list", arguments.list, "list formats, types and limits");

@@ -47,6 +47,26 @@ PoseErrors<double> of_rotary_axes_alone(PoseErrors<double> errors) {
 
 double nearest_to_zero(const Axis& axis) { return std::clamp(0.0, axis.travel_min, axis.travel_max); }
 
+AxisPosition followed(const KinematicChain& chain, const Machine& machine, const Tool& tool,
+                      const Vector3d& point_w, AxisPosition position) {
+  Eigen::MatrixXd moves(3, 0);
+  std::vector<AxisName> axes;
+  for (const AxisName axis : machine.parallel_axes()) position[index_of(axis)] = machine.axis(axis).home;
+  const Vector3d here = chain.nominal_point_w(position, tool.offset);
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name) || is_parallel(axis.name)) continue;
+    AxisPosition moved = position;
+    moved[index_of(axis.name)] += 1.0;
+    moves.conservativeResize(Eigen::NoChange, moves.cols() + 1);
+    moves.rightCols<1>() = chain.nominal_point_w(moved, tool.offset) - here;
+    axes.push_back(axis.name);
+  }
+  const Eigen::VectorXd steps = least_squares(moves, point_w - here, kHardlyMoves).solution;
+  for (std::size_t k = 0; k < axes.size(); ++k)
+    position[index_of(axes[k])] += steps[static_cast<Eigen::Index>(k)];
+  return position;
+}
+
 class RotaryMapMaker {
  public:
   RotaryMapMaker(const FitResult& result, const Tool& tool, const Vector3d& point_w,
@@ -59,8 +79,11 @@ class RotaryMapMaker {
         places_(rotary_parameters(result, field_)),
         covariance_(result.covariance(places_, places_)) {}
 
-  RotaryMapNode at(const AxisPosition& rotary) const {
-    const AxisPosition position = followed(rotary);
+  AxisPosition pose(const AxisPosition& rotary) const {
+    return followed(chain_, machine_, tool_, point_w_, rotary);
+  }
+
+  RotaryMapNode at(const AxisPosition& position) const {
     const ToolTwist twist =
         chain_.first_order(position, tool_.offset, of_rotary_axes_alone(field_.joint_errors(position)));
     RotaryMapNode node;
@@ -79,26 +102,6 @@ class RotaryMapMaker {
   }
 
  private:
-  /// X, Y, Z bring the nominal tool point to the point, by least squares; U, V, W stand at home.
-  AxisPosition followed(AxisPosition position) const {
-    Eigen::MatrixXd moves(3, 0);
-    std::vector<AxisName> axes;
-    for (const AxisName axis : machine_.parallel_axes()) position[index_of(axis)] = machine_.axis(axis).home;
-    const Vector3d here = chain_.nominal_point_w(position, tool_.offset);
-    for (const Axis& axis : machine_.axes) {
-      if (is_rotary(axis.name) || is_parallel(axis.name)) continue;
-      AxisPosition moved = position;
-      moved[index_of(axis.name)] += 1.0;
-      moves.conservativeResize(Eigen::NoChange, moves.cols() + 1);
-      moves.rightCols<1>() = chain_.nominal_point_w(moved, tool_.offset) - here;
-      axes.push_back(axis.name);
-    }
-    const Eigen::VectorXd steps = least_squares(moves, point_w_ - here, kHardlyMoves).solution;
-    for (std::size_t k = 0; k < axes.size(); ++k)
-      position[index_of(axes[k])] += steps[static_cast<Eigen::Index>(k)];
-    return position;
-  }
-
   static double u_along(const Eigen::Matrix3d& covariance, const Vector3d& vector) {
     const double size = vector.norm();
     if (size == 0.0) return std::sqrt(std::max(0.0, covariance.trace() / 3.0));
@@ -131,6 +134,19 @@ Vector3d middle_point_w(const Machine& machine, const Tool& tool) {
   return KinematicChain(machine).nominal_point_w(middle, tool.offset);
 }
 
+AxisPosition rotary_axes_at_rest(const Machine& machine) {
+  AxisPosition rest{};
+  for (const Axis& axis : machine.axes) {
+    if (is_rotary(axis.name)) rest[index_of(axis.name)] = nearest_to_zero(axis);
+  }
+  return rest;
+}
+
+AxisPosition followed_pose(const Machine& machine, const Tool& tool, const Vector3d& point_w,
+                           AxisPosition rotary) {
+  return followed(KinematicChain(machine), machine, tool, point_w, rotary);
+}
+
 RotaryMap rotary_map(const FitResult& result, const Tool& tool, const Vector3d& point_w,
                      const Conditions& conditions, double largest_step) {
   std::vector<AxisName> axes = identified_rotary_axes(result);
@@ -138,11 +154,8 @@ RotaryMap rotary_map(const FitResult& result, const Tool& tool, const Vector3d& 
     throw InputError({}, "no errors of rotary axes were identified",
                      "measure with the rotary axes in several positions");
   if (axes.size() > kMostAxes) axes.resize(kMostAxes);
-  RotaryMap map{tool.name, point_w, {}, {}};
-  AxisPosition start{};
-  for (const Axis& axis : result.machine.axes) {
-    if (is_rotary(axis.name)) start[index_of(axis.name)] = nearest_to_zero(axis);
-  }
+  RotaryMap map{tool.name, point_w, {}, {}, {}};
+  const AxisPosition start = rotary_axes_at_rest(result.machine);
   RotaryGrid grid;
   for (const AxisName axis : axes) grid.axes.push_back(rotary_nodes(result, axis, largest_step));
   const RotaryMapMaker maker(result, tool, point_w, conditions);
@@ -151,7 +164,8 @@ RotaryMap rotary_map(const FitResult& result, const Tool& tool, const Vector3d& 
       const bool varies = std::ranges::find(axes, axis.name) != axes.end();
       if (is_rotary(axis.name) && !varies) position[index_of(axis.name)] = start[index_of(axis.name)];
     }
-    map.nodes.push_back(maker.at(position));
+    map.poses.push_back(maker.pose(position));
+    map.nodes.push_back(maker.at(map.poses.back()));
   }
   map.axes = std::move(grid.axes);
   return map;

@@ -27,10 +27,19 @@ struct RotaryMap {
   Eigen::Vector3d point_w = Eigen::Vector3d::Zero();  ///< workpiece coordinates, m
   std::vector<RotaryNodes> axes;                      ///< one or two, A B C
   std::vector<RotaryMapNode> nodes;                   ///< the last axis fastest
+  std::vector<AxisPosition> poses;                    ///< of all axes, at the nodes
 };
 
 /// Where the nominal tool point stands with the linear axes in the middle of their travel, rotary axes at 0.
 Eigen::Vector3d middle_point_w(const Machine& machine, const Tool& tool);
+
+/// Rotary axes at 0, or at the end of their travel that is nearest to it.
+AxisPosition rotary_axes_at_rest(const Machine& machine);
+
+/// X, Y, Z where they bring the nominal tool point to a place of the workpiece, by least squares, rotary axes
+/// as in `rotary`; U, V, W stand at home.
+AxisPosition followed_pose(const Machine& machine, const Tool& tool, const Eigen::Vector3d& point_w,
+                           AxisPosition rotary);
 
 /// Over the first two identified rotary axes, at positions `largest_step` rad apart at most; others stand at
 /// 0, or at the end of their travel that is nearest to it. A linear axis may leave its travel: nothing of the

@@ -9,6 +9,7 @@
 #include "tests/support/rotary_machines.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/report.h"
+#include "volcal/model/description/errors.h"
 
 namespace volcal {
 namespace {
@@ -140,6 +141,66 @@ TEST(RotaryPagesOfALinearMachine, AreLeftOut) {
   Campaign campaign;
   campaign.machine = machine;
   EXPECT_FALSE(rotary_pictures(result, campaign));
+}
+
+Json picture_of_tables(const FitResult& result, const std::string& format, const std::string& type) {
+  TableFormatOptions options;
+  options.type = CompensationType::parse(type);
+  const MadeTables made = make_tables(*find_table_format(format), result, options);
+  const std::string html = tables_picture(result, made).html;
+  const std::string begin = "<script type=\"application/json\" id=\"volcal-data\">";
+  const std::size_t from = html.find(begin) + begin.size();
+  return Json::parse(html.substr(from, html.find("</script>", from) - from));
+}
+
+/// R-POS alone turns C by -(ECC + EC0C) and moves nothing else, whatever the table's step of 5 degrees
+/// leaves.
+TEST_F(RotaryPages, TablesTurnAnAxisAgainstItsError) {
+  if (!report_available()) GTEST_SKIP() << "no report";
+  const Json data = picture_of_tables(result_, "neutral-csv", "R-POS").at("pages").at(0).at("data");
+  const Json& c = data.at("axes").at(1);
+  ASSERT_EQ(c.at("axis"), "C");
+  const ErrorSymbol ecc = *ErrorSymbol::parse("ECC");
+  const auto place = *result_.layout.find(ecc);
+  const Basis& basis = *result_.layout.groups[static_cast<std::size_t>(place.group)].basis;
+  const Eigen::VectorXd coefficients = result_.layout.coefficients(ecc, result_.parameters);
+  const double zero = result_.parameters[result_.layout.find_block("EC0C")->offset];
+  for (const std::size_t i : {3U, 20U, 50U}) {
+    const double q = c.at("position").at(i).get<double>() * kRadianPerDegree;
+    EXPECT_NEAR(c.at("turned").at(i).get<double>(), -1e6 * (basis.value(q, coefficients) + zero), 0.2);
+  }
+  for (const Json& moved : c.at("moved")) {
+    for (const Json& value : moved.at("value")) EXPECT_EQ(value.get<double>(), 0.0);
+  }
+}
+
+/// With R-VOL by the grid of Table 3 the tool point has its place back, the tool's axis not.
+TEST_F(RotaryPages, TablesTakeTheErrorOfTheMapAway) {
+  if (!report_available()) GTEST_SKIP() << "no report";
+  const Json document = picture_of_tables(result_, "csv", "L-VOL+R-VOL");
+  const Json& data = document.at("pages").at(0).at("data");
+  const auto largest = [](const Json& values) {
+    double most = 0.0;
+    for (const Json& value : values) most = std::max(most, value.get<double>());
+    return most;
+  };
+  const std::size_t nodes =
+      data.at("map_axes").at(0).at("places").size() * data.at("map_axes").at(1).at("places").size();
+  EXPECT_EQ(data.at("before").at("position").size(), nodes);
+  EXPECT_GT(largest(data.at("before").at("position")), 20.0);
+  EXPECT_LT(largest(data.at("left").at("position")), 0.5);
+  EXPECT_GT(largest(data.at("left").at("orientation")), 10.0);
+  const test::Drawing drawing = test::draw_report(document.dump());
+  if (!drawing.possible) GTEST_SKIP() << "no Node.js here";
+  EXPECT_EQ(drawing.exit_code, 0) << drawing.output;
+  EXPECT_NE(drawing.output.find("1 sections, 8 plots"), std::string::npos) << drawing.output;
+}
+
+TEST_F(RotaryPages, TablesOfLinearAxesAreNotPictured) {
+  TableFormatOptions options;
+  options.type = CompensationType::parse("L-VOL");
+  const MadeTables made = make_tables(*find_table_format("neutral-csv"), result_, options);
+  EXPECT_THROW(tables_picture(result_, made), InputError);
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ import { renderResidualVectors } from './pages/residual_vectors.js';
 import { renderResiduals } from './pages/residuals.js';
 import { renderResolution } from './pages/resolution.js';
 import { renderRotaryAxes } from './pages/rotary_axes.js';
+import { renderRotaryTables } from './pages/rotary_tables.js';
 import { renderSetupResiduals } from './pages/setup_residuals.js';
 import { renderSetups } from './pages/setups.js';
 import { renderStory } from './pages/story.js';
@@ -73,6 +74,7 @@ export const renderers = {
   plan_errors: renderPlanErrors,
   certified: renderCertified,
   certificate_figures: renderCertificateFigures,
+  rotary_tables: renderRotaryTables,
   certificate_record: renderCertificateRecord,
   certificate_files: renderCertificateFiles,
   signature: renderSignature,

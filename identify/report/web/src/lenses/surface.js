@@ -53,7 +53,8 @@ function scale(isSize) {
 /** Values on a grid of two variables, with the places of the readings. */
 export function heatMap(data, height = 560) {
   const [x, y] = data.axes;
-  const limit = largest(data.value);
+  const limit = data.scale ?? largest(data.value);
+  const worded = (value, U95) => `${significant(value, 3)}${U95 === undefined ? '' : ` ± ${significant(U95, 2)}`} ${plain(data.unit)}`;
   const hover = x.places.flatMap((u) => y.places.map((v) => [u, v]));
   const ends = (axis) => [axis.places[0], axis.places.at(-1)];
   return {
@@ -61,19 +62,19 @@ export function heatMap(data, height = 560) {
       {
         x: hover.map(([u]) => u), y: hover.map(([, v]) => v), type: 'scatter', mode: 'markers', showlegend: false,
         marker: { size: 9, opacity: 0, color: data.value, colorscale: scale(data.isSize), cmin: data.isSize ? 0 : -limit, cmax: limit, showscale: true, colorbar: colorBar(plain(data.unit), 1.01) },
-        text: data.value.map((value, k) => `${significant(value, 3)} ± ${significant(data.U95[k], 2)} ${plain(data.unit)}`),
+        text: data.value.map((value, k) => worded(value, data.U95?.[k])),
         hovertemplate: `${plain(x.name)} %{x:.4g}, ${plain(y.name)} %{y:.4g}: %{text}<extra></extra>`,
       },
       { x: x.dots, y: y.dots, type: 'scatter', mode: 'markers', name: 'readings', marker: { size: 2.5, color: color('muted'), opacity: 0.7 }, hoverinfo: 'skip' },
       {
-        x: [data.at[0]], y: [data.at[1]], type: 'scatter', mode: 'markers', name: 'largest', marker: { size: 11, symbol: 'circle-open', line: { width: 2 }, color: color('text') }, hoverinfo: 'skip',
+        x: [data.at[0]], y: [data.at[1]], type: 'scatter', mode: 'markers', name: 'largest', visible: !data.quiet, marker: { size: 11, symbol: 'circle-open', line: { width: 2 }, color: color('text') }, hoverinfo: 'skip',
       },
     ],
     layout: layout2d({
       height, margin: { r: 70, t: 24 }, hovermode: 'closest',
-      annotations: [{
+      annotations: data.quiet ? [] : [{
         x: data.at[0], y: data.at[1], ax: 0, ay: -26, arrowhead: 0, arrowcolor: color('text'), bgcolor: color('page'), font: { size: 12, color: color('text') },
-        text: `${significant(data.largest, 3)} ± ${significant(data.largest_U95, 2)} ${plain(data.unit)}`,
+        text: worded(data.largest, data.largest_U95),
       }],
       x: { title: plain(x.title), range: ends(x), showgrid: false, zeroline: false }, y: { title: plain(y.title), range: ends(y), showgrid: false, zeroline: false },
       images: [{ source: picture(data, limit), xref: 'x', yref: 'y', x: ends(x)[0], y: ends(y)[1], sizex: ends(x)[1] - ends(x)[0], sizey: ends(y)[1] - ends(y)[0], sizing: 'stretch', layer: 'below' }],
@@ -116,7 +117,7 @@ export function curve(data) {
   const [axis] = data.axes;
   return {
     data: [
-      ...banded(axis.places, data.value, data.U95, color('bad'), '± U95'),
+      ...banded(axis.places, data.value, data.U95 ?? data.value.map(() => 0), color('bad'), data.U95 ? '± U95' : data.target),
       { x: axis.dots, y: axis.dots.map(() => 0), type: 'scatter', mode: 'markers', name: 'readings', marker: { size: 5, symbol: 'line-ns-open', color: color('muted') }, hoverinfo: 'skip' },
     ],
     layout: layout2d({ height: 320, ...legendAbove(), margin: { t: 30 }, hovermode: 'closest', x: { title: plain(axis.title) }, y: { title: `${plain(data.target)} [${plain(data.unit)}]` } }),

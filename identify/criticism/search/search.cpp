@@ -416,7 +416,11 @@ bool Search::compare_with_rivals(bool may_change) {
     restart_with(added_tests(added));
     test();
     std::vector<AddedEffect> anew = state_->added();
-    for (std::size_t i = 0; i < anew.size(); ++i) anew[i].rivals = std::move(added[i].rivals);
+    for (std::size_t i = 0; i < anew.size(); ++i) {
+      added[i].test.shape = anew[i].test.shape;  // that of its columns
+      anew[i].test = std::move(added[i].test);
+      anew[i].rivals = std::move(added[i].rivals);
+    }
     added = std::move(anew);
   }
   state_ = state_->with_comparisons(std::move(added));

@@ -314,15 +314,6 @@ const std::vector<WordedFinding>& examples() {
        "The extended model goes on with the simplest, a; it matters in the volume: with b predictions differ "
        "by up to 12 um (U 2.1 um)."},
       {{FindingCode::DiagnosisDrawn,
-        {{"effect", "EXX by t since_c"},
-         {"largest", FindingNumber{1e-6, "um", 1e-6}},
-         {"U", FindingNumber{0.2e-6, "um", 1e-6}},
-         {"drivers", Texts{"t", "since_c"}},
-         {"at", std::vector<FindingNumber>{{60.0}, {15.0}}}}},
-       "Drawn for it: EXX by t since_c, up to 1 +- 0.2 um at t = 60 s, since_c = 15 deg; extend the model "
-       "with it "
-       "and the error falls."},
-      {{FindingCode::DiagnosisDrawn,
         {{"effect", "EAY by y z"},
          {"largest", FindingNumber{12.34e-6, "urad", 1e-6}},
          {"U", FindingNumber{0.82e-6, "urad", 1e-6}},
@@ -339,6 +330,15 @@ const std::vector<WordedFinding>& examples() {
        "EAY by "
        "y * z, 2 +- 0.3 urad. These readings leave open what is straight in y: the rest of the model holds "
        "it."},
+      {{FindingCode::DiagnosisDrawn,
+        {{"effect", "EXX by t since_c"},
+         {"largest", FindingNumber{1e-6, "um", 1e-6}},
+         {"U", FindingNumber{0.2e-6, "um", 1e-6}},
+         {"drivers", Texts{"t", "since_c"}},
+         {"at", std::vector<FindingNumber>{{60.0}, {15.0}}}}},
+       "Drawn for it: EXX by t since_c, up to 1 +- 0.2 um at t = 60 s, since_c = 15 deg; extend the model "
+       "with it "
+       "and the error falls."},
       {{FindingCode::DiagnosisTried,
         {{"effect", "a"},
          {"added", true},

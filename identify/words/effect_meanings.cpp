@@ -38,8 +38,7 @@ constexpr auto kMeanings = std::to_array<EffectMeaning>({
      "a bent screw; a screw whose free end whips; a bearing seat out of line at one end"},
     {"rack-error", "The position repeats its error with every turn of the pinion on its rack.",
      "a pinion that is not centred on its shaft; a gear box or motor encoder that sits off centre; racks "
-     "that "
-     "were joined at a wrong pitch, where the period is a rack's length"},
+     "that were joined at a wrong pitch, where the period is a rack's length"},
     {"encoder-subdivision", "The position repeats its error within every signal period of the scale.",
      "a dirty scale; a reading head at a wrong distance or angle; signals whose offset, gain or phase was "
      "not adjusted; wrong interpolation in the control"},

@@ -63,8 +63,8 @@ LikelihoodRatio joint_likelihood_ratio(const LinearModel& model, const Eigen::Ve
   RestrictedLikelihood& without_effect = likelihood.without(moved);
   LikelihoodRatio test;
   const double nearby = nearby_log_likelihood(without_effect, plain, estimate);
-  test.value = std::max(0.0, 2.0 * (nearby - estimate.log_likelihood));
-  if (test.value + kThresholds.another_maximum < least_ratio) return test;
+  test.value = std::max(0.0, 2.0 * (nearby - estimate.log_likelihood)) + kThresholds.another_maximum;
+  if (test.value < least_ratio) return test;
   const NoiseEstimate jointly = estimate_noise(without_effect, plain, &estimate);
   const auto ratio_to = [&](double without) {
     return std::max(0.0, 2.0 * (jointly.log_likelihood - without));

@@ -62,9 +62,9 @@ struct LikelihoodRatio {
 };
 
 /// `moved`: what a hypothesis moves the readings by, from whatever noise it was found with: another lower
-/// bound. `estimate`: for the residuals of `likelihood` as they are. A ratio below `least_ratio` is without
-/// its freedom: an upper bound, or, where it is below by more than Thresholds::another_maximum, that of the
-/// maximum next to the noise of `estimate`.
+/// bound. `estimate`: for the residuals of `likelihood` as they are. A ratio below `least_ratio` is an upper
+/// bound, without its freedom: of the maximum next to the noise of `estimate`, and
+/// Thresholds::another_maximum more, where that is enough.
 LikelihoodRatio joint_likelihood_ratio(const LinearModel& model, const Eigen::VectorXd& moved,
                                        JointLikelihood& likelihood, const NoiseEstimate& estimate,
                                        const NoiseOptions& options, double least_ratio);

@@ -44,15 +44,11 @@ class PlannedBallBar : public BarInstrument {
   std::string name() const override { return "ball-bar"; }
 
   InstrumentWords words() const override {
-    return {
-        "place",
-        "places",
-        "Places of the centre ball, workpiece coordinates",
-        "centre balls may stand",
+    return words_of_bar(
         "Checked: that the arcs are within the travel, that the bar passes by the spindle; not the table, "
         "the holder of the centre ball, the tool's shank, covers and clamped parts.",
         "nothing can be measured about the middle of the volume: no tool gets round it",
-        "give a shorter --bar-mm, a smaller --spindle-mm or another --region-mm"};
+        "give a shorter --bar-mm, a smaller --spindle-mm or another --region-mm");
   }
 
   std::vector<std::string> own_options() const override { return {"--bar-mm", "--bar-sigma-um"}; }

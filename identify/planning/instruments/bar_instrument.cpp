@@ -1,6 +1,7 @@
 #include "volcal/identify/planning/instruments/bar_instrument.h"
 
 #include <cmath>
+#include <utility>
 
 #include "volcal/model/description/errors.h"
 
@@ -9,6 +10,16 @@ namespace volcal {
 void BarInstrument::check(const PlanSettings& settings) const {
   if (settings.bar.length > kHalfStroke) return;
   throw InputError({}, "the length of the ball-bar is missing", "give --bar-mm, between the ball centres");
+}
+
+InstrumentWords BarInstrument::words_of_bar(std::string checked, std::string unreached, std::string remedy) {
+  return {"place",
+          "places",
+          "Places of the centre ball, workpiece coordinates",
+          "centre balls may stand",
+          std::move(checked),
+          std::move(unreached),
+          std::move(remedy)};
 }
 
 bool BarInstrument::can_stand(const PlanScene& scene, const Eigen::Vector3d& place_w) const {

@@ -19,6 +19,10 @@ class BarInstrument : public PlanInstrument {
   /// Throws InputError without a length of the bar.
   void check(const PlanSettings& settings) const override;
 
+  /// Words of a plan whose centre balls stand at places: what was checked, why nothing can be measured, the
+  /// remedy.
+  static InstrumentWords words_of_bar(std::string checked, std::string unreached, std::string remedy);
+
   bool can_stand(const PlanScene& scene, const Eigen::Vector3d& place_w) const override;
   bool reaches(const PlanScene& scene, const Eigen::Vector3d& place_w, const AxisPosition& position,
                std::size_t tool) const override;

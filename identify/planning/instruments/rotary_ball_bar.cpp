@@ -103,18 +103,14 @@ class PlannedRotaryBallBar : public BarInstrument {
   std::string name() const override { return "ball-bar-rotary"; }
 
   InstrumentWords words() const override {
-    return {
-        "place",
-        "places",
-        "Places of the centre ball, workpiece coordinates",
-        "centre balls may stand",
+    return words_of_bar(
         "Checked: that the linear axes follow within their travel over half of a path at least, that the "
         "bar passes by the spindle as it stands at every pose; not whether bar, spindle, tool, table and "
         "the holder of the centre ball keep clear of each other.",
         "no bar keeps its length while the rotary axes turn: the linear axes do not follow, or the spindle "
         "is in the way",
         "give --region-mm, where centre balls may stand on the table, nearer to the rotary axes, a shorter "
-        "--bar-mm or a smaller --spindle-mm"};
+        "--bar-mm or a smaller --spindle-mm");
   }
 
   std::vector<std::string> own_options() const override {

@@ -29,9 +29,8 @@ constexpr PeriodRange kGrowingLead = {.kind = "growing-lead-error",
                                       .min = 4e-3,
                                       .max = 60e-3,
                                       .grows = true};
-/// Circumference of the pitch circle, pi times module times teeth: from module 1 with 20 teeth to module 6
-/// with
-/// 32. Ball screws end where they whip, at some 2.5 m.
+/// Circumference of the pitch circle, pi times module times teeth: 20 teeth of module 1 to 32 of module 6.
+/// Ball screws end where they whip, at some 2.5 m.
 constexpr PeriodRange kRack = {.kind = "rack-error",
                                .label = "rack error",
                                .usual = 125e-3,

@@ -81,13 +81,13 @@ int rank_beyond(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& nuisance)
 
 /// A column per error by central differences of exact transforms: three rows a reading of an R-test.
 Eigen::MatrixXd exact_columns(const Campaign& campaign, const std::vector<SetConstant>& errors) {
-  constexpr double kGridStep = 1e-4;
+  constexpr double kErrorStep = 1e-4;
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(campaign.reading_count()),  // three values a pose
                           static_cast<Eigen::Index>(errors.size()));
   for (std::size_t e = 0; e < errors.size(); ++e) {
     sim::TruthMachine plus(campaign.machine), minus(campaign.machine);
-    errors[e](plus, kGridStep);
-    errors[e](minus, -kGridStep);
+    errors[e](plus, kErrorStep);
+    errors[e](minus, -kErrorStep);
     Eigen::Index row = 0;
     for (const Setup& setup : campaign.setups) {
       const Eigen::Vector3d offset = campaign.machine.tools[setup.tool].offset;
@@ -97,7 +97,7 @@ Eigen::MatrixXd exact_columns(const Campaign& campaign, const std::vector<SetCon
           position[index_of(axis.name)] = setup.readings.position[index_of(axis.name)][i];
         const sim::MachineState state = state_of(position, setup.tool);
         columns.block<3, 1>(row, static_cast<Eigen::Index>(e)) =
-            (plus.point_error(state, offset) - minus.point_error(state, offset)) / (2.0 * kGridStep);
+            (plus.point_error(state, offset) - minus.point_error(state, offset)) / (2.0 * kErrorStep);
       }
     }
   }

@@ -46,6 +46,15 @@ class CheckNames(unittest.TestCase):
             self.assertEqual(done.returncode, 1, line)
             self.assertIn(f"tests/model/b_test.cpp:4: {name} also stands in tests/model/a_test.cpp:4", done.stdout)
 
+    def test_a_constant_inside_a_function_of_the_name_of_one_outside(self):
+        inside = "void act() {\n  constexpr double kStep = 1e-4;\n}"
+        for first, second, found in ((inside, "constexpr double kStep = 0.1;", "a_test.cpp:5"),
+                                     ("constexpr double kStep = 0.1;", inside, "b_test.cpp:5")):
+            done = self.twice(first, second)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertIn(f"{found}: kStep also stands in", done.stdout)
+        self.assertEqual(self.twice(inside, inside.replace("act", "rest")).returncode, 0)
+
     def test_other_parameters_targets_and_equal_aliases_pass(self):
         for first, second, path in (("int size_of(int x) {", "int size_of(double x) {", "tests/model/b_test.cpp"),
                                     ("struct Case {", "struct Case {", "tests/io/b_test.cpp"),

@@ -81,8 +81,8 @@ Disturbance disturbance(const std::string& text, const Campaign& campaign) {
         "write KIND:TARGET=U for a standard uncertainty, KIND:TARGET=+-A for limits, in the unit "
         "that volcal diagnose --list prints");
   }
-  constexpr double kMost = 1e4;  // um, urad, um/m, 1/K: ten millimetres or 1 % are no disturbance
-  if (value > kMost) {
+  constexpr double kMostDisturbed = 1e4;  // um, urad, um/m, 1/K: ten millimetres or 1 % are no disturbance
+  if (value > kMostDisturbed) {
     throw InputError({}, "--disturb " + text + ": no effect is so large",
                      "give at most 1e4, in the unit that volcal diagnose --list prints");
   }

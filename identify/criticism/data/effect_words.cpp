@@ -196,13 +196,13 @@ std::span<const EffectWord> effect_words(NamePart part) {
 }
 
 std::span<const EffectWord> scan_words() {
-  static const std::vector<EffectWord> kWords = [] {
+  static const std::vector<EffectWord> kScanWords = [] {
     std::vector<EffectWord> words;
     for (std::size_t kind = 0; kind < kScanMeanings.size(); ++kind)
       words.push_back({pattern_of(static_cast<Variable::Kind>(kind)), kScanMeanings[kind]});
     return words;
   }();
-  return kWords;
+  return kScanWords;
 }
 
 const EffectWord* find_word(NamePart part, const EffectName& name) {

@@ -56,7 +56,7 @@ std::function<double(double)> random_function(const Axis& axis, bool is_straight
                                               std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   const double u = 1.0 / (2.0 * std::sqrt(3.0));
-  constexpr int kSteps = 2000;
+  constexpr int kStepsOfSum = 2000;
   std::vector<std::function<double(double)>> parts;
   std::vector<double> shares;
   if (!is_straightness) {
@@ -77,10 +77,10 @@ std::function<double(double)> random_function(const Axis& axis, bool is_straight
   for (std::size_t p = 0; p < parts.size(); ++p) {
     double slope = 0.0, square = 0.0;
     for (const int pass : {0, 1}) {
-      for (int i = 0; i < kSteps; ++i) {
-        const double t = (i + 0.5) / kSteps - 0.5;
-        if (pass == 0 && is_straightness) slope += 12.0 * t * parts[p](t) / kSteps;
-        if (pass == 1) square += std::pow(parts[p](t) - slope * t, 2) / kSteps;
+      for (int i = 0; i < kStepsOfSum; ++i) {
+        const double t = (i + 0.5) / kStepsOfSum - 0.5;
+        if (pass == 0 && is_straightness) slope += 12.0 * t * parts[p](t) / kStepsOfSum;
+        if (pass == 1) square += std::pow(parts[p](t) - slope * t, 2) / kStepsOfSum;
       }
     }
     terms.push_back({u * normal(random) * std::sqrt(shares[p] / square), slope});

@@ -107,7 +107,7 @@ TEST_F(TracerStudy, PathsAgreeWhereTheShapeOfAnEffectIsEstimated) {
 
 /// A tracer and a ball-bar circle in the plane XY; every error function is one cubic.
 struct CircleStudy {
-  static constexpr double kRadius = 0.15;  // m
+  static constexpr double kCircleRadius = 0.15;  // m
   Campaign campaign = measured();
   FitResult result = fitted(campaign);
 
@@ -120,7 +120,7 @@ struct CircleStudy {
     study.measurements.emplace_back().settings = tracking;
     sim::BallBarCircles circles;
     circles.planes = {"XY"};
-    circles.radius = kRadius;
+    circles.radius = kCircleRadius;
     study.measurements.emplace_back().settings = circles;
     return sim::simulate(study).campaign;
   }
@@ -164,9 +164,9 @@ TEST(BallBarStudy, CentreAcrossThePlaneBiasesTheBarsLength) {
   EXPECT_EQ(study.not_converged, 0U);
   const double s = value_of(study, "ballbar_XY: centre z").u_linear;
   const QuantityResult& length = value_of(study, "ballbar_XY: bar length error");
-  EXPECT_NEAR(std::abs(length.bias), s * s / (2.0 * CircleStudy::kRadius), 5.0 * length.bias_error);
-  const double squares =
-      length.u_linear * length.u_linear + std::pow(s * s / (std::numbers::sqrt2 * CircleStudy::kRadius), 2);
+  EXPECT_NEAR(std::abs(length.bias), s * s / (2.0 * CircleStudy::kCircleRadius), 5.0 * length.bias_error);
+  const double squares = length.u_linear * length.u_linear +
+                         std::pow(s * s / (std::numbers::sqrt2 * CircleStudy::kCircleRadius), 2);
   EXPECT_NEAR(length.u / std::sqrt(squares), 1.0, 0.1);
   EXPECT_EQ(length.verdict, LinearVerdict::NotValidated);
 }

@@ -130,7 +130,7 @@ std::map<std::string, Sight> sight_by_finite_differences(const sim::SimulatedCam
   const Eigen::VectorXd nominal = exact_readings(plans, perfect);
   const auto n = static_cast<Eigen::Index>(unknowns.size());
   Eigen::MatrixXd jacobian(nominal.size(), n);  // per prior standard deviation, in standard deviations
-  constexpr double kStep = 1e-6;
+  constexpr double kSlopeStep = 1e-6;
   for (Eigen::Index j = 0; j < n; ++j) {
     const Unknown& unknown = unknowns[static_cast<std::size_t>(j)];
     const auto readings = [&](double step) {
@@ -140,7 +140,8 @@ std::map<std::string, Sight> sight_by_finite_differences(const sim::SimulatedCam
       if (unknown.setup) unknown.setup(moved[unknown.setup_index], step);
       return exact_readings(moved, truth);
     };
-    jacobian.col(j) = (readings(kStep) - readings(-kStep)) * (unknown.wide / (2.0 * kStep * kSigma));
+    jacobian.col(j) =
+        (readings(kSlopeStep) - readings(-kSlopeStep)) * (unknown.wide / (2.0 * kSlopeStep * kSigma));
   }
   const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
   const Eigen::MatrixXd posterior =

@@ -21,22 +21,22 @@ SetupPlan long_plan(int readings, double seconds) {
 }
 
 TEST(Drift, HasItsSizeAndCorrelationTime) {
-  constexpr int kReadings = 200000;
+  constexpr int kNoiseReadings = 200000;
   constexpr int kLag = 20;  // 20 readings of 5 s are the correlation time
-  SetupPlan plan = long_plan(kReadings, 5.0);
+  SetupPlan plan = long_plan(kNoiseReadings, 5.0);
   plan.noise.drift = 0.4e-6;
   plan.noise.drift_time = 100.0;
   const CorrelatedNoise noise(plan, 11);
   double square = 0.0;
   double product = 0.0;
-  for (std::size_t row = 0; row + kLag < kReadings; ++row) {
+  for (std::size_t row = 0; row + kLag < kNoiseReadings; ++row) {
     square += noise.slow(row, 0) * noise.slow(row, 0);
     product += noise.slow(row, 0) * noise.slow(row + kLag, 0);
   }
   // 2,000 correlation times: the autocorrelation at one of them is known to 0.02 (k = 1), the variance to
   // 1 %.
   EXPECT_NEAR(product / square, std::exp(-1.0), 0.03);
-  EXPECT_NEAR(std::sqrt(square / kReadings), 0.4e-6, 0.4e-6 * 0.02);
+  EXPECT_NEAR(std::sqrt(square / kNoiseReadings), 0.4e-6, 0.4e-6 * 0.02);
 }
 
 TEST(Drift, AutocorrelationHoldsOverManySetups) {

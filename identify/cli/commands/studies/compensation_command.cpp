@@ -54,8 +54,8 @@ CompensationSummary summary_of(const CompensationRows& rows) {
 
 /// "-" where the ideal compensation leaves nothing to compare with.
 std::string ratio_to(double ideal, double applied) {
-  constexpr double kNothing = 0.05e-6;  // m
-  return ideal < kNothing ? "-" : fixed_number(applied / ideal, 2);
+  constexpr double kNoDisplacement = 0.05e-6;  // m
+  return ideal < kNoDisplacement ? "-" : fixed_number(applied / ideal, 2);
 }
 
 std::string compensation_rows_text(const CompensationArguments& arguments, const CompensationRows& rows) {

@@ -56,12 +56,13 @@ class ImitatedByTheModel : public ::testing::Test {
  protected:
   ImitatedByTheModel() {
     const TensorBasis along_x({{0.0, 1.0, 4}});
-    Eigen::MatrixXd own(kSide * kSide, basis_.size()), model(kSide * kSide, along_x.size());
-    for (int i = 0; i < kSide; ++i) {
-      for (int j = 0; j < kSide; ++j) {
-        const std::array place = {(i + 0.5) / kSide, (j + 0.5) / kSide};
-        own.row(i * kSide + j) = basis_.row(place).transpose();
-        model.row(i * kSide + j) = along_x.row(std::span(place).first(1)).transpose();
+    Eigen::MatrixXd own(kSideOfGrid * kSideOfGrid, basis_.size()),
+        model(kSideOfGrid * kSideOfGrid, along_x.size());
+    for (int i = 0; i < kSideOfGrid; ++i) {
+      for (int j = 0; j < kSideOfGrid; ++j) {
+        const std::array place = {(i + 0.5) / kSideOfGrid, (j + 0.5) / kSideOfGrid};
+        own.row(i * kSideOfGrid + j) = basis_.row(place).transpose();
+        model.row(i * kSideOfGrid + j) = along_x.row(std::span(place).first(1)).transpose();
       }
     }
     own_ = 1e12 * own.transpose() * own;
@@ -72,7 +73,7 @@ class ImitatedByTheModel : public ::testing::Test {
                                       priors.shapes()[priors.middle()]->precision.inverse() * 25e-12);
   }
 
-  static constexpr int kSide = 17;
+  static constexpr int kSideOfGrid = 17;
   TensorBasis basis_{{{0.0, 1.0, 4}, {0.0, 1.0, 3}}};
   Eigen::MatrixXd own_, coupling_, rest_, imitated_;
 };

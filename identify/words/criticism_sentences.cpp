@@ -209,10 +209,6 @@ std::string shape_beyond_scan(const Finding& finding) {
   return not_named(finding, "its " + finding.text("shape") + " lies beyond what was looked for");
 }
 
-std::string several_powers(const Finding& finding) {
-  return not_named(finding, "several powers of its driver are needed");
-}
-
 std::string unnamed_exceeds(const Finding& finding) {
   return not_named(finding, "what has no name exceeds the noise more than it does");
 }
@@ -261,7 +257,6 @@ std::span<const SentenceMaker> criticism_sentences() {
       {FindingCode::RejectedDriverStillMoves, driver_still_moves},
       {FindingCode::RejectedAmplitudeVaries, amplitude_varies},
       {FindingCode::RejectedShapeBeyondScan, shape_beyond_scan},
-      {FindingCode::RejectedSeveralPowers, several_powers},
       {FindingCode::RejectedUnnamedExceeds, unnamed_exceeds},
       {FindingCode::DirectionsUnrecorded, directions_unrecorded},
       {FindingCode::TimesUnrecorded, times_unrecorded},

@@ -62,7 +62,6 @@ constexpr auto kFindingCodes = [] {
       {RejectedDriverStillMoves, "diagnosis.rejected.driver-still-moves", Severity::Note},
       {RejectedAmplitudeVaries, "diagnosis.rejected.amplitude-varies", Severity::Note},
       {RejectedShapeBeyondScan, "diagnosis.rejected.shape-beyond-scan", Severity::Note},
-      {RejectedSeveralPowers, "diagnosis.rejected.several-powers", Severity::Note},
       {RejectedUnnamedExceeds, "diagnosis.rejected.unnamed-exceeds", Severity::Note},
       {DirectionsUnrecorded, "diagnosis.directions-unrecorded", Severity::Note},
       {TimesUnrecorded, "diagnosis.times-unrecorded", Severity::Note},

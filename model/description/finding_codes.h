@@ -58,7 +58,6 @@ enum class FindingCode : std::uint8_t {
   RejectedDriverStillMoves,
   RejectedAmplitudeVaries,
   RejectedShapeBeyondScan,
-  RejectedSeveralPowers,
   RejectedUnnamedExceeds,
   DirectionsUnrecorded,
   TimesUnrecorded,

@@ -12,33 +12,30 @@
 namespace volcal {
 
 enum class SearchRule {
-  OneCause,           ///< a curve takes the place of two names
-  WiderSurface,       ///< a surface of more variables takes the place of one and a name
-  Surfaces,           ///< what has no name is drawn
-  CrossedFindings,    ///< surfaces of one scan's variables on another's target
-  ReplacedSurfaces,   ///< names in the place of surfaces
-  ScanVeto,           ///< no name is added that a scan beats
-  ComponentMargin,    ///< a wider margin for displacements whose components are independent
-  NamesTogether,      ///< several names at once against a scan
-  AbsorbedEffects,    ///< effects that the noise may hold
-  AbsorbedScans,      ///< scans that the noise may hold
-  OneAmplitude,       ///< no name of several axes is added whose amplitude differs between them
-  Departure,          ///< a name that is weak beside the others leaves
-  Exchange,           ///< a better name replaces another
-  LeavesMore,         ///< no name: what it leaves is less probable than it
-  DriverStillMoves,   ///< no name: its driver moves what it leaves
-  SeveralPowers,      ///< no name: powers of one driver
-  AmplitudeVaries,    ///< no name: its amplitude is not constant
-  ShapeBeyondScan,    ///< no name: its shape lies beyond the scan
-  StandingRival,      ///< a rival takes the place of what is no name
-  Recheck,            ///< what stands after a rejection is judged again
-  InconsistentRival,  ///< a rival whose amplitude varies leaves its set
-  NearByLm,           ///< rivals by LM alone
-  EstimatedNoise,     ///< F in place of chi-squared
-  DoubtfulScans,      ///< chi-squared where many scans exceed
-  Reinstated,         ///< outliers that a name explains are readings again
-  SimplestFirst,      ///< of scans that are nearly alike the simplest is reported
-  CertainVariable     ///< a second variable is reported where it is certain
+  OneCause,          ///< a curve takes the place of two names
+  WiderSurface,      ///< a surface of more variables takes the place of one and a name
+  Surfaces,          ///< what has no name is drawn
+  CrossedFindings,   ///< surfaces of one scan's variables on another's target
+  ReplacedSurfaces,  ///< names in the place of surfaces
+  ScanVeto,          ///< no name is added that a scan beats
+  ComponentMargin,   ///< a wider margin for displacements whose components are independent
+  NamesTogether,     ///< several names at once against a scan
+  AbsorbedEffects,   ///< effects that the noise may hold
+  OneAmplitude,      ///< no name of several axes is added whose amplitude differs between them
+  Departure,         ///< a name that is weak beside the others leaves
+  Exchange,          ///< a better name replaces another
+  LeavesMore,        ///< no name: what it leaves is less probable than it
+  DriverStillMoves,  ///< no name: its driver moves what it leaves
+  AmplitudeVaries,   ///< no name: its amplitude is not constant
+  ShapeBeyondScan,   ///< no name: its shape lies beyond the scan
+  StandingRival,     ///< a rival takes the place of what is no name
+  Recheck,           ///< what stands after a rejection is judged again
+  NearByLm,          ///< rivals by LM alone
+  EstimatedNoise,    ///< F in place of chi-squared
+  DoubtfulScans,     ///< chi-squared where many scans exceed
+  Reinstated,        ///< outliers that a name explains are readings again
+  SimplestFirst,     ///< of scans that are nearly alike the simplest is reported
+  CertainVariable    ///< a second variable is reported where it is certain
 };
 
 std::span<const SearchRule> search_rules();

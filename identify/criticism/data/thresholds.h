@@ -70,10 +70,8 @@ struct Thresholds {
 
   /// Probability that the amplitude is constant, per name. At or below: the name is rejected. `unlisted`.
   double constancy_risk = 0.01;
-  /// The same of a rival. Below: it leaves the set of a name that is plainly constant. `listed`.
-  double rival_constancy_risk = 0.001;
-  /// At or above: plainly constant. Twins vary nearly alike, so a rival replaces a rejected name, or leaves
-  /// beside a standing one, only where the better of both is not in doubt. `listed`, `unlisted`.
+  /// At or above: plainly constant. Twins vary nearly alike, so a rival replaces a rejected name only where
+  /// it is not in doubt itself. `listed`, `unlisted`.
   double plainly_constant = 0.1;
   /// Standard uncertainties by which the readings ask for a shape beyond the end of its scan. More: no name;
   /// a two-sided 5 % test. `unlisted`.

@@ -3,8 +3,8 @@
 /// changes along the path of the readings; noise that was estimated without an effect may hold it, and leave
 /// nothing to be tested.
 ///
-/// In: a tested model state at which nothing exceeds the noise. Out: the effect, or the scans, that do when
-/// the noise is estimated jointly with them. SI; log10 p.
+/// In: a tested model state at which nothing exceeds the noise. Out: the effect that does when the noise
+/// is estimated jointly with it. SI; log10 p.
 ///
 /// Likelihood ratio 2 [max l(y - G a) - max l(y)] of restricted likelihoods, each at its own noise. The
 /// columns of the model are the same in both and G a is data, so that they can be compared
@@ -82,19 +82,10 @@ class JointNoiseTest {
 
   /// The least probable effect, of those that may be added, where it exceeds the noise.
   std::optional<FamilyTest> effect(const std::function<bool(const FamilyTest&)>& may_be_added) const;
-  /// Tests of the state in which scans that exceed jointly with the noise do so.
-  ModelTests scans() const;
 
  private:
-  /// What a scan has seen at another noise.
-  struct AbsorbedScan {
-    std::size_t scan;  ///< of the state's
-    GenericTest test;
-    Eigen::VectorXd moved;
-  };
   std::vector<FamilyTest> absorbed_effects(const std::function<bool(const FamilyTest&)>& may_be_added) const;
   std::vector<FamilyTest> doubtful_effects(const std::function<bool(const FamilyTest&)>& may_be_added) const;
-  std::vector<AbsorbedScan> absorbed_scans() const;
   std::vector<NoiseAlternative> alternatives() const;
 
   const ModelState& state_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "volcal/identify/criticism/catalogue/shape_refinement.h"
@@ -77,18 +76,9 @@ bool Rejection::still_moves(const std::vector<Variable>& drivers) const {
 
 Reasons Rejection::rejection_reasons() const {
   Reasons reasons;
-  std::map<std::tuple<std::string, std::string, std::string>, std::vector<std::size_t>> by_driver;
   for (std::size_t i = 0; i < state_.added().size(); ++i) {
-    const std::size_t family = state_.added()[i].test.family;
-    const EffectName name = state_.setting().families[family].name();
-    by_driver[{name.kind, name.target, name.driver}].push_back(family);
-    if (std::optional<Finding> own = rejection_reason(i)) reasons[family] = *std::move(own);
-  }
-  for (const auto& [key, members] : by_driver) {
-    const std::size_t powers = members.size();
-    if (!rules().decide(SearchRule::SeveralPowers, [powers] { return powers > 1; })) continue;
-    for (const std::size_t family : members)
-      reasons[family] = rejected(FindingCode::RejectedSeveralPowers, state_.setting().families[family]);
+    if (std::optional<Finding> own = rejection_reason(i))
+      reasons[state_.added()[i].test.family] = *std::move(own);
   }
   return reasons;
 }
@@ -166,20 +156,6 @@ double Rejection::log10_constancy_of_rival(std::size_t added, const FamilyTest& 
   const Eigen::MatrixXd columns = accept(state_.model(), family, rival, *projector);
   return std::min(constancy_of(state_, family, columns, first, *projector).log10_p,
                   log10_constancy_over_places(state_, rival, added));
-}
-
-std::vector<AddedEffect> Rejection::drop_inconsistent_rivals() const {
-  std::vector<AddedEffect> all = state_.added();
-  if (!rules().follows(SearchRule::InconsistentRival)) return all;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].rivals.empty() || !state_.family_of(all[i]).effect) continue;
-    if (constancy(i).log10_p < std::log10(kThresholds.plainly_constant)) continue;
-    const auto left = std::erase_if(all[i].rivals, [&](const FamilyTest& rival) {
-      return log10_constancy_of_rival(i, rival) < std::log10(kThresholds.rival_constancy_risk);
-    });
-    if (left > 0) rules().tell(SearchRule::InconsistentRival);
-  }
-  return all;
 }
 
 const FamilyTest* Rejection::standing_rival(std::size_t added, const Reasons& rejected) const {

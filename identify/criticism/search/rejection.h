@@ -3,7 +3,7 @@
 ///
 /// In: a tested model state. Out: findings "diagnosis.rejected...", and what may stand in the place of a
 /// rejected effect. An effect is rejected when what it leaves exceeds the noise more than it did, its own
-/// driver still moves what it leaves, several powers of its driver are needed together, its amplitude varies
+/// driver still moves what it leaves, its amplitude varies
 /// (amplitude_constancy.h: Nyblom 1989, JASA 84, 223), or its shape lies beyond the end of its scan. Risks
 /// and margins: thresholds.h; probabilities in log10. Valid where all that the readings need is in the model
 /// or among its scans.
@@ -28,15 +28,12 @@ class Rejection {
 
   /// Of an added effect, by its place; nothing: the name stands.
   std::optional<Finding> rejection_reason(std::size_t added) const;
-  /// Of all added effects that are no names; powers of one driver on one target that are needed together
-  /// stand for a function that the catalogue does not hold.
+  /// Of all added effects that are no names.
   Reasons rejection_reasons() const;
   /// What the scans still see is less probable than the effect.
   bool leaves_more(const AddedEffect& effect) const;
   /// The first rival whose amplitude is plainly constant in the place of the added effect; null: none.
   const FamilyTest* standing_rival(std::size_t added, const Reasons& rejected) const;
-  /// The added effects without the rivals whose amplitude varies, where the effect's plainly does not.
-  std::vector<AddedEffect> drop_inconsistent_rivals() const;
 
  private:
   const SearchRules& rules() const { return state_.setting().rules; }

@@ -94,9 +94,6 @@ void Search::run() {
   replace_surfaces();
   if (!options_.climb) keep_one_step();
   recall_rejected();
-  if (something_exceeds() || !rules().follows(SearchRule::AbsorbedScans)) return;
-  report("what noise may hold", 0.92);
-  state_ = state_->with_tests(JointNoiseTest(*state_).scans());
 }
 
 void Search::report(const std::string& stage, double done) const {
@@ -446,22 +443,20 @@ const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, std::siz
 void Search::reject() {
   const Rejection rejection(*state_);
   rejected_ = rejection.rejection_reasons();
-  if (!rejected_.empty()) {
-    std::vector<FamilyTest> kept;
-    std::set<std::size_t> stood;
-    for (std::size_t i = 0; i < state_->added().size(); ++i) {
-      const FamilyTest& own = state_->added()[i].test;
-      if (!rejected_.contains(own.family)) {
-        stood.insert(own.family);
-        kept.push_back(own);
-      } else if (const FamilyTest* rival = rejection.standing_rival(i, rejected_)) {
-        kept.push_back(*rival);
-      }
+  if (rejected_.empty()) return;
+  std::vector<FamilyTest> kept;
+  std::set<std::size_t> stood;
+  for (std::size_t i = 0; i < state_->added().size(); ++i) {
+    const FamilyTest& own = state_->added()[i].test;
+    if (!rejected_.contains(own.family)) {
+      stood.insert(own.family);
+      kept.push_back(own);
+    } else if (const FamilyTest* rival = rejection.standing_rival(i, rejected_)) {
+      kept.push_back(*rival);
     }
-    keep(kept);
-    if (rules().follows(SearchRule::Recheck)) recheck(stood);
   }
-  state_ = state_->with_comparisons(Rejection(*state_).drop_inconsistent_rivals());
+  keep(kept);
+  if (rules().follows(SearchRule::Recheck)) recheck(stood);
 }
 
 /// What has come in place of others, if it is no name either, and what is weaker than what these have left.

@@ -413,8 +413,6 @@ const std::vector<WordedFinding>& examples() {
        "Not named a: its amplitude varies with y (log10 p -7.3)."},
       {{FindingCode::RejectedShapeBeyondScan, {{"effect", "a"}, {"shape", "time constant"}}},
        "Not named a: its time constant lies beyond what was looked for."},
-      {{FindingCode::RejectedSeveralPowers, {{"effect", "a"}}},
-       "Not named a: several powers of its driver are needed."},
       {{FindingCode::RejectedUnnamedExceeds, {{"effect", "a"}}},
        "Not named a: what has no name exceeds the noise more than it does."},
       {{FindingCode::DirectionsUnrecorded, {{"columns", Texts{"dir_x"}}, {"kinds", Texts{"reversal"}}}},

@@ -69,21 +69,6 @@ TEST(Rejection, ItsDriverMayNotMoveWhatItLeaves) {
   EXPECT_FALSE(Rejection(wave).rejection_reason(0)) << "a wave is another effect beside it";
 }
 
-/// Droop that is straight and bent: a function of z that neither power is.
-TEST(Rejection, SeveralPowersOfOneDriverAreNoName) {
-  const FittedStudy study(hiding({}, kRejectionGrid));
-  const ModelState given = ModelState(study.model, setting_of(study.model)).tested();
-  const ModelState first = given.with(test_of(given, {"axis-coupling", "EAY", "z", "linear"}));
-  const ModelState both =
-      with_scans(first.with(test_of(given, {"axis-coupling", "EAY", "z", "quadratic"})).tested(), {});
-  const Reasons reasons = Rejection(both).rejection_reasons();
-  ASSERT_EQ(reasons.size(), 2U);
-  for (const auto& each : reasons) EXPECT_EQ(each.second.code, FindingCode::RejectedSeveralPowers);
-  const ModelState one = with_scans(first.tested(), {});
-  for (const auto& each : Rejection(one).rejection_reasons())
-    EXPECT_NE(each.second.code, FindingCode::RejectedSeveralPowers);
-}
-
 /// A backlash that grows along Y, named as a constant one; the growing one in its place is constant.
 TEST(Rejection, AnAmplitudeThatVariesIsNoName) {
   sim::HiddenEffect growing{.kind = "reversal-position", .options = {}, .rms = {}};
@@ -104,14 +89,9 @@ TEST(Rejection, AnAmplitudeThatVariesIsNoName) {
   ASSERT_NE(standing, nullptr);
   EXPECT_EQ(standing->family, rival.family);
   EXPECT_EQ(rejection.standing_rival(0, {{rival.family, verbatim("rejected itself")}}), nullptr);
-  EXPECT_EQ(rejection.drop_inconsistent_rivals()[0].rivals.size(), 1U) << "its own varies";
 
-  ModelState right = with_scans(given.with(rival).tested(), {});
-  compared = right.added();
-  compared[0].rivals = {constant};
-  right = right.with_comparisons(std::move(compared));
+  const ModelState right = with_scans(given.with(rival).tested(), {});
   EXPECT_FALSE(Rejection(right).rejection_reason(0));
-  EXPECT_THAT(Rejection(right).drop_inconsistent_rivals()[0].rivals, IsEmpty());
 }
 
 }  // namespace

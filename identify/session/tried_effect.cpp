@@ -61,6 +61,12 @@ Comparison judged_lines(const Campaign& campaign, const ModelSpec& model,
   return compare(campaign, heldout_residuals(campaign, model, rows, {threads, true, progress}));
 }
 
+/// A pointer to the next step: nothing is drawn, and what no single name explains is told as it was seen.
+SearchRules rules_of_a_pointer() {
+  using enum SearchRule;
+  return {.off = {Surfaces, OneCause, WiderSurface, ReplacedSurfaces, NamesTogether}, .decided = {}};
+}
+
 Diagnosis what_remains(const Campaign& campaign, const ModelSpec& model, const TryOptions& tried) {
   FitOptions options;
   options.threads = tried.threads;
@@ -73,6 +79,7 @@ Diagnosis what_remains(const Campaign& campaign, const ModelSpec& model, const T
   diagnosis.climb = true;
   diagnosis.figures = false;
   diagnosis.compare = false;
+  diagnosis.rules = rules_of_a_pointer();
   diagnosis.progress = part_of(tried.progress, "what remains", 0.7, 1.0);
   return diagnose(campaign, result, diagnosis);
 }

@@ -29,7 +29,7 @@ struct TriedEffect {
   FitStatus status = FitStatus::Ok;
   bool judged = false;       ///< the setups have lines to hold out
   Comparison without, with;  ///< of the same lines, seen by neither fit
-  Diagnosis remains;         ///< of the model with the effect
+  Diagnosis remains;         ///< of the model with the effect: names one by one, nothing drawn
 
   /// Whether it is visible and its fit has converged.
   bool done() const { return not_visible.empty() && status != FitStatus::NotConverged; }

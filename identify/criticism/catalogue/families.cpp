@@ -160,6 +160,18 @@ void family_columns(const LinearModel& model, const Family& family, const Eigen:
   }
 }
 
+void add_family_products(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                         std::size_t setup, const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                         Eigen::Ref<Eigen::MatrixXd> sum) {
+  if (!family.resolution) {
+    model.add_products(*family.effect, shape, setup, rows, sum);
+    return;
+  }
+  Eigen::MatrixXd columns(rows.rows(), sum.rows());
+  resolution_columns(model, *family.resolution, setup, columns);
+  sum += columns.transpose() * rows;
+}
+
 Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape) {
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(model.size()), family.amplitudes());
   const auto& parts = model.parts();

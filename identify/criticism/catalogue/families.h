@@ -46,6 +46,10 @@ Eigen::MatrixXd family_columns(const LinearModel& model, const Family& family, c
 /// Those of one setup's rows.
 void family_columns(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
                     std::size_t setup, Eigen::Ref<Eigen::MatrixXd> out);
+/// Adds their transpose times `rows` of that setup (LinearModel::add_products).
+void add_family_products(const LinearModel& model, const Family& family, const Eigen::VectorXd& shape,
+                         std::size_t setup, const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                         Eigen::Ref<Eigen::MatrixXd> sum);
 
 /// A family at a shape.
 struct Hypothesis {

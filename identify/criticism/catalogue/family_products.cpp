@@ -127,15 +127,20 @@ class Acceptance {
   Eigen::VectorXd score_;  ///< R^T a~^T r~
 };
 
-/// columns^T weighed
-Eigen::MatrixXd cross_products(const CandidateColumns& columns, const std::vector<Eigen::Index>& parts,
+/// Of the columns of families at all their shapes, transposed, with `weighed`.
+Eigen::MatrixXd cross_products(const LinearModel& model, const std::vector<Family>& families,
+                               const std::vector<Hypothesis>& hypotheses, Eigen::Index columns,
                                const Eigen::MatrixXd& weighed) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns.count, weighed.cols()), rows;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(columns, weighed.cols());
+  const std::vector<Eigen::Index>& parts = model.parts();
   for (std::size_t part = 0; part + 1 < parts.size(); ++part) {
-    const Eigen::Index first = parts[part], count = parts[part + 1] - first;
-    rows.resize(count, columns.count);
-    columns.fill(part, rows);
-    add_transposed_product(rows, weighed.middleRows(first, count), sum);
+    const auto rows = weighed.middleRows(parts[part], parts[part + 1] - parts[part]);
+    Eigen::Index at = 0;
+    for (const Hypothesis& each : hypotheses) {
+      const Family& family = families[each.family];
+      add_family_products(model, family, each.shape, part, rows, sum.middleRows(at, family.amplitudes()));
+      at += family.amplitudes();
+    }
   }
   return sum;
 }
@@ -187,8 +192,8 @@ FamilyProducts FamilyProducts::accepting(const Eigen::MatrixXd& columns, const L
   run_parallel(after.blocks_.size(), threads, [&](std::size_t i) {
     Block& block = after.blocks_[i];
     auto products = std::make_shared<ProjectedColumns>(*block.products);
-    acceptance.move(cross_products(columns_of(model, families, all_shapes(families, block.family)),
-                                   model.parts(), acceptance.weighed()),
+    acceptance.move(cross_products(model, families, all_shapes(families, block.family), block.columns,
+                                   acceptance.weighed()),
                     *products);
     block.products = std::move(products);
   });

@@ -225,6 +225,33 @@ void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, st
   }
 }
 
+void LinearModel::add_products(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
+                               const Eigen::Ref<const Eigen::MatrixXd>& rows,
+                               Eigen::Ref<Eigen::MatrixXd> sum) const {
+  const std::vector<EffectTerm> terms = effect.terms();
+  const Eigen::Index first = parts()[setup], count = parts()[setup + 1] - first;
+  const Eigen::MatrixXd drivers = effect.drivers(views()[setup], shape);
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const auto driver = drivers.col(static_cast<Eigen::Index>(k));
+    const auto amplitude = static_cast<Eigen::Index>(terms[k].amplitude);
+    const auto sensitivity =
+        fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine)).segment(first, count);
+    for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+      const auto along = rows.col(column);
+      if (drivers.rows() == count) {
+        sum(amplitude, column) += driver.cwiseProduct(sensitivity).dot(along);
+        continue;
+      }
+      double product = 0.0;
+      for (Eigen::Index i = 0; i < count; ++i) {
+        const std::size_t row = observations()[static_cast<std::size_t>(first + i)].row;
+        product += driver[static_cast<Eigen::Index>(row)] * sensitivity[i] * along[i];
+      }
+      sum(amplitude, column) += product;
+    }
+  }
+}
+
 Eigen::VectorXd LinearModel::direction(ScanDirection direction) const {
   if (direction == ScanDirection::Beam) return fixed_->sensitivity.rightCols<kMaxChannels>().rowwise().sum();
   return -fixed_->sensitivity.col(kStationDisturbance + static_cast<int>(index_of(direction)));

@@ -76,6 +76,11 @@ class LinearModel {
   /// amplitudes.
   void columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
                Eigen::Ref<Eigen::MatrixXd> out) const;
+  /// Adds the transpose of these columns times `rows`, of the same observations, without making them: an
+  /// effect moves a reading by its drivers times the reading's sensitivity to what they drive. `sum`:
+  /// amplitudes x columns of `rows`.
+  void add_products(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
+                    const Eigen::Ref<const Eigen::MatrixXd>& rows, Eigen::Ref<Eigen::MatrixXd> sum) const;
   double sensitivity(Eigen::Index observation, int disturbance) const {
     return fixed_->sensitivity(observation, disturbance);
   }

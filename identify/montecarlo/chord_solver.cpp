@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "volcal/identify/numeric/dense.h"
+
 namespace volcal {
 namespace {
 
@@ -21,8 +23,11 @@ class ChordSolver::Path {
  public:
   Path(const WeakParameters& weak, const CampaignDraw& draw, const Eigen::VectorXd& linear)
       : weak_(weak), draw_(draw), scale_(weak.solve(draw, linear)), next_(scale_.deviation) {
-    // The linear step has about one standard deviation per parameter.
-    before_ = std::sqrt(static_cast<double>(linear.size()));
+    // The linear step has about one standard deviation per parameter. How much nearer a second-order solution
+    // is says nothing of the steps to come: what it leaves out changes the curvature as much as the valley
+    // bends.
+    before_ = scale_.correction.size() > 0 ? 1.0 / (1.0 + scale_.bend)
+                                           : std::sqrt(static_cast<double>(linear.size()));
   }
 
   const CampaignDraw& draw() const { return draw_; }
@@ -31,21 +36,45 @@ class ChordSolver::Path {
   /// Where a gradient is asked for; in the end the solution.
   const Eigen::VectorXd& deviation() const { return next_; }
 
-  void take(Eigen::VectorXd gradient) {
+  /// Whether a step follows, which step() makes; else the last one is shortened.
+  bool take(Eigen::VectorXd gradient) {
     ++outcome_.gradients;
     if (step_.size() > 0) {
       const double after = gradient.dot(step_);
       if (after > -kFallsAlongAStep * along_ && outcome_.gradients < kMostGradients) {
         step_ *= shortened(along_, after);
         next_ = at_ + step_;
-        return;
+        return false;
       }
       learn(gradient);
       before_ = length_;
     }
     at_ = next_;
     gradient_ = std::move(gradient);
-    propose();
+    reduce();
+    return true;
+  }
+  /// What C is to be multiplied with for a step.
+  const Eigen::VectorXd& reduced() const { return reduced_; }
+
+  /// `moved`: C reduced(); `gain`: C.
+  void step(const Eigen::VectorXd& moved, const Eigen::MatrixXd& gain) {
+    step_ = descent(moved);
+    along_ = gradient_.dot(step_);
+    if (!(along_ <= 0.0) && scale_.correction.size() > 0) {  // the second order misleads
+      scale_.correction.resize(0, 0);
+      known_.clear();
+      reduce();
+      step_ = descent(gain * reduced_);
+      along_ = gradient_.dot(step_);
+    }
+    length_ = std::sqrt(std::max(0.0, -along_));
+    const double contraction = length_ / before_;
+    outcome_.to_come = contraction < 1.0 ? length_ * contraction / (1.0 - contraction)
+                                         : std::numeric_limits<double>::infinity();
+    outcome_.converged = outcome_.to_come < kEnough;
+    next_ = at_ + step_;
+    done_ = outcome_.converged || outcome_.gradients >= kMostGradients || !std::isfinite(length_);
   }
 
  private:
@@ -62,35 +91,22 @@ class ChordSolver::Path {
     if (product > 0.0) known_.push_back({step_, std::move(change), product});
   }
 
-  Eigen::VectorXd descent() const {
-    Eigen::VectorXd q = gradient_;
-    std::vector<double> share(known_.size());
+  /// The first loop of the recursion.
+  void reduce() {
+    reduced_ = gradient_;
+    share_.resize(known_.size());
     for (std::size_t i = known_.size(); i-- > 0;) {
-      share[i] = known_[i].step.dot(q) / known_[i].product;
-      q -= share[i] * known_[i].change;
+      share_[i] = known_[i].step.dot(reduced_) / known_[i].product;
+      reduced_ -= share_[i] * known_[i].change;
     }
-    Eigen::VectorXd step = weak_.inverse_curvature(scale_, q);
-    for (std::size_t i = 0; i < known_.size(); ++i)
-      step += (share[i] - known_[i].change.dot(step) / known_[i].product) * known_[i].step;
-    return -step;
   }
 
-  void propose() {
-    step_ = descent();
-    along_ = gradient_.dot(step_);
-    if (!(along_ <= 0.0) && scale_.correction.size() > 0) {  // the second order misleads
-      scale_.correction.resize(0, 0);
-      known_.clear();
-      step_ = descent();
-      along_ = gradient_.dot(step_);
-    }
-    length_ = std::sqrt(std::max(0.0, -along_));
-    const double contraction = length_ / before_;
-    outcome_.to_come = contraction < 1.0 ? length_ * contraction / (1.0 - contraction)
-                                         : std::numeric_limits<double>::infinity();
-    outcome_.converged = outcome_.to_come < kEnough;
-    next_ = at_ + step_;
-    done_ = outcome_.converged || outcome_.gradients >= kMostGradients || !std::isfinite(length_);
+  /// The second.
+  Eigen::VectorXd descent(Eigen::VectorXd moved) const {
+    Eigen::VectorXd step = weak_.inverse_curvature(scale_, reduced_, std::move(moved));
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      step += (share_[i] - known_[i].change.dot(step) / known_[i].product) * known_[i].step;
+    return -step;
   }
 
   const WeakParameters& weak_;
@@ -101,7 +117,9 @@ class ChordSolver::Path {
   Eigen::VectorXd gradient_;  ///< at_
   Eigen::VectorXd step_;
   std::vector<Curvature> known_;
-  double before_ = 0.0;  ///< length of the step before
+  Eigen::VectorXd reduced_;
+  std::vector<double> share_;  ///< of known_ in reduced_
+  double before_ = 0.0;        ///< length of the step before
   double along_ = 0.0;
   double length_ = 0.0;
   bool done_ = false;
@@ -164,6 +182,20 @@ Eigen::MatrixXd ChordSolver::together(const CampaignDraw* const* draws, const Ei
   return gradients;
 }
 
+/// Steps of all paths that take one by one product with C, which is not in the processor's cache.
+void ChordSolver::advance(const std::vector<Path*>& paths, const Eigen::MatrixXd& gradients) const {
+  std::vector<Path*> stepping;
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    if (paths[k]->take(gradients.col(static_cast<Eigen::Index>(k)))) stepping.push_back(paths[k]);
+  }
+  Eigen::MatrixXd reduced(gradients.rows(), static_cast<Eigen::Index>(stepping.size()));
+  for (std::size_t k = 0; k < stepping.size(); ++k)
+    reduced.col(static_cast<Eigen::Index>(k)) = stepping[k]->reduced();
+  const Eigen::MatrixXd moved = product(campaign_.gain(), reduced);
+  for (std::size_t k = 0; k < stepping.size(); ++k)
+    stepping[k]->step(moved.col(static_cast<Eigen::Index>(k)), campaign_.gain());
+}
+
 std::vector<ChordSolver::Outcome> ChordSolver::solve(const std::vector<CampaignDraw>& draws,
                                                      Eigen::Ref<Eigen::MatrixXd> deviations,
                                                      Workspace& work) const {
@@ -180,8 +212,7 @@ std::vector<ChordSolver::Outcome> ChordSolver::solve(const std::vector<CampaignD
       of.push_back(&open[k]->draw());
       at.col(static_cast<Eigen::Index>(k)) = open[k]->deviation();
     }
-    const Eigen::MatrixXd here = gradients(of, at, work);
-    for (std::size_t k = 0; k < open.size(); ++k) open[k]->take(here.col(static_cast<Eigen::Index>(k)));
+    advance(open, gradients(of, at, work));
     std::erase_if(open, [](const Path* path) { return path->done(); });
   }
   std::vector<Outcome> outcomes;

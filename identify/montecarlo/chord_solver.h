@@ -11,7 +11,8 @@
 /// ibid. 3.7). The start is (2), a matrix product over many draws, or the solution of the second order.
 /// Lengths of steps are in standard deviations, |step|^2 = step^T H^-1 step; a draw ends when the steps to
 /// come, by the contraction of the last, amount to less than kEnough. Draws step side by side where the model
-/// allows it, and a draw's steps are the same whatever draws stand beside it. What the model holds fixed in
+/// allows it; a draw's steps are the same to rounding whatever draws stand beside it, and to the bit beside
+/// the same draws, which a study's batches are by their numbers. What the model holds fixed in
 /// an adjustment (the transforms' second-order remainder, the expansion of effects about their shape) stays
 /// that of the identified machine.
 
@@ -29,7 +30,7 @@ namespace volcal {
 
 class ChordSolver {
  public:
-  static constexpr double kEnough = 1e-5;  ///< standard deviations: 3 pm where u is 0.3 um
+  static constexpr double kEnough = 1e-4;  ///< standard deviations: 30 pm where u is 0.3 um
   static constexpr int kMostGradients = 60;
 
   /// `campaign` must outlive the object.
@@ -58,6 +59,7 @@ class ChordSolver {
   /// Gradients of draws, each at its point.
   Eigen::MatrixXd gradients(const std::vector<const CampaignDraw*>& draws, const Eigen::MatrixXd& deviations,
                             Workspace& work) const;
+  void advance(const std::vector<Path*>& paths, const Eigen::MatrixXd& gradients) const;
   Eigen::VectorXd gradient_at(const CampaignDraw& draw, const Eigen::VectorXd& deviation,
                               Workspace& work) const;
   Eigen::MatrixXd together(const CampaignDraw* const* draws, const Eigen::MatrixXd& deviations,

@@ -301,10 +301,7 @@ class MonteCarloStudy::Work {
   }
 
   std::vector<CampaignDraw> draws_from(std::uint64_t first, Eigen::Index count) const {
-    std::vector<CampaignDraw> draws;
-    for (Eigen::Index k = 0; k < count; ++k)
-      draws.push_back(repeated_.draw(options_.seed, first + static_cast<std::uint64_t>(k)));
-    return draws;
+    return repeated_.draws(options_.seed, first, count);
   }
 
   static Eigen::MatrixXd with_roughness(Eigen::MatrixXd deviations, const std::vector<CampaignDraw>& draws) {

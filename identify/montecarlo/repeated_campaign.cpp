@@ -211,15 +211,31 @@ void RepeatedCampaign::draw_linear(std::uint64_t seed, std::uint64_t first,
   }
 }
 
+std::vector<CampaignDraw> RepeatedCampaign::draws(std::uint64_t seed, std::uint64_t first,
+                                                  Eigen::Index count) const {
+  std::vector<CampaignDraw> draws;
+  Eigen::MatrixXd normals(roughness_root_.cols(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const std::uint64_t number = first + static_cast<std::uint64_t>(k);
+    draws.push_back(readings_and_statements(seed, number));
+    CounterRandom(seed, number, RandomSource::Roughness).normals(span_of(normals.col(k)));
+  }
+  const Eigen::MatrixXd roughness = product(roughness_root_, normals);
+  for (Eigen::Index k = 0; k < count; ++k) draws[static_cast<std::size_t>(k)].roughness = roughness.col(k);
+  return draws;
+}
+
 CampaignDraw RepeatedCampaign::draw(std::uint64_t seed, std::uint64_t number) const {
-  CampaignDraw draw{Eigen::VectorXd(observations()), fixed_statement_, Eigen::VectorXd::Zero(parameters())};
+  return std::move(draws(seed, number, 1).front());
+}
+
+/// A draw without its roughness.
+CampaignDraw RepeatedCampaign::readings_and_statements(std::uint64_t seed, std::uint64_t number) const {
+  CampaignDraw draw{Eigen::VectorXd(observations()), fixed_statement_, {}};
   sampler_.draw(seed, number, span_of(draw.errors));
   Eigen::VectorXd normal(parameters());
   CounterRandom(seed, number, RandomSource::Statements).normals(span_of(normal));
   draw.statement.array() += (stated_.array() > 0.0).select(normal.array() * stated_.array().rsqrt(), 0.0);
-  normal.resize(roughness_root_.cols());
-  CounterRandom(seed, number, RandomSource::Roughness).normals(span_of(normal));
-  draw.roughness += roughness_root_ * normal;
   if (disturbance_sigma_.empty()) return draw;
   const std::size_t count = disturbance_sigma_.size();
   std::vector<double> uniform(count), normals(count);
@@ -244,8 +260,8 @@ Eigen::MatrixXd RepeatedCampaign::linear_estimates(const std::vector<CampaignDra
   }
   whitener_.whiten(errors, errors, 1);
   add_transposed_product(whitened_, errors, gradient);
-  gradient += prior_precision() * statements;
-  return gain_ * gradient;
+  gradient += product(prior_precision(), statements);
+  return product(gain_, gradient);
 }
 
 }  // namespace volcal

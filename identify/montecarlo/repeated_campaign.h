@@ -112,6 +112,8 @@ class RepeatedCampaign {
                    Eigen::Ref<Eigen::MatrixXd> amplitudes) const;
 
   CampaignDraw draw(std::uint64_t seed, std::uint64_t number) const;
+  /// Draws `first` to first + count, to rounding those of draw().
+  std::vector<CampaignDraw> draws(std::uint64_t seed, std::uint64_t first, Eigen::Index count) const;
   /// (2) for draws among the readings, one column each; without the roughness.
   Eigen::MatrixXd linear_estimates(const std::vector<CampaignDraw>& draws) const;
 
@@ -123,6 +125,7 @@ class RepeatedCampaign {
   void list_noise();
   void list_statements();
   void set_linear_propagation();
+  CampaignDraw readings_and_statements(std::uint64_t seed, std::uint64_t number) const;
   bool draws_functions() const { return sources_.functions == FunctionRoughness::Drawn; }
 
   const FitResult& result_;

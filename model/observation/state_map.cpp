@@ -216,8 +216,24 @@ bool is_of_arm(const At& at) {
   return true;
 }
 
-void add_multiple(const Octet& from, double factor, Octet& to) {
-  for (int v = 0; v < kVectors; ++v) to.value[v] += factor * from.value[v];
+/// `count` functions at a position, of coefficients that stand function by function from `from` on.
+VOLCAL_VECTOR_LOOPS void evaluate_functions(const Octet* from, const double* basis, int support, int count,
+                                            Octet* to) {
+  for (int slot = 0; slot < count; ++slot) {
+    Vectors sum{};
+    for (int j = 0; j < support; ++j)
+      sum += reinterpret_cast<const Vectors&>(from[j * count + slot]) * basis[j];
+    reinterpret_cast<Vectors&>(to[slot]) = sum;
+  }
+}
+
+/// The adjoint.
+VOLCAL_VECTOR_LOOPS void gather_functions(const Octet* from, const double* basis, int support, int count,
+                                          Octet* to) {
+  for (int j = 0; j < support; ++j) {
+    for (int slot = 0; slot < count; ++slot, ++to)
+      reinterpret_cast<Vectors&>(*to) += reinterpret_cast<const Vectors&>(from[slot]) * basis[j];
+  }
 }
 
 }  // namespace
@@ -320,7 +336,7 @@ void StateMap::Numbers::set_zero() {
 }
 
 void StateMap::set_parameters(const Eigen::MatrixXd& parameters, Numbers& values) const {
-  values.set_zero();
+  std::ranges::fill(values.parameters_, Octet{});
   for (Eigen::Index v = 0; v < parameters.cols(); ++v) {
     for (Eigen::Index i = 0; i < parameters.rows(); ++i)
       values.parameters_[static_cast<std::size_t>(i)].value[v] = parameters(i, v);
@@ -332,10 +348,8 @@ void StateMap::set_parameters(const Eigen::MatrixXd& parameters, Numbers& values
     Octet* to = values.functions_[g].data();
     for (std::size_t position = 0; position < model.tables().positions(g); ++position, to += count) {
       const double* const basis = model.tables().values(g, support, position);
-      const Octet* from = &values.of_parameter(group.index(model.tables().start(g, position), 0));
-      for (int j = 0; j < support; ++j) {
-        for (int slot = 0; slot < count; ++slot) add_multiple(*from++, basis[j], to[slot]);
-      }
+      evaluate_functions(&values.of_parameter(group.index(model.tables().start(g, position), 0)), basis,
+                         support, count, to);
     }
   }
 }
@@ -379,10 +393,9 @@ Eigen::MatrixXd StateMap::gradients(const Numbers& sums) const {
     const Octet* from = sums.functions_[g].data();
     for (std::size_t position = 0; position < model.tables().positions(g); ++position, from += count) {
       const double* const basis = model.tables().values(g, support, position);
-      Octet* to = &gradient[static_cast<std::size_t>(group.index(model.tables().start(g, position), 0))];
-      for (int j = 0; j < support; ++j) {
-        for (int slot = 0; slot < count; ++slot) add_multiple(from[slot], basis[j], *to++);
-      }
+      gather_functions(
+          from, basis, support, count,
+          &gradient[static_cast<std::size_t>(group.index(model.tables().start(g, position), 0))]);
     }
   }
   Eigen::MatrixXd columns(static_cast<Eigen::Index>(gradient.size()), kVectors);

@@ -109,12 +109,41 @@ std::vector<VolumePoint> volume_points(const Machine& machine, int cells_per_axi
   return points;
 }
 
+namespace {
+
+/// Where the axes bring the functional point; a parallel axis goes on from its home.
+Eigen::Vector3d place_of(const Machine& machine, const AxisPosition& position) {
+  Eigen::Vector3d place(position[0], position[1], position[2]);
+  for (const AxisName axis : machine.parallel_axes())
+    place[direction_of(axis)] += position[index_of(axis)] - machine.axis(axis).home;
+  return place;
+}
+
+/// Every point with the parallel axes at home and at the ends of their travel.
+std::vector<VolumePoint> over_parallel_axes(const Machine& machine, std::vector<VolumePoint> points) {
+  for (const AxisName name : machine.parallel_axes()) {
+    const Axis& axis = machine.axis(name);
+    std::vector<VolumePoint> more = points;
+    for (const double end : {axis.travel_min, axis.travel_max}) {
+      if (end == axis.home) continue;
+      for (VolumePoint point : points) {
+        point.position[index_of(name)] = end;
+        more.push_back(point);
+      }
+    }
+    points = std::move(more);
+  }
+  return points;
+}
+
+}  // namespace
+
 ErrorLeft error_left(const Machine& machine, const std::vector<VolumePoint>& points,
                      const DisplacementField& errors) {
   const Eigen::Vector3d movable = movable_directions(machine);
   std::vector<Eigen::Vector3d> places, vectors;
   for (const VolumePoint& point : points) {
-    places.emplace_back(point.position[0], point.position[1], point.position[2]);
+    places.push_back(place_of(machine, point.position));
     vectors.emplace_back(errors(point.position, point.direction).cwiseProduct(movable));
   }
   const VolumetricFigures figures = volumetric_figures(without_rigid_motion(places, vectors));
@@ -223,6 +252,12 @@ VolumeCheck check_in_volume(const FitResult& result, const TableFormatOptions& o
   }
   check.identification_u = identification_uncertainty(result, options, points);
   check.over_conditions = left_over_conditions(result, options, tables, points);
+  if (!machine.parallel_axes().empty()) {
+    const std::vector<VolumePoint> over = over_parallel_axes(machine, points);
+    check.over_parallel = {{}, error_left(machine, over, measured), error_left(machine, over, exported)};
+    for (const AxisName axis : machine.parallel_axes())
+      check.over_parallel->axes.push_back(machine.axis(axis));
+  }
   return check;
 }
 

@@ -28,6 +28,15 @@ struct PartLeft {
   ErrorLeft exported;
 };
 
+/// Of a machine with parallel axes U, V, W: the volume with each of them at home and at both ends of its
+/// travel, in all combinations.
+struct ParallelLeft {
+  std::vector<Axis> axes;
+  ErrorLeft before;
+  ErrorLeft exported;
+};
+
+/// Parallel axes U, V, W are at home, but for `over_parallel`.
 struct VolumeCheck {
   ErrorLeft before;
   ErrorLeft ideal;     ///< ideal compensation of the type
@@ -41,10 +50,11 @@ struct VolumeCheck {
   /// The tables at the ends of the temperatures, times and feeds that the campaign recorded and the errors
   /// depend on; none where they depend on none.
   std::optional<ErrorLeft> over_conditions;
+  std::optional<ParallelLeft> over_parallel;  ///< none where the machine has no parallel axis
 };
 
 /// Middles of cells, which lie between the nodes of any table, and the ends of travel, each approached from +
-/// and - in all combinations.
+/// and - in all combinations; parallel axes at home.
 struct VolumePoint {
   AxisPosition position{};
   ApproachDirection direction{};

@@ -116,6 +116,22 @@ TEST_F(Quill, StandsInTheTables) {
   }
 }
 
+/// The quill's errors are zero at its home and not at the ends of its travel; csv holds both.
+TEST_F(Quill, LeavesWhatIsSaidWithWAtHomeAndOverItsTravel) {
+  const std::string command = "tables " + path("result") + " --tool side --dry-run";
+  EXPECT_THAT(run_program(command).output,
+              AllOf(HasSubstr("Error left in the volume, W at -50 mm"),
+                    HasSubstr("before, W from -400 to 50 mm"), HasSubstr("tables, W from -400 to 50 mm")));
+  const auto left = json_of(command).at("error_left");
+  EXPECT_EQ(left.at("parallel_axes_at_mm").at("W").get<double>(), -50.0);
+  const auto& over = left.at("over_parallel_axes");
+  EXPECT_EQ(over.at("travel_mm").at("W"), nlohmann::json::array({-400.0, 50.0}));
+  const auto rms = [](const nlohmann::json& of) { return of.at("rms_um").get<double>(); };
+  EXPECT_NE(rms(over.at("before")), rms(left.at("before")));
+  EXPECT_LT(rms(over.at("tables")), 1.0);
+  EXPECT_GT(rms(over.at("tables")), 0.0);
+}
+
 /// The control with csv tables moves X, Y, Z against the errors of the quill.
 TEST_F(Quill, IsCompensatedByXYZ) {
   ASSERT_EQ(run_program("tables " + path("result") + " --tool short -o " + path("active")).exit_code, 0);

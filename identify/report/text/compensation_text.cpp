@@ -30,10 +30,46 @@ std::string settings_text(const TableFormat& format) {
   return text;
 }
 
+/// ", W at -50 mm", or nothing where the machine has no parallel axis.
+std::string at_home_text(const std::optional<ParallelLeft>& over) {
+  std::string text;
+  for (const Axis& axis : over ? over->axes : std::vector<Axis>{})
+    text += fmt::format(", {} at {:g} mm", letter_of(axis.name), axis.home / kMetrePerMillimetre);
+  return text;
+}
+
+/// "W from -400 to 50 mm".
+std::string over_travel_text(const ParallelLeft& over) {
+  std::vector<std::string> axes;
+  for (const Axis& axis : over.axes)
+    axes.push_back(fmt::format("{} from {:g} to {:g} mm", letter_of(axis.name),
+                               axis.travel_min / kMetrePerMillimetre, axis.travel_max / kMetrePerMillimetre));
+  return fmt::format("{}", fmt::join(axes, ", "));
+}
+
+nlohmann::ordered_json over_parallel_json(const ParallelLeft& over) {
+  nlohmann::ordered_json json;
+  for (const Axis& axis : over.axes) {
+    json["travel_mm"][std::string(1, letter_of(axis.name))] = {axis.travel_min / kMetrePerMillimetre,
+                                                               axis.travel_max / kMetrePerMillimetre};
+  }
+  json["before"] = left_json(over.before);
+  json["tables"] = left_json(over.exported);
+  return json;
+}
+
+nlohmann::ordered_json homes_json(const ParallelLeft& over) {
+  nlohmann::ordered_json json;
+  for (const Axis& axis : over.axes)
+    json[std::string(1, letter_of(axis.name))] = axis.home / kMetrePerMillimetre;
+  return json;
+}
+
 }  // namespace
 
 std::string volume_check_text(const VolumeCheck& check, const CompensationType& type) {
-  TextTable volume({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}}, "Error left in the volume");
+  TextTable volume({{"", Align::Left}, {"RMS [um]"}, {"max [um]"}},
+                   "Error left in the volume" + at_home_text(check.over_parallel));
   volume.add_row(left_figures("before", check.before));
   const std::string of_linear_axes = type.linear().name();
   volume.add_row(left_figures(of_linear_axes.empty() ? "ideal" : "ideal " + of_linear_axes, check.ideal));
@@ -42,6 +78,11 @@ std::string volume_check_text(const VolumeCheck& check, const CompensationType& 
     volume.add_row({"expected on the machine", fixed_number(check.expected_rms() / kMicro, 2), ""});
   if (check.over_conditions)
     volume.add_row(left_figures("tables, ends of the campaign's conditions", *check.over_conditions));
+  if (check.over_parallel) {
+    const std::string travel = over_travel_text(*check.over_parallel);
+    volume.add_row(left_figures("before, " + travel, check.over_parallel->before));
+    volume.add_row(left_figures("tables, " + travel, check.over_parallel->exported));
+  }
   TextTable parts({{"of it", Align::Left}, {"RMS before [um]"}, {"RMS after [um]"}, {"max after [um]"}});
   for (const PartLeft& part : check.parts) {
     parts.add_row({CompensationType(part.part).name(), fixed_number(part.before.rms / kMicro, 2),
@@ -57,6 +98,10 @@ nlohmann::ordered_json volume_check_json(const VolumeCheck& check) {
                                  {"identification_u_um", check.identification_u / kMicro},
                                  {"expected_rms_um", check.expected_rms() / kMicro}};
   if (check.over_conditions) json["tables_over_conditions"] = left_json(*check.over_conditions);
+  if (check.over_parallel) {
+    json["parallel_axes_at_mm"] = homes_json(*check.over_parallel);
+    json["over_parallel_axes"] = over_parallel_json(*check.over_parallel);
+  }
   for (const PartLeft& part : check.parts) {
     json["by_type"][CompensationType(part.part).name()] = {{"before", left_json(part.before)},
                                                            {"tables", left_json(part.exported)}};

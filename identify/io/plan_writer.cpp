@@ -260,6 +260,9 @@ std::string plan_json(const CampaignPlan& plan) {
   json["layout"] = layout_json(plan);
   if (plan.searched.textbook > 0.0)
     json["target_to_textbook"] = std::sqrt(plan.searched.value / plan.searched.textbook);
+  if (plan.replaced)
+    json["searched"] = {{"target_to_textbook", plan.replaced->target_ratio},
+                        {"not_visible", plan.replaced->invisible}};
   json["campaigns"].push_back(campaign_json(plan.plan));
   if (plan.settings.existing == nullptr) json["campaigns"].push_back(campaign_json(plan.textbook));
   if (plan.given) json["campaigns"].push_back(campaign_json(*plan.given));

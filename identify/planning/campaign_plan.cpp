@@ -86,6 +86,37 @@ ExpectedCampaign expected_campaign(const std::string& name, const Campaign& camp
   return expected;
 }
 
+namespace {
+
+/// Of its uncertainty of the target to the textbook's; separation and the worst value are of the criterion.
+double ratio_to_textbook(const CampaignPlan& plan) {
+  const PlanTarget target = plan.settings.target;
+  if ((target == PlanTarget::Separate || target == PlanTarget::Worst) && plan.searched.textbook > 0.0)
+    return std::sqrt(plan.searched.value / plan.searched.textbook);
+  return plan.plan.target_u / plan.textbook.target_u;
+}
+
+}  // namespace
+
+void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan) {
+  const std::vector<std::string> lacks = plan.plan.invisible();
+  const std::size_t lacks_of_textbook = plan.textbook.invisible().size();
+  const double ratio = ratio_to_textbook(plan);
+  const PlanTarget target = plan.settings.target;
+  const bool others_count = target == PlanTarget::Volumetric || target == PlanTarget::Worst;
+  const bool is_surer =
+      others_count && lacks.size() != lacks_of_textbook ? lacks.size() > lacks_of_textbook : ratio > 1.0;
+  if (!is_surer) return;
+  plan.replaced = ReplacedPlan{ratio, lacks};
+  plan.plan = plan.textbook;
+  plan.plan.name = "plan";
+  SearchedPlan kept;
+  kept.layout = textbook;
+  kept.tools = plan.searched.tools;
+  kept.value = kept.textbook = plan.searched.textbook;
+  plan.searched = std::move(kept);
+}
+
 CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given) {
   check_plan_settings(settings);
   CampaignPlan plan;
@@ -104,6 +135,7 @@ CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given) 
   const PlanLayout textbook = textbook_layout(same_tools, sight);
   plan.textbook = expected_campaign("textbook", campaign_of(textbook, settings), settings, true);
   plan.textbook.duration = duration(textbook, settings);
+  if (settings.apart_from == nullptr) keep_the_surer(textbook, plan);
   if (given != nullptr) plan.given = expected_campaign("given", *given, settings, true);
   if (!plan.plan.invisible().empty()) {
     tell(settings, "what would make errors visible", 0.9);

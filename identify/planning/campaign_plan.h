@@ -45,15 +45,28 @@ struct PlanOption {
   std::vector<std::string> still_invisible;
 };
 
+/// What the search found, where the textbook's layout turned out surer and took its place.
+struct ReplacedPlan {
+  double target_ratio = 0.0;           ///< of its uncertainty of the target to the textbook's
+  std::vector<std::string> invisible;  ///< symbols that it would not determine
+};
+
 struct CampaignPlan {
   PlanSettings settings;  ///< with the tools that an option added
   SearchedPlan searched;
   ExpectedCampaign plan;
   ExpectedCampaign textbook;              ///< without existing readings; of no use when the plan extends some
   std::optional<ExpectedCampaign> given;  ///< the user's plan, or what there is before it is extended
+  std::optional<ReplacedPlan> replaced;   ///< the plan is the textbook's
   std::vector<PlanOption> options;        ///< best first; when an error is not visible, or when extending
   std::vector<Finding> notes;             ///< on the files of the given campaign (Campaign::notes)
 };
+
+/// The plan that the search found is the better one on the small problem that it works on. Where figures of
+/// the whole campaigns say otherwise, the textbook's layout, of the same tools and within the same budget,
+/// becomes the plan: where that determines more errors, which a plan for one error or for two effects may
+/// give up, or the target is surer.
+void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan);
 
 /// `given`: a campaign to compare with, or null. Throws InputError.
 CampaignPlan plan_campaign(const PlanSettings& settings, const Campaign* given);

@@ -257,6 +257,7 @@ std::string options_table(const CampaignPlan& plan) {
 
 std::string verdict(const CampaignPlan& plan) {
   if (plan.settings.apart_from != nullptr) return "";  // it adds to a campaign, and is no measure alone
+  if (plan.replaced) return replaced_words(plan) + "\n";
   const double ratio = target_ratio(plan);
   const std::string other = plan.settings.existing != nullptr ? "what there is" : "the textbook layout";
   return fmt::format("Against {}: {} {:.1f} % {}\n", other, target_words(plan.settings),
@@ -292,6 +293,17 @@ double target_ratio(const CampaignPlan& plan) {
   if (by_search && plan.searched.textbook > 0.0)
     return std::sqrt(plan.searched.value / plan.searched.textbook);
   return plan.plan.target_u / compared_with(plan).target_u;
+}
+
+std::string replaced_words(const CampaignPlan& plan) {
+  if (!plan.replaced) return "";
+  const double ratio = plan.replaced->target_ratio;
+  std::string text =
+      fmt::format("The plan is the textbook layout. What the search found: {}, {:.1f} % {}",
+                  target_words(plan.settings), 100.0 * std::abs(1.0 - ratio), ratio >= 1.0 ? "more" : "less");
+  if (plan.replaced->invisible.size() > plan.plan.invisible().size())
+    text += "; " + joined_words(plan.replaced->invisible) + " not determined";
+  return text + ".";
 }
 
 std::string plan_text(const CampaignPlan& plan) {

@@ -21,4 +21,7 @@ const ExpectedCampaign& compared_with(const CampaignPlan& plan);
 /// Target's standard uncertainty of the plan over that of what it is compared with.
 double target_ratio(const CampaignPlan& plan);
 
+/// What the search found, where the textbook's layout took its place; empty otherwise.
+std::string replaced_words(const CampaignPlan& plan);
+
 }  // namespace volcal

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/sim/machine/reference_machines.h"
@@ -110,6 +111,41 @@ TEST(CampaignPlan, BeatsTheTextbookWithinItsLimits) {
     }
   }
   EXPECT_FALSE(plan.plan.detectable.empty());
+}
+
+/// As if the figures of the whole campaigns contradicted the search.
+TEST(CampaignPlan, KeepsTheTextbookWhereThatIsSurer) {
+  CampaignPlan plan = volumetric_plan();
+  const PlanSettings settings = small_plan();
+  const PlanLayout textbook = textbook_layout(settings, LineOfSight(settings));
+  keep_the_surer(textbook, plan);
+  EXPECT_FALSE(plan.replaced) << "the search's is surer";
+  EXPECT_EQ(replaced_words(plan), "");
+
+  plan.plan.target_u = 1.29 * plan.textbook.target_u;
+  keep_the_surer(textbook, plan);
+  ASSERT_TRUE(plan.replaced);
+  EXPECT_NEAR(plan.replaced->target_ratio, 1.29, 1e-9);
+  EXPECT_EQ(replaced_words(plan),
+            "The plan is the textbook layout. What the search found: volumetric "
+            "uncertainty, RMS of the vector, 29.0 % more.");
+  EXPECT_EQ(plan.searched.layout.stations_w, textbook.stations_w);
+  EXPECT_EQ(plan.searched.layout.readings(), textbook.readings());
+  EXPECT_EQ(plan.plan.name, "plan");
+  EXPECT_EQ(plan.plan.volumetric.rms, plan.textbook.volumetric.rms);
+  EXPECT_TRUE(plan.searched.station_tolerance.empty()) << "it holds for the other stations";
+}
+
+TEST(CampaignPlan, KeepsTheTextbookWhereTheSearchLosesAnError) {
+  CampaignPlan plan = volumetric_plan();
+  plan.plan.result.rank.errors.front().visible = false;
+  const std::string lost = plan.plan.result.rank.errors.front().symbol;
+  const PlanSettings settings = small_plan();
+  keep_the_surer(textbook_layout(settings, LineOfSight(settings)), plan);
+  ASSERT_TRUE(plan.replaced);
+  EXPECT_LT(plan.replaced->target_ratio, 1.0);
+  EXPECT_THAT(replaced_words(plan), ::testing::HasSubstr("; " + lost + " not determined."));
+  EXPECT_THAT(plan.plan.invisible(), IsEmpty());
 }
 
 TEST(CampaignPlan, KeepsToTheTimeAndDoesNotDependOnThreads) {

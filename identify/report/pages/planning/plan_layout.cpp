@@ -134,6 +134,7 @@ Json plan_layout_page(const PlanPageInput& input) {
           {"target", target_words(plan.settings)},
           {"ratio", rounded(target_ratio(plan), 4)},
           {"against", compared_with(plan).name},
+          {"replaced", replaced_words(plan)},
           {"volume_mm", corners_json(sight.swept_w())},
           {"region_mm", corners_json(sight.stations_w())},
           {"campaigns", std::move(campaigns)},

@@ -118,7 +118,9 @@ const optionTable = (options) => table([
 export function renderPlanLayout(body, data) {
   const view = { campaign: data.campaigns[0] };
   const change = 100 * Math.abs(1 - data.ratio);
-  body.append(el('p', {}, [el('strong', {}, `${fixed(change, 1)} % ${data.ratio <= 1 ? 'less' : 'more'}`), ` than ${data.against}: ${data.target}.`]));
+  body.append(el('p', {}, data.replaced
+    ? data.replaced
+    : [el('strong', {}, `${fixed(change, 1)} % ${data.ratio <= 1 ? 'less' : 'more'}`), ` than ${data.against}: ${data.target}.`]));
   if (data.invisible.length > 0) body.append(el('ul', { class: 'messages' }, data.invisible.map((text) => el('li', {}, text))));
   body.append(figures(data.campaigns));
   const node = el('div', { class: 'plot scene' });

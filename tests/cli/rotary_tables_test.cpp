@@ -212,6 +212,119 @@ TEST(RotaryTablesProgram, OwnPositioningAloneIsSaidToBeAPart) {
   EXPECT_THAT(refused.errors, HasSubstr("which no table holds"));
 }
 
+/// A browser that leaves the page it was given as the picture, and beside it what a PNG begins with.
+std::string path_of_a_browser(const FiveAxisFolder& given) {
+  const std::filesystem::path folder = given.folder.path() / "bin";
+  std::filesystem::create_directory(folder);
+  write_text(folder / "chromium",
+             "#!/bin/sh\nfor word; do case \"$word\" in\n--screenshot=*) out=\"${word#--screenshot=}\";;\n"
+             "file://*) page=\"${word#file://}\";;\nesac; done\ncp \"$page\" \"$out\"\n");
+  std::filesystem::permissions(folder / "chromium", std::filesystem::perms::owner_all);
+  return "env PATH=" + folder.string() + ":$PATH";
+}
+
+/// Whether the program has the page that pictures are drawn from.
+bool has_pictures(const testing::ProgramRun& run) {
+  return run.errors.find("which this program lacks") == std::string::npos;
+}
+
+TEST(RotaryTablesProgram, PicturesWhatTheTablesAddAndLeave) {
+  const FiveAxisFolder given;
+  const auto run =
+      testing::run_with(path_of_a_browser(given), "tables " + given.model +
+                                                      " --format neutral-csv --type R-VOL --dry-run"
+                                                      " --picture " +
+                                                      given.out("tables.png"));
+  if (!has_pictures(run)) GTEST_SKIP() << "built without the report";
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const std::string page = testing::content(given.out("tables.png"));
+  EXPECT_THAT(page, ::testing::StartsWith("<!DOCTYPE html>"));
+  const std::string mark = "id=\"volcal-data\">";
+  const std::size_t data = page.find(mark) + mark.size();
+  const Json drawn = Json::parse(page.substr(data, page.find("</script>", data) - data)).at("pages").at(0);
+  EXPECT_EQ(drawn.at("kind"), "rotary_tables");
+  EXPECT_EQ(drawn.at("data").at("type"), "R-VOL");
+  const Json of_c = drawn.at("data").at("axes").at(1);
+  ASSERT_EQ(of_c.at("axis"), "C");
+  const auto positions = of_c.at("position").get<std::vector<double>>();
+  const auto turned = of_c.at("turned").get<std::vector<double>>();
+  ASSERT_EQ(positions.size(), turned.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double c = positions[i] * std::acos(-1.0) / 180.0;
+    EXPECT_NEAR(turned[i], -12.0 * std::cos(c) - 5.0 * std::sin(c), 0.1) << "against ECC at " << positions[i];
+  }
+  EXPECT_FALSE(std::filesystem::exists(given.out("tables.png.part")));
+}
+
+TEST(RotaryTablesProgram, RefusesPicturesOfNothing) {
+  const FiveAxisFolder given;
+  const auto refused = [&](const std::string& options, const std::string& words) {
+    const auto run = testing::run_with(path_of_a_browser(given), "tables " + given.model + " " + options);
+    if (!has_pictures(run)) return;
+    EXPECT_EQ(run.exit_code, 2) << options;
+    EXPECT_THAT(run.errors, HasSubstr(words)) << options;
+    EXPECT_FALSE(std::filesystem::exists(given.out("tables.png"))) << options;
+  };
+  const std::string picture = " --picture " + given.out("tables.png");
+  refused("--type L-VOL --dry-run" + picture, "L-VOL has nothing of rotary axes, whose tables are pictured");
+  refused("--at X=0" + picture,
+          "--picture: no tables are made that it could be of (give -o FOLDER or --dry-run)");
+  refused("--dry-run --picture " + given.out("tables.svg"), "--picture takes the name of a PNG file");
+  refused("--dry-run --picture " + given.out("none/tables.png"), "its folder does not exist");
+  write_text(given.folder.path() / "bin" / "chromium", "#!/bin/sh\nexit 1\n");
+  const auto silent = testing::run_with("env PATH=" + given.out("bin") + ":$PATH",
+                                        "tables " + given.model + " --dry-run" + picture);
+  EXPECT_EQ(silent.exit_code, 2);
+  EXPECT_THAT(silent.errors,
+              ::testing::AnyOf(HasSubstr("drew no picture"), HasSubstr("which this program lacks")));
+}
+
+/// Where the linear axes have no errors, those of rotary axes and what is entered against them depend on
+/// where the tool is, not on whether Z or the quill W brought it there.
+TEST(RotaryTablesProgram, HoldsBesideAParallelAxis) {
+  const FiveAxisFolder given;
+  const auto without_errors_of_x = [] {
+    std::string text = five_axis_model();
+    const std::size_t x = text.find("EXX"), next = text.find("ECC");
+    return text.substr(0, x) + text.substr(next);
+  };
+  write_text(given.folder.path() / "machine.toml",
+             machine_text("w C' A' b X Y Z W t", "XYZWAC", "[0.0, 0.0, -200.0]"));
+  write_text(given.folder.path() / "model.toml", without_errors_of_x());
+  const auto at = [&](const std::string& place) {
+    const auto run =
+        run_program("tables " + given.model + " --dry-run --json --at A=-40,C=90,X=70,Y=-20," + place);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return Json::parse(run.output);
+  };
+  const Json by_z = at("Z=-200,W=0"), by_w = at("Z=0,W=-200"), home = at("Z=0,W=0");
+  EXPECT_EQ(by_z.at("type"), "L-VOL+R-VOL");
+  for (const char* figure : {"correction_um", "rotary_correction_urad"})
+    EXPECT_EQ(by_z.at("corrections").at(0).at(figure), by_w.at("corrections").at(0).at(figure)) << figure;
+  EXPECT_NE(by_z.at("corrections").at(0).at("correction_um"),
+            home.at("corrections").at(0).at("correction_um"));
+  EXPECT_LT(by_w.at("rotary_error_left").at("tables").at("rms_um"), 0.2);
+}
+
+/// FOR turns rotary axes by what all axes do: no table holds it, and programs are not rewritten beside W.
+TEST(RotaryTablesProgram, RefusesForBesideAParallelAxis) {
+  const FiveAxisFolder given;
+  write_text(given.folder.path() / "machine.toml",
+             machine_text("w C' A' b X Y Z W t", "XYZWAC", "[0.0, 0.0, -200.0]"));
+  write_text(given.folder.path() / "part.ngc", "G21 G90 G54\nG43.4 H1\nG0 X0 Y0 Z0\n");
+  for (const char* type : {"R-VOL+FOR", "R-VOL+", "L-VOL+FOR"}) {
+    const auto run = run_program("tables " + given.model + " --dry-run --type " + type);
+    EXPECT_EQ(run.exit_code, 2) << type;
+    EXPECT_THAT(run.errors, HasSubstr("FOR moves rotary axes by what all axes do, which no table holds"))
+        << type;
+    EXPECT_THAT(run.errors, HasSubstr("it can do L-VOL+R-VOL")) << type;
+  }
+  const auto program = run_program("compensate " + given.model + " " + given.out("part.ngc") +
+                                   " --orientation --check --work-offset G54=X0,Y0,Z0 --tool-length H1=200");
+  EXPECT_EQ(program.exit_code, 2);
+  EXPECT_THAT(program.errors, HasSubstr("the compensation of programs cannot take the parallel axis W"));
+}
+
 /// A program with tool centre point motion, rewritten for the same machine.
 TEST(RotaryTablesProgram, RewritesAProgramWithToolCentrePointMotion) {
   const FiveAxisFolder given;

@@ -82,10 +82,19 @@ std::vector<Eigen::Vector3d> nominal_points_w(const Campaign& campaign, const Se
   return points;
 }
 
+/// Points then go round a station that stands on the table, as seen from there.
+bool table_turns(const Machine& machine, const Setup& setup) {
+  return std::ranges::any_of(machine.structure.joints, [&](const Joint& joint) {
+    const std::vector<double>& position = setup.readings.position[index_of(joint.axis)];
+    return joint.workpiece_side && is_rotary(joint.axis) &&
+           std::ranges::any_of(position, [&](double value) { return value != position.front(); });
+  });
+}
+
 void check_station(const Campaign& campaign, const Setup& setup,
                    const std::vector<Eigen::Vector3d>& points_w) {
   const auto station_w = setup.options.vector("station");
-  if (!station_w) return;
+  if (!station_w || table_turns(campaign.machine, setup)) return;
   Eigen::Vector3d lowest = points_w.front();
   Eigen::Vector3d highest = points_w.front();
   for (const Eigen::Vector3d& point : points_w) {

@@ -10,6 +10,8 @@ namespace volcal::bench {
 
 /// Wall-clock time of the work, s.
 double seconds(const std::function<void()>& work);
+/// Processor time of this process so far, all threads together, s.
+double processor_seconds();
 /// Largest resident size of this process so far, bytes.
 std::size_t peak_memory();
 

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -63,8 +62,6 @@ FitOptions fit_options(const Settings& settings) {
   if (settings.campaign.empty()) options.noise = NoisePolicy::White;
   return options;
 }
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class Bench {
  public:

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -37,13 +36,6 @@ SessionArguments parse_session(int count, char** values) {
   read_options(count, values, 2,
                {{"--threads", into(arguments.threads)}, {"--repeats", into(arguments.repeats)}});
   return arguments;
-}
-
-/// Of this process so far, s.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 class ProcessorTimes {

@@ -100,12 +100,11 @@ double ratio_to_textbook(const CampaignPlan& plan) {
 
 void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan) {
   const std::vector<std::string> lacks = plan.plan.invisible();
-  const std::size_t lacks_of_textbook = plan.textbook.invisible().size();
   const double ratio = ratio_to_textbook(plan);
   const PlanTarget target = plan.settings.target;
   const bool others_count = target == PlanTarget::Volumetric || target == PlanTarget::Worst;
-  const bool is_surer =
-      others_count && lacks.size() != lacks_of_textbook ? lacks.size() > lacks_of_textbook : ratio > 1.0;
+  const bool one_tells_all = lacks.empty() != plan.textbook.invisible().empty();
+  const bool is_surer = others_count && one_tells_all ? !lacks.empty() : ratio > 1.0;
   if (!is_surer) return;
   plan.replaced = ReplacedPlan{ratio, lacks};
   plan.plan = plan.textbook;

@@ -64,8 +64,8 @@ struct CampaignPlan {
 
 /// The plan that the search found is the better one on the small problem that it works on. Where figures of
 /// the whole campaigns say otherwise, the textbook's layout, of the same tools and within the same budget,
-/// becomes the plan: where that determines more errors, which a plan for one error or for two effects may
-/// give up, or the target is surer.
+/// becomes the plan: where that alone determines every error, which a plan for one error or for two effects
+/// may give up, or the target is surer.
 void keep_the_surer(const PlanLayout& textbook, CampaignPlan& plan);
 
 /// `given`: a campaign to compare with, or null. Throws InputError.

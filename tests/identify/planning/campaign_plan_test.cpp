@@ -146,6 +146,12 @@ TEST(CampaignPlan, KeepsTheTextbookWhereTheSearchLosesAnError) {
   EXPECT_LT(plan.replaced->target_ratio, 1.0);
   EXPECT_THAT(replaced_words(plan), ::testing::HasSubstr("; " + lost + " not determined."));
   EXPECT_THAT(plan.plan.invisible(), IsEmpty());
+
+  CampaignPlan neither = volumetric_plan();
+  neither.plan.result.rank.errors[0].visible = neither.plan.result.rank.errors[1].visible = false;
+  neither.textbook.result.rank.errors[0].visible = false;
+  keep_the_surer(textbook_layout(settings, LineOfSight(settings)), neither);
+  EXPECT_FALSE(neither.replaced) << "neither determines all: the surer of the target is the plan";
 }
 
 TEST(CampaignPlan, KeepsToTheTimeAndDoesNotDependOnThreads) {

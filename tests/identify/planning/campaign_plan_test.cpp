@@ -113,44 +113,66 @@ TEST(CampaignPlan, BeatsTheTextbookWithinItsLimits) {
   EXPECT_FALSE(plan.plan.detectable.empty());
 }
 
-/// As if the figures of the whole campaigns contradicted the search.
+/// A search's plan as sure as the textbook's times a factor, whose first station stands elsewhere.
+CampaignPlan plan_beside_textbook(const PlanLayout& textbook, double factor) {
+  CampaignPlan plan;
+  plan.settings = small_plan();
+  plan.textbook = expected_campaign("textbook", campaign_of(textbook, plan.settings), plan.settings, false);
+  plan.plan = plan.textbook;
+  plan.plan.name = "plan";
+  plan.plan.target_u = factor * plan.textbook.target_u;
+  plan.searched.layout = textbook;
+  plan.searched.layout.stations_w.front().x() += 0.2;
+  plan.searched.station_tolerance = {0.1};
+  return plan;
+}
+
 TEST(CampaignPlan, KeepsTheTextbookWhereThatIsSurer) {
-  CampaignPlan plan = volumetric_plan();
   const PlanSettings settings = small_plan();
   const PlanLayout textbook = textbook_layout(settings, LineOfSight(settings));
-  keep_the_surer(textbook, plan);
-  EXPECT_FALSE(plan.replaced) << "the search's is surer";
-  EXPECT_EQ(replaced_words(plan), "");
+  CampaignPlan surer = plan_beside_textbook(textbook, 0.9);
+  keep_the_surer(textbook, surer);
+  EXPECT_FALSE(surer.replaced);
+  EXPECT_EQ(replaced_words(surer), "");
+  EXPECT_NE(surer.searched.layout.stations_w, textbook.stations_w);
 
-  plan.plan.target_u = 1.29 * plan.textbook.target_u;
+  CampaignPlan plan = plan_beside_textbook(textbook, 1.29);
   keep_the_surer(textbook, plan);
   ASSERT_TRUE(plan.replaced);
   EXPECT_NEAR(plan.replaced->target_ratio, 1.29, 1e-9);
-  EXPECT_EQ(replaced_words(plan),
-            "The plan is the textbook layout. What the search found: volumetric "
-            "uncertainty, RMS of the vector, 29.0 % more.");
+  EXPECT_EQ(
+      replaced_words(plan),
+      "The plan is the textbook layout. What the search found: volumetric uncertainty, RMS of the vector, "
+      "29.0 % more.");
   EXPECT_EQ(plan.searched.layout.stations_w, textbook.stations_w);
-  EXPECT_EQ(plan.searched.layout.readings(), textbook.readings());
   EXPECT_EQ(plan.plan.name, "plan");
-  EXPECT_EQ(plan.plan.volumetric.rms, plan.textbook.volumetric.rms);
+  EXPECT_EQ(plan.plan.target_u, plan.textbook.target_u);
   EXPECT_TRUE(plan.searched.station_tolerance.empty()) << "it holds for the other stations";
 }
 
+/// A plan for one error may give others up, one for the whole volume may not.
 TEST(CampaignPlan, KeepsTheTextbookWhereTheSearchLosesAnError) {
-  CampaignPlan plan = volumetric_plan();
-  plan.plan.result.rank.errors.front().visible = false;
-  const std::string lost = plan.plan.result.rank.errors.front().symbol;
   const PlanSettings settings = small_plan();
-  keep_the_surer(textbook_layout(settings, LineOfSight(settings)), plan);
+  const PlanLayout textbook = textbook_layout(settings, LineOfSight(settings));
+  CampaignPlan plan = plan_beside_textbook(textbook, 0.9);
+  Observability& lost = plan.plan.result.rank.errors.front();
+  lost.visible = false;
+  CampaignPlan of_one_error = plan;
+  of_one_error.settings.target = PlanTarget::Symbol;
+  of_one_error.settings.symbol = "EC0Y";
+  const std::string symbol = lost.symbol;
+  keep_the_surer(textbook, plan);
   ASSERT_TRUE(plan.replaced);
   EXPECT_LT(plan.replaced->target_ratio, 1.0);
-  EXPECT_THAT(replaced_words(plan), ::testing::HasSubstr("; " + lost + " not determined."));
+  EXPECT_THAT(replaced_words(plan), ::testing::HasSubstr("10.0 % less; " + symbol + " not determined."));
   EXPECT_THAT(plan.plan.invisible(), IsEmpty());
+  keep_the_surer(textbook, of_one_error);
+  EXPECT_FALSE(of_one_error.replaced);
 
-  CampaignPlan neither = volumetric_plan();
+  CampaignPlan neither = plan_beside_textbook(textbook, 0.9);
   neither.plan.result.rank.errors[0].visible = neither.plan.result.rank.errors[1].visible = false;
   neither.textbook.result.rank.errors[0].visible = false;
-  keep_the_surer(textbook_layout(settings, LineOfSight(settings)), neither);
+  keep_the_surer(textbook, neither);
   EXPECT_FALSE(neither.replaced) << "neither determines all: the surer of the target is the plan";
 }
 

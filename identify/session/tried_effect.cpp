@@ -61,7 +61,8 @@ Comparison judged_lines(const Campaign& campaign, const ModelSpec& model,
   return compare(campaign, heldout_residuals(campaign, model, rows, {threads, true, progress}));
 }
 
-/// A pointer to the next step: nothing is drawn, and what no single name explains is told as it was seen.
+/// A pointer to the next step: nothing is drawn, and what no single name explains is reported as the scans
+/// find it.
 SearchRules rules_of_a_pointer() {
   using enum SearchRule;
   return {.off = {Surfaces, OneCause, WiderSurface, ReplacedSurfaces, NamesTogether}, .decided = {}};

@@ -86,8 +86,8 @@ void define_trial(py::module_& module) {
       .def_property_readonly(
           "verdict_of_what_remains",
           [](const TriedOf& of) { return std::string(to_string(of.tried.remains.verdict)); },
-          "Verdict of a diagnosis of the model with it: \"NOTHING_ABOVE\" where nothing is left above the "
-          "noise.")
+          "Verdict of a diagnosis of the model with it that draws nothing: \"NOTHING_ABOVE\" where nothing "
+          "is left above the noise.")
       .def(
           "to_json", [](const TriedOf& of) { return text_of(tried_json(of.effect, of.tried)); },
           "What `volcal try --json` prints.")

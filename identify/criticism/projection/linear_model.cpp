@@ -203,25 +203,34 @@ LinearModel LinearModel::with_reinstated(const std::vector<std::size_t>& observa
   return other;
 }
 
+namespace {
+
+/// Of every observation of a setup: its row's drivers, a column for each term.
+Eigen::MatrixXd drivers_of_observations(const LinearModel& model, const Effect& effect,
+                                        const Eigen::VectorXd& shape, std::size_t setup) {
+  Eigen::MatrixXd of_rows = effect.drivers(model.views()[setup], shape);
+  const Eigen::Index first = model.parts()[setup], count = model.parts()[setup + 1] - first;
+  if (of_rows.rows() == count) return of_rows;
+  Eigen::MatrixXd drivers(count, of_rows.cols());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t row = model.observations()[static_cast<std::size_t>(first + i)].row;
+    drivers.row(i) = of_rows.row(static_cast<Eigen::Index>(row));
+  }
+  return drivers;
+}
+
+}  // namespace
+
 void LinearModel::columns(const Effect& effect, const Eigen::VectorXd& shape, std::size_t setup,
                           Eigen::Ref<Eigen::MatrixXd> out) const {
   const std::vector<EffectTerm> terms = effect.terms();
-  const Eigen::Index first = parts()[setup], count = parts()[setup + 1] - first;
-  const Eigen::MatrixXd drivers = effect.drivers(views()[setup], shape);
+  const Eigen::MatrixXd drivers = drivers_of_observations(*this, effect, shape, setup);
   out.setZero();
   for (std::size_t k = 0; k < terms.size(); ++k) {
-    const auto term = static_cast<Eigen::Index>(k);
-    auto column = out.col(static_cast<Eigen::Index>(terms[k].amplitude));
-    const auto sensitivity =
-        fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine)).segment(first, count);
-    if (drivers.rows() == count) {
-      column += drivers.col(term).cwiseProduct(sensitivity);
-      continue;
-    }
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const std::size_t row = observations()[static_cast<std::size_t>(first + i)].row;
-      column[i] += drivers(static_cast<Eigen::Index>(row), term) * sensitivity[i];
-    }
+    const auto sensitivity = fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine));
+    out.col(static_cast<Eigen::Index>(terms[k].amplitude)) +=
+        drivers.col(static_cast<Eigen::Index>(k))
+            .cwiseProduct(sensitivity.segment(parts()[setup], drivers.rows()));
   }
 }
 
@@ -229,26 +238,13 @@ void LinearModel::add_products(const Effect& effect, const Eigen::VectorXd& shap
                                const Eigen::Ref<const Eigen::MatrixXd>& rows,
                                Eigen::Ref<Eigen::MatrixXd> sum) const {
   const std::vector<EffectTerm> terms = effect.terms();
-  const Eigen::Index first = parts()[setup], count = parts()[setup + 1] - first;
-  const Eigen::MatrixXd drivers = effect.drivers(views()[setup], shape);
+  const Eigen::MatrixXd drivers = drivers_of_observations(*this, effect, shape, setup);
   for (std::size_t k = 0; k < terms.size(); ++k) {
-    const auto driver = drivers.col(static_cast<Eigen::Index>(k));
-    const auto amplitude = static_cast<Eigen::Index>(terms[k].amplitude);
-    const auto sensitivity =
-        fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine)).segment(first, count);
-    for (Eigen::Index column = 0; column < rows.cols(); ++column) {
-      const auto along = rows.col(column);
-      if (drivers.rows() == count) {
-        sum(amplitude, column) += driver.cwiseProduct(sensitivity).dot(along);
-        continue;
-      }
-      double product = 0.0;
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const std::size_t row = observations()[static_cast<std::size_t>(first + i)].row;
-        product += driver[static_cast<Eigen::Index>(row)] * sensitivity[i] * along[i];
-      }
-      sum(amplitude, column) += product;
-    }
+    const auto sensitivity = fixed_->sensitivity.col(disturbance_of(terms[k].target, campaign().machine));
+    const auto moved = drivers.col(static_cast<Eigen::Index>(k))
+                           .cwiseProduct(sensitivity.segment(parts()[setup], drivers.rows()));
+    for (Eigen::Index column = 0; column < rows.cols(); ++column)
+      sum(static_cast<Eigen::Index>(terms[k].amplitude), column) += moved.dot(rows.col(column));
   }
 }
 

@@ -11,6 +11,7 @@
 #include "volcal/identify/noise/filter_rows.h"
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
+#include "volcal/identify/numeric/tile_array.h"
 
 namespace volcal {
 namespace {
@@ -254,7 +255,7 @@ void Whitener::whiten_block(const Track& track, Eigen::Index width, const Place&
     scale_block(track, width, place);
     return;
   }
-  const Eigen::Index stride = place.rows == nullptr ? width : kColumnBlock;
+  const Eigen::Index stride = place.rows == nullptr ? width : whole_lines(width);
   std::vector<double> state(static_cast<std::size_t>(track.states * stride), 0.0);
   std::vector<double> buffer(place.rows == nullptr ? static_cast<std::size_t>(stride) * kTile : 0);
   const auto wide = static_cast<std::size_t>(stride);
@@ -332,14 +333,15 @@ void Whitener::whiten_part(std::size_t first, const Eigen::Ref<const Eigen::Matr
 void Whitener::weigh_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                           Eigen::Ref<Eigen::MatrixXd> whitened, Eigen::MatrixXd& weighed) const {
   require(columns.cols() <= kColumnBlock, "at most kColumnBlock columns");
-  weighed.setZero(kColumnBlock, whitened.rows());
+  const Eigen::Index stride = whole_lines(columns.cols());
+  weighed.setZero(stride, whitened.rows());
   Eigen::Index at = 0;
   for (const Track* const track : tracks_of_part(first, columns.rows())) {
-    double* const rows = weighed.data() + at * kColumnBlock;
+    double* const rows = weighed.data() + at * stride;
     whiten_block(*track, columns.cols(),
                  {columns.data(), columns.outerStride(), whitened.data() + at, whitened.outerStride(), rows,
                   first, true});
-    filter_adjoint(*track, kColumnBlock, rows);
+    filter_adjoint(*track, stride, rows);
     at += static_cast<Eigen::Index>(track->steps.size());
   }
 }

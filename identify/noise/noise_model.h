@@ -84,8 +84,8 @@ class Whitener {
   void whiten_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                    Eigen::Ref<Eigen::MatrixXd> whitened) const;
   /// whiten_part() into `whitened`, which has the size, and Sigma^-1 of the columns, observation by
-  /// observation: `weighed` becomes kColumnBlock x (observations in use), 0 beyond the columns. At most
-  /// kColumnBlock columns.
+  /// observation: `weighed` becomes whole_lines(columns) x (observations in use), 0 beyond the columns. At
+  /// most kColumnBlock columns.
   void weigh_part(std::size_t first, const Eigen::Ref<const Eigen::MatrixXd>& columns,
                   Eigen::Ref<Eigen::MatrixXd> whitened, Eigen::MatrixXd& weighed) const;
   /// Observations in the order of what whiten_part() and weigh_part() give.
@@ -165,7 +165,7 @@ class Whitener {
     Eigen::Index in_stride;
     double* out;
     Eigen::Index out_stride;
-    double* rows;        ///< keeps whitened rows, kColumnBlock values each; null = nowhere
+    double* rows;        ///< keeps whitened rows, whole lines of the columns each; null = nowhere
     std::size_t origin;  ///< observation of the first row of `in`
     bool packed;         ///< steps leave one after another; else at their observations
   };

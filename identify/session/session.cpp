@@ -268,6 +268,11 @@ const std::vector<FamilyTest>& Session::tests() {
   return node().tests->get().families;
 }
 
+std::function<void()> Session::testing() {
+  renew_setting();
+  return [tests = node().tests] { tests->get(); };
+}
+
 SessionWork Session::scan() {
   renew_setting();
   return interruptible([recipe = node().recipe, state = node().state(), tests = node().tests,

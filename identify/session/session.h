@@ -153,6 +153,10 @@ class Session {
   /// Effects that are not in the current model, best first; with more of an error function, which cannot be
   /// added here.
   const std::vector<EffectFinding>& rank();
+  /// Makes the tests of all effects at the current model, on which rank(), preview(), formula() and add()
+  /// stand and which they make where they are not there: it may run in another thread while the session is
+  /// used.
+  std::function<void()> testing();
   /// Effects of which nothing shows.
   std::vector<EffectFinding> not_visible();
   /// Of the first of the ranking, at most `most`.

@@ -130,6 +130,9 @@ SessionCommand command_of(const std::string& request, const Json& body) {
 constexpr std::array kCommands = {"add",  "remove", "go",    "draw",    "leave-out",
                                   "undo", "redo",   "climb", "confirm", "refit"};
 
+/// Requests that stand on tests of all effects.
+constexpr std::array kOnTests = {"rank", "preview", "formula", "meaning", "add"};
+
 bool is_command(const std::string& request) {
   return std::ranges::find(kCommands, request) != kCommands.end();
 }
@@ -168,6 +171,7 @@ struct Workbench::Job {
   std::string command;  ///< as it is kept; empty: it changes no model
   bool behind = false;
   std::function<std::function<void()>(const SessionProgress&)> run;
+  std::function<void()> first = {};  ///< what others wait for as well, never behind other programs
 };
 
 Workbench::Workbench(WorkbenchOptions options) : options_(std::move(options)) {
@@ -207,6 +211,7 @@ Answer Workbench::answer(const std::string& request, const std::string& body, co
   };
   try {
     const Json json = body.empty() ? Json::object() : Json::parse(body);
+    if (std::ranges::find(kOnTests, request) != kOnTests.end()) make_tests();
     const Lock lock(mutex_);
     if (auto framed = look_framed(request, json))
       return {200, "application/octet-stream", *std::move(framed)};
@@ -230,6 +235,17 @@ Answer Workbench::answer(const std::string& request, const std::string& body, co
   } catch (const std::exception& error) {
     return refused(500, error_json(error.what(), "undo the last step, or start the program again"));
   }
+}
+
+/// Without the lock: they take seconds of 10^5 readings, and pictures are answered meanwhile.
+void Workbench::make_tests() const {
+  std::function<void()> testing;
+  {
+    const Lock lock(mutex_);
+    if (phase_ != Phase::Ready) return;
+    testing = session_->testing();
+  }
+  testing();
 }
 
 Json Workbench::look(const std::string& request, const Json& body) {
@@ -345,7 +361,8 @@ void Workbench::look_for_unknown() {
              change(*session_);
              hub_.publish("unknown", json_text(unknown_json(*session_), -1));
            };
-         }});
+         },
+         session_->testing()});
 }
 
 void Workbench::export_now(const std::string& what) {
@@ -448,6 +465,7 @@ void Workbench::run(Job& job, Lock& lock) {
   Json failed;
   std::function<void()> take;
   try {
+    if (job.first) job.first();
     const bool patient = job.behind && job.what != kRefit;
     take = patient ? behind([&] { return job.run(progress()); }) : job.run(progress());
   } catch (const SessionStopped&) {

@@ -67,6 +67,7 @@ class Workbench {
   enum class Phase { Loading, BadInput, Ready };
   using Lock = std::unique_lock<std::mutex>;
 
+  void make_tests() const;
   Json look(const std::string& request, const Json& body);
   std::optional<std::string> look_framed(const std::string& request, const Json& body);
   Json act(const std::string& request, const Json& body, const std::string& tab);

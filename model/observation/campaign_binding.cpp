@@ -11,6 +11,7 @@
 #include "volcal/model/description/parameter_names.h"
 #include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
+#include "volcal/model/effects/effect_keys.h"
 #include "volcal/model/effects/lagged_channel.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
@@ -374,9 +375,11 @@ int disturbance_of(const EffectTarget& target, const Machine& machine) {
 std::vector<SetupView> setup_views(const Campaign& campaign, const CampaignBinding& binding,
                                    const KinematicChain& chain) {
   std::vector<SetupView> views;
+  const double first_time = time_span(campaign).first;
   for (std::size_t i = 0; i < campaign.setups.size(); ++i) {
     const Setup& setup = campaign.setups[i];
     SetupView view{campaign, setup, {}, Eigen::VectorXd(static_cast<Eigen::Index>(setup.readings.size()))};
+    view.clock_start = first_time;
     view.histories = std::make_shared<KeptHistories>();
     view.nominal_point_w.reserve(setup.readings.size());
     for (std::size_t row = 0; row < setup.readings.size(); ++row) {

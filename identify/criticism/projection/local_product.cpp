@@ -55,7 +55,7 @@ Eigen::MatrixXd LocalProduct::zero_sums() const {
 
 void LocalProduct::add(std::size_t part, const Eigen::MatrixXd& weighed, Eigen::MatrixXd& sums) const {
   const TileKernel& kernel = tile_kernel();
-  Eigen::MatrixXd gathered(kColumnBlock, kGathered);
+  Eigen::MatrixXd gathered(weighed.rows(), kGathered);
   for (const SortedGroup& group : parts_[part]) {
     for (const Cell& cell : group.cells) {
       for (Eigen::Index begin = cell.begin; begin < cell.end; begin += kGathered) {
@@ -63,7 +63,7 @@ void LocalProduct::add(std::size_t part, const Eigen::MatrixXd& weighed, Eigen::
         for (Eigen::Index k = 0; k < count; ++k)
           gathered.col(k) = weighed.col(group.row[static_cast<std::size_t>(begin + k)]);
         kernel.multiply(
-            {gathered.data(), gathered.rows(), static_cast<int>(kColumnBlock)},
+            {gathered.data(), gathered.rows(), static_cast<int>(gathered.rows())},
             {group.derivatives.col(begin).data(), group.derivatives.rows(), static_cast<int>(group.width)},
             static_cast<int>(count), true, sums.col(cell.coefficient).data(), sums.rows());
       }

@@ -19,7 +19,8 @@ class LocalProduct {
   Eigen::Index columns() const { return rows_->columns(); }
   /// What add() adds to, for kColumnBlock columns.
   Eigen::MatrixXd zero_sums() const;
-  /// Adds the products of a part's observations; `weighed`: kColumnBlock x observations of the part.
+  /// Adds the products of a part's observations; `weighed`: whole lines of at most kColumnBlock columns x
+  /// observations of the part.
   void add(std::size_t part, const Eigen::MatrixXd& weighed, Eigen::MatrixXd& sums) const;
   /// Products with the model's columns from those with coefficients: columns() x as many as `products` has.
   void combine(const Eigen::MatrixXd& sums, Eigen::Ref<Eigen::MatrixXd> products) const;

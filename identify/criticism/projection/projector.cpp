@@ -326,16 +326,10 @@ Eigen::MatrixXd Projector::rotated_rows(const Eigen::MatrixXd& rows) const {
   return rotated;
 }
 
-Eigen::MatrixXd Projector::last_rotated_rows(const Eigen::MatrixXd& rows, Eigen::Index count) const {
-  const Eigen::Index before = parameters() - count;
-  const Eigen::MatrixXd across = lower_.topLeftCorner(before, before)
-                                     .triangularView<Eigen::Lower>()
-                                     .transpose()
-                                     .solve(lower_.bottomLeftCorner(count, before).transpose());
-  Eigen::MatrixXd last = scale_.tail(count).asDiagonal() * rows.rightCols(count).transpose();
-  last.noalias() -=
-      (across.transpose() * scale_.head(before).asDiagonal()) * rows.leftCols(before).transpose();
-  return lower_.bottomRightCorner(count, count).triangularView<Eigen::Lower>().solve(last);
+Eigen::MatrixXd Projector::last_directions(Eigen::Index count) const {
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(parameters(), count);
+  unit.bottomRows(count).setIdentity();
+  return scale_.asDiagonal() * lower_.triangularView<Eigen::Lower>().transpose().solve(unit).eval();
 }
 
 Eigen::VectorXd Projector::prediction_variance(const Eigen::MatrixXd& rows) const {

@@ -77,8 +77,9 @@ class Projector {
   /// C^-1 rows^T with A = C C^T, parameters x rows (derivatives to all parameters, accepted ones last): the
   /// products of its columns are rows A^-1 rows^T.
   Eigen::MatrixXd rotated_rows(const Eigen::MatrixXd& rows) const;
-  /// The last `count` rows of rotated_rows() alone: what columns that were accepted last add to products.
-  Eigen::MatrixXd last_rotated_rows(const Eigen::MatrixXd& rows, Eigen::Index count) const;
+  /// D, parameters x count: rows D is the transpose of the last `count` rows of rotated_rows(), what columns
+  /// that were accepted last add to products.
+  Eigen::MatrixXd last_directions(Eigen::Index count) const;
   /// Variance of predictions, one per row of `rows`.
   Eigen::VectorXd prediction_variance(const Eigen::MatrixXd& rows) const;
   /// Covariance of the accepted columns' amplitudes.

@@ -1,5 +1,7 @@
 #include "volcal/identify/criticism/search/heldout_errors.h"
 
+#include <Eigen/LU>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -84,62 +86,130 @@ Eigen::MatrixXd HeldoutErrors::Sequence::noise_covariance(const NoiseData& data,
   return covariance;
 }
 
+namespace {
+
+void set_covariance(const Eigen::MatrixXd& covariance, HeldoutBlock& block) {
+  block.expected = covariance.trace();
+  block.squares = covariance.squaredNorm();
+  auto lower = cholesky_lower(covariance);
+  block.is_definite = lower.has_value();
+  block.lower = lower ? *std::move(lower) : Eigen::MatrixXd(covariance.diagonal().cwiseSqrt().asDiagonal());
+}
+
+/// Of one block; the square of the spread in its place.
+HeldoutFigures figures_of(double expected, double squares, const Eigen::VectorXd& left,
+                          double log_likelihood) {
+  return {.count = static_cast<double>(left.size()),
+          .squares = left.squaredNorm(),
+          .expected = expected,
+          .spread = 2.0 * squares,
+          .log_likelihood = log_likelihood};
+}
+
+double log_likelihood(double squares, double log_determinant, Eigen::Index count) {
+  return -0.5 * (squares + log_determinant + static_cast<double>(count) * std::log(2.0 * std::numbers::pi));
+}
+
+HeldoutFigures sum(const std::vector<HeldoutFigures>& of_blocks) {
+  HeldoutFigures all;
+  for (const HeldoutFigures& each : of_blocks) {
+    all.count += each.count;
+    all.squares += each.squares;
+    all.expected += each.expected;
+    all.spread += each.spread;
+    all.log_likelihood += each.log_likelihood;
+  }
+  all.spread = std::sqrt(all.spread);
+  return all;
+}
+
+HeldoutFigures figures_of(const HeldoutBlock& block, const Eigen::VectorXd& left) {
+  Eigen::MatrixXd whitened = left;
+  solve_lower(block.lower, whitened);
+  return figures_of(block.expected, block.squares, left,
+                    log_likelihood(whitened.squaredNorm(), log_determinant(block.lower), left.size()));
+}
+
+/// With L L^T + M S M^T in the place of the block's covariance, S = diag(signs).
+std::optional<HeldoutFigures> figures_with(const HeldoutBlock& block, const Eigen::MatrixXd& more,
+                                           const Eigen::VectorXd& signs, const Eigen::VectorXd& left) {
+  const Eigen::Index columns = more.cols();
+  const Eigen::MatrixXd products = more.transpose() * more;
+  const Eigen::MatrixXd turned = block.lower.triangularView<Eigen::Lower>().transpose() * more;
+  const double expected = block.expected + signs.dot(products.diagonal());
+  const double squares = block.squares + 2.0 * signs.dot(turned.colwise().squaredNorm().transpose()) +
+                         (signs.asDiagonal() * products.cwiseProduct(products) * signs.asDiagonal()).sum();
+
+  Eigen::MatrixXd whitened(more.rows(), columns + 1);
+  whitened << more, left;
+  solve_lower(block.lower, whitened);
+  const Eigen::MatrixXd gram = whitened.transpose() * whitened;
+  const Eigen::MatrixXd inner = Eigen::MatrixXd(signs.asDiagonal()) + gram.topLeftCorner(columns, columns);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(inner);
+  const double ratio = signs.prod() * factor.determinant();  // of the determinants with and without
+  const Eigen::VectorXd across = gram.col(columns).head(columns);
+  const double quadratic = gram(columns, columns) - across.dot(factor.solve(across));
+  if (!(ratio > 0.0) || !(quadratic >= 0.0)) return std::nullopt;
+  return figures_of(expected, squares, left,
+                    log_likelihood(quadratic, log_determinant(block.lower) + std::log(ratio), left.size()));
+}
+
+}  // namespace
+
 HeldoutErrors::HeldoutErrors(const NoiseData& data, const std::vector<bool>& heldout,
                              std::span<const NoiseParameters> noise, const Projector& projector,
                              const RowsOf& rows_of, const ColumnOf& column_of, int threads)
     : fixed_(std::make_shared<const Fixed>(data, heldout, noise)),
-      shared_rows_(shared_rows(*fixed_, column_of, projector.parameters(), threads)) {
-  for (std::size_t k = 0; k < fixed_->sequences.size(); ++k) {
+      shared_rows_(shared_rows(*fixed_, column_of, projector.parameters(), threads)),
+      blocks_(fixed_->sequences.size()) {
+  run_parallel(blocks_.size(), threads, [&](std::size_t k) {
     const Sequence& held = fixed_->sequences[k];
-    HeldoutBlock& block = blocks_.emplace_back();
+    HeldoutBlock& block = blocks_[k];
     for (const std::size_t place : held.place)
       block.observation.push_back(static_cast<Eigen::Index>(held.sequence->observation[place]));
-    block.covariance = held.noise_covariance(data, noise[held.sequence->group]);
+    Eigen::MatrixXd covariance = held.noise_covariance(data, noise[held.sequence->group]);
     // J A^-1 J^T - J A^-1 B^T - B A^-1 J^T = (J - B) A^-1 (J - B)^T - B A^-1 B^T
     const Eigen::MatrixXd apart = projector.rotated_rows(rows_of(block.observation) - shared_rows_[k]);
-    add_gram_upper(apart, 1.0, block.covariance);
-    add_gram_upper(projector.rotated_rows(shared_rows_[k]), -1.0, block.covariance);
-    symmetrise_from_upper(block.covariance);
-  }
+    add_gram_upper(apart, 1.0, covariance);
+    add_gram_upper(projector.rotated_rows(shared_rows_[k]), -1.0, covariance);
+    symmetrise_from_upper(covariance);
+    set_covariance(covariance, block);
+  });
 }
 
-std::vector<HeldoutBlock> HeldoutErrors::accepting(const Eigen::MatrixXd& columns, const Projector& projector,
-                                                   const RowsOf& rows_of, int threads) const {
-  const Eigen::Index more = columns.cols();
+std::optional<HeldoutFigures> HeldoutErrors::figures_accepting(const Accepted& accepted,
+                                                               const Eigen::VectorXd& residual,
+                                                               int threads) const {
+  const Eigen::Index more = accepted.columns.cols(), before = accepted.directions.rows() - more;
   const Rows further = shared_rows(
-      *fixed_, [&](Eigen::Index k) -> Eigen::VectorXd { return columns.col(k); }, more, threads);
-  std::vector<HeldoutBlock> blocks = blocks_;
-  for (std::size_t k = 0; k < blocks.size(); ++k) {
-    HeldoutBlock& block = blocks[k];
-    Eigen::MatrixXd rows(shared_rows_[k].rows(), shared_rows_[k].cols() + more);
-    rows << shared_rows_[k], further[k];
-    add_gram_upper(projector.last_rotated_rows(rows, more), -1.0, block.covariance);
-    rows.leftCols(shared_rows_[k].cols()) = rows_of(block.observation) - shared_rows_[k];
-    rows.rightCols(more) = columns(block.observation, Eigen::all) - further[k];
-    add_gram_upper(projector.last_rotated_rows(rows, more), 1.0, block.covariance);
-    symmetrise_from_upper(block.covariance);
-  }
-  return blocks;
+      *fixed_, [&](Eigen::Index k) -> Eigen::VectorXd { return accepted.columns.col(k); }, more, threads);
+  Eigen::VectorXd signs = Eigen::VectorXd::Ones(2 * more);
+  signs.tail(more).setConstant(-1.0);
+  std::vector<HeldoutFigures> of_blocks(blocks_.size());
+  std::atomic<bool> definite{true};
+  run_parallel(blocks_.size(), threads, [&](std::size_t k) {
+    const HeldoutBlock& block = blocks_[k];
+    const Eigen::MatrixXd shared = shared_rows_[k] * accepted.directions.topRows(before) +
+                                   further[k] * accepted.directions.bottomRows(more);
+    Eigen::MatrixXd both(shared.rows(), 2 * more);
+    both << accepted.moved(block.observation, Eigen::all) - shared, shared;
+    const auto figures =
+        block.is_definite ? figures_with(block, both, signs, residual(block.observation)) : std::nullopt;
+    if (figures) {
+      of_blocks[k] = *figures;
+    } else {
+      definite = false;
+    }
+  });
+  if (!definite) return std::nullopt;
+  return sum(of_blocks);
 }
 
 HeldoutFigures heldout_figures(const std::vector<HeldoutBlock>& blocks, const Eigen::VectorXd& residual) {
-  HeldoutFigures figures;
-  double variance = 0.0;
-  for (const HeldoutBlock& block : blocks) {
-    Eigen::MatrixXd left = residual(block.observation);
-    const auto count = static_cast<double>(left.size());
-    figures.count += count;
-    figures.squares += left.squaredNorm();
-    figures.expected += block.covariance.trace();
-    variance += 2.0 * block.covariance.squaredNorm();
-    auto lower = cholesky_lower(block.covariance);
-    if (!lower) lower = block.covariance.diagonal().cwiseSqrt().asDiagonal();  // x not determined: rounding
-    solve_lower(*lower, left);
-    figures.log_likelihood -=
-        0.5 * (left.squaredNorm() + log_determinant(*lower) + count * std::log(2.0 * std::numbers::pi));
-  }
-  figures.spread = std::sqrt(variance);
-  return figures;
+  std::vector<HeldoutFigures> of_blocks;
+  for (const HeldoutBlock& block : blocks)
+    of_blocks.push_back(figures_of(block, residual(block.observation)));
+  return sum(of_blocks);
 }
 
 }  // namespace volcal

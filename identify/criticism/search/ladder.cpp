@@ -12,6 +12,7 @@
 #include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/search/heldout_errors.h"
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/result/result.h"
 
 namespace volcal {
@@ -77,24 +78,18 @@ HeldoutErrors errors_of_heldout(const NoiseProblem& problem, const std::vector<b
   return {problem.data, heldout, noise, projector, rows, column, projector.threads()};
 }
 
-/// What is known of a step before its residuals.
-struct StepParts {
-  double prior_rank;
-  const std::vector<HeldoutBlock>& heldout;
-};
-
-/// Figures of the model that `projector` holds, with columns of effects; `loglik` is the held-out
-/// log-likelihood of the step before, and becomes this one's.
-LadderStep figures_of_step(const LinearModel& model, const std::vector<bool>& heldout,
-                           std::span<const NoiseParameters> noise, const Projector& projector,
-                           const Eigen::MatrixXd& effects, const StepParts& parts,
-                           std::optional<double>& loglik) {
-  const NoiseProblem& problem = model.problem();
-  const std::vector<double> variance = noise_variance(problem.data, noise);
+/// Residuals of the model that `projector` holds, with columns of effects.
+Eigen::VectorXd residuals_left(const NoiseProblem& problem, const Projector& projector,
+                               const Eigen::MatrixXd& effects) {
   const Eigen::VectorXd solution = projector.solution();
   const Eigen::Index own = problem.jacobian.cols();
-  const Eigen::VectorXd residual =
-      problem.residual - problem.jacobian * solution.head(own) - effects * solution.tail(effects.cols());
+  return problem.residual - problem.jacobian * solution.head(own) - effects * solution.tail(effects.cols());
+}
+
+/// Of the readings that are not held out.
+LadderStep fitted_figures(const LinearModel& model, const std::vector<bool>& heldout,
+                          const std::vector<double>& variance, const Projector& projector, double prior_rank,
+                          const Eigen::VectorXd& residual) {
   double squares = 0.0, fitted = 0.0;
   for (std::size_t i = 0; i < model.size(); ++i) {
     if (!std::isfinite(variance[i])) continue;
@@ -104,14 +99,15 @@ LadderStep figures_of_step(const LinearModel& model, const std::vector<bool>& he
   }
   LadderStep step;
   step.rms_fit = std::sqrt(squares / std::max(1.0, fitted));
-  const double dof = static_cast<double>(projector.observations()) + parts.prior_rank -
+  const double dof = static_cast<double>(projector.observations()) + prior_rank -
                      static_cast<double>(projector.parameters());
   step.reduced_chi2 = projector.residual_squares() / std::max(1.0, dof);
-  if (parts.heldout.empty()) {
-    step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
-    return step;
-  }
-  const HeldoutFigures figures = heldout_figures(parts.heldout, residual);
+  step.rms_heldout = step.noise_floor = step.systematic = std::numeric_limits<double>::quiet_NaN();
+  return step;
+}
+
+/// `loglik` is the held-out log-likelihood of the step before, and becomes this one's.
+void set_heldout(const HeldoutFigures& figures, std::optional<double>& loglik, LadderStep& step) {
   const double excess = (figures.squares - figures.expected) / figures.count;
   const double spread = kCoverageFactor * figures.spread / figures.count;
   step.rms_heldout = std::sqrt(figures.squares / figures.count);
@@ -121,15 +117,18 @@ LadderStep figures_of_step(const LinearModel& model, const std::vector<bool>& he
   step.systematic_high = std::sqrt(std::max(0.0, excess + spread));
   step.heldout_loglik_gain = loglik ? figures.log_likelihood - *loglik : 0.0;
   loglik = figures.log_likelihood;
-  return step;
 }
 
 LadderStep ladder_step(const LinearModel& model, const std::vector<bool>& heldout,
                        std::span<const NoiseParameters> noise, const Projector& projector,
                        const Eigen::MatrixXd& effects, std::optional<double>& loglik) {
-  const HeldoutErrors errors = errors_of_heldout(model.problem(), heldout, noise, projector, effects);
-  return figures_of_step(model, heldout, noise, projector, effects,
-                         {prior_rank(model.problem().prior_precision), errors.blocks()}, loglik);
+  const NoiseProblem& problem = model.problem();
+  const HeldoutErrors errors = errors_of_heldout(problem, heldout, noise, projector, effects);
+  const Eigen::VectorXd residual = residuals_left(problem, projector, effects);
+  LadderStep step = fitted_figures(model, heldout, noise_variance(problem.data, noise), projector,
+                                   prior_rank(problem.prior_precision), residual);
+  if (!errors.blocks().empty()) set_heldout(heldout_figures(errors.blocks(), residual), loglik, step);
+  return step;
 }
 
 /// The last step: surfaces were added first, then effects.
@@ -245,10 +244,22 @@ LadderStep last_step_at(const ModelState& state, const std::vector<NoiseParamete
 
 namespace {
 
-RowsOf rows_of_model(const NoiseProblem& problem) {
-  return [&problem](const std::vector<Eigen::Index>& observations) -> Eigen::MatrixXd {
-    return problem.jacobian(observations, Eigen::all);
-  };
+/// [J effects] times `ways`.
+Eigen::MatrixXd products(const NoiseProblem& problem, const Eigen::MatrixXd& effects,
+                         const Eigen::MatrixXd& ways, int threads) {
+  constexpr Eigen::Index kRows = 256;  // which stay near the processor for all ways
+  const Eigen::Index count = effects.rows();
+  Eigen::MatrixXd all(count, ways.cols());
+  run_parallel(static_cast<std::size_t>((count + kRows - 1) / kRows), threads, [&](std::size_t item) {
+    const Eigen::Index first = static_cast<Eigen::Index>(item) * kRows, rows = std::min(kRows, count - first);
+    auto part = all.middleRows(first, rows);
+    for (Eigen::Index way = 0; way < ways.cols(); ++way) {
+      part.col(way).noalias() =
+          problem.jacobian.middleRows(first, rows) * ways.col(way).head(problem.jacobian.cols());
+      part.col(way).noalias() += effects.middleRows(first, rows) * ways.col(way).tail(effects.cols());
+    }
+  });
+  return all;
 }
 
 }  // namespace
@@ -256,22 +267,34 @@ RowsOf rows_of_model(const NoiseProblem& problem) {
 KeptFigures::KeptFigures(const ModelState& without_effects, std::vector<NoiseParameters> noise,
                          const Projector& projector)
     : noise_(std::move(noise)),
+      variance_(noise_variance(without_effects.model().problem().data, noise_)),
       prior_rank_(prior_rank(without_effects.model().problem().prior_precision)),
       is_regular_(projector.is_regular()),
       errors_(errors_of_heldout(without_effects.model().problem(), without_effects.setting().heldout, noise_,
                                 projector, effects_of(without_effects))) {}
 
 LadderStep KeptFigures::last_step(const ModelState& state, const Projector& projector) const {
-  if (projector.is_regular() != is_regular_) return last_step_at(state, noise_, projector);
-  const LinearModel& model = state.model();
-  const Eigen::MatrixXd effects = effects_of(state);
+  const auto anew = [&] { return last_step_at(state, noise_, projector); };
+  if (projector.is_regular() != is_regular_) return anew();
+  const NoiseProblem& problem = state.model().problem();
+  const std::vector<bool>& heldout = state.setting().heldout;
+  HeldoutErrors::Accepted accepted;
+  accepted.columns = effects_of(state);
+  accepted.directions = projector.last_directions(accepted.columns.cols());
+  Eigen::MatrixXd ways(projector.parameters(), accepted.columns.cols() + 1);
+  ways << accepted.directions, projector.solution();
+  Eigen::MatrixXd moved = products(problem, accepted.columns, ways, projector.threads());
+  const Eigen::VectorXd residual = problem.residual - moved.rightCols(1);
+  LadderStep step = fitted_figures(state.model(), heldout, variance_, projector, prior_rank_, residual);
+  if (errors_.blocks().empty()) return step;
+  accepted.moved = moved.leftCols(accepted.columns.cols());
+  const auto figures = accepted.columns.cols() > 0
+                           ? errors_.figures_accepting(accepted, residual, projector.threads())
+                           : heldout_figures(errors_.blocks(), residual);
+  if (!figures) return anew();
   std::optional<double> no_step_before;
-  const auto figures = [&](const std::vector<HeldoutBlock>& blocks) {
-    return figures_of_step(model, state.setting().heldout, noise_, projector, effects, {prior_rank_, blocks},
-                           no_step_before);
-  };
-  if (effects.cols() == 0) return figures(errors_.blocks());
-  return figures(errors_.accepting(effects, projector, rows_of_model(model.problem()), projector.threads()));
+  set_heldout(*figures, no_step_before, step);
+  return step;
 }
 
 namespace {

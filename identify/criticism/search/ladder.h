@@ -48,6 +48,7 @@ class KeptFigures {
 
  private:
   std::vector<NoiseParameters> noise_;
+  std::vector<double> variance_;  ///< of every observation
   double prior_rank_;
   bool is_regular_;
   HeldoutErrors errors_;

@@ -10,6 +10,7 @@
 
 #include "tests/support/noise_campaigns.h"
 #include "tests/support/random_matrix.h"
+#include "volcal/identify/numeric/tile_array.h"
 
 namespace volcal {
 namespace {
@@ -125,8 +126,8 @@ TEST(Whitener, WeighsAsTheInverseOfSigma) {
     Eigen::MatrixXd whitened(static_cast<Eigen::Index>(kept.size()), 3), weighed;
     whitener.weigh_part(0, columns, whitened, weighed);
     EXPECT_LT((whitened - whitener.whiten_part(0, columns)).cwiseAbs().maxCoeff(), 1e-13);
-    ASSERT_EQ(weighed.rows(), kColumnBlock);
-    EXPECT_TRUE(weighed.bottomRows(kColumnBlock - 3).isZero(0.0));
+    ASSERT_EQ(weighed.rows(), whole_lines(3));
+    EXPECT_TRUE(weighed.bottomRows(whole_lines(3) - 3).isZero(0.0));
     const std::vector<std::size_t> order = whitener.order_of_part(0, n);
     ASSERT_EQ(order.size(), kept.size());
     for (std::size_t i = 0; i < order.size(); ++i) {

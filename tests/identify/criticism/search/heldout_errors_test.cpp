@@ -112,13 +112,14 @@ TEST(HeldoutErrors, CovarianceIsThatOfTheDefinition) {
     const Eigen::MatrixXd expected = example.sigma(block.observation, block.observation) +
                                      rows * inverse * rows.transpose() - rows * inverse * shared.transpose() -
                                      shared * inverse * rows.transpose();
-    EXPECT_LT((block.covariance - expected).norm(), 1e-10 * expected.norm());
+    EXPECT_LT((block.lower * block.lower.transpose() - expected).norm(), 1e-10 * expected.norm());
+    EXPECT_NEAR(block.expected, expected.trace(), 1e-10 * expected.trace());
+    EXPECT_NEAR(block.squares, expected.squaredNorm(), 1e-10 * expected.squaredNorm());
   }
 }
 
-/// What follows for further columns is what is found of a model that has them.
-TEST(HeldoutErrors, AcceptedColumnsGiveThoseOfAModelWithThem) {
-  const Example example;
+/// The example with two further columns.
+NoiseProblem with_two_columns(const Example& example) {
   NoiseProblem larger = example.problem;
   const Eigen::Index before = larger.jacobian.cols();
   larger.jacobian.edit([&](Eigen::MatrixXd& jacobian) {
@@ -129,20 +130,31 @@ TEST(HeldoutErrors, AcceptedColumnsGiveThoseOfAModelWithThem) {
     }
   });
   larger.prior_precision.conservativeResizeLike(Eigen::MatrixXd::Zero(before + 2, before + 2));
+  return larger;
+}
+
+/// What follows for further columns is what is found of a model that has them.
+TEST(HeldoutErrors, AcceptedColumnsGiveThoseOfAModelWithThem) {
+  const Example example;
+  const NoiseProblem larger = with_two_columns(example);
   const Eigen::MatrixXd columns = larger.jacobian.rightCols(2);
   Projector projector = example.projector(example.problem);
   projector.accept(columns.leftCols(1));
   projector.accept(columns.rightCols(1));
-  const std::vector<HeldoutBlock> expected = example.errors(larger).blocks(), without = example.blocks();
-  const std::vector<HeldoutBlock> found =
-      example.errors(example.problem).accepting(columns, projector, Example::rows_of(example.problem), 2);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const double size = expected[k].covariance.norm();
-    EXPECT_EQ(found[k].observation, expected[k].observation);
-    EXPECT_LT((found[k].covariance - expected[k].covariance).norm(), 1e-12 * size);
-    EXPECT_GT((found[k].covariance - without[k].covariance).norm(), 1e-3 * size);
-  }
+  const Eigen::VectorXd residual = Eigen::VectorXd::LinSpaced(kHeldoutReadings, -2.0, 3.0).array().sin();
+  const HeldoutFigures expected = heldout_figures(example.errors(larger).blocks(), residual);
+  const HeldoutFigures without = heldout_figures(example.blocks(), residual);
+  HeldoutErrors::Accepted accepted{columns, projector.last_directions(2), {}};
+  accepted.moved = larger.jacobian * accepted.directions;
+  const auto found = example.errors(example.problem).figures_accepting(accepted, residual, 2);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->count, expected.count);
+  EXPECT_EQ(found->squares, expected.squares);
+  EXPECT_NEAR(found->expected, expected.expected, 1e-12 * expected.expected);
+  EXPECT_NEAR(found->spread, expected.spread, 1e-12 * expected.spread);
+  EXPECT_NEAR(found->log_likelihood, expected.log_likelihood, 1e-10);
+  EXPECT_GT(std::abs(found->expected - without.expected), 1e-3 * expected.expected);
+  EXPECT_GT(std::abs(found->log_likelihood - without.log_likelihood), 1e-3);
 }
 
 /// Correlated drift: what is expected of the squares is what they are, as often as the spread says.

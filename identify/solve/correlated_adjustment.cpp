@@ -113,7 +113,8 @@ CorrelatedAdjustment adjust_correlated(const WhitenedCampaign& campaign, const G
     const std::vector<NoiseGroupEquations> equations = campaign.equations(z);
     if (result.iterations < evidence_rounds && !terms.empty()) {
       const std::vector<double> unscaled(equations.size(), 1.0);
-      maximise_evidence(equations, z, prior, {.variance_components = false}, unscaled, terms);
+      maximise_evidence(equations, z, prior, {.variance_components = false, .threads = campaign.threads()},
+                        unscaled, terms);
     }
     GaussianPrior total = prior;
     add_smoothing(terms, total);

@@ -41,6 +41,7 @@ class WhitenedCampaign {
 
   /// Per instrument, about the reduced parameters z: M, g, squares of the whitened errors.
   std::vector<NoiseGroupEquations> equations(const Eigen::VectorXd& z) const;
+  int threads() const { return threads_; }
 
  private:
   void fill(const std::vector<std::size_t>& observations, const Eigen::VectorXd& raw,

@@ -236,6 +236,7 @@ class Identification {
   void update_hyperparameters() {
     EvidenceOptions evidence;
     evidence.variance_components = options_.variance_components;
+    evidence.threads = threads_;
     const EvidenceState state =
         maximise_evidence(noise_group_equations(), z_, base_prior_, evidence, scale_, terms_);
     scale_ = state.scale;

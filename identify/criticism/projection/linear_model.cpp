@@ -94,14 +94,14 @@ Eigen::VectorXd LinearModel::reduced_of(Eigen::Index size) const {
   return reduced;
 }
 
-LinearModel LinearModel::smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const {
+LinearModel LinearModel::smoothed(const Eigen::MatrixXd& gram, std::size_t observations, int threads) const {
   if (smoothing_.empty()) return *this;
   const Eigen::Index count = gram.rows() - 1;
   const NoiseGroupEquations equations{gram.topLeftCorner(count, count), -gram.col(count).head(count),
                                       gram(count, count), static_cast<double>(observations)};
   std::vector<SmoothingTerm> smoothing = smoothing_;
-  maximise_evidence({equations}, reduced_of(count), base_prior_of(count), {.variance_components = false},
-                    {1.0}, smoothing);
+  maximise_evidence({equations}, reduced_of(count), base_prior_of(count),
+                    {.variance_components = false, .threads = threads}, {1.0}, smoothing);
   return with_smoothing(std::move(smoothing));
 }
 

@@ -57,7 +57,7 @@ class LinearModel {
   /// With smoothing by evidence (smoothing.h) from [J G y]^T Sigma^-1 [J G y], G columns of effects without
   /// prior: a fit that lacks an effect takes part of it for detail of the functions, or for noise that hides
   /// detail.
-  LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations) const;
+  LinearModel smoothed(const Eigen::MatrixXd& gram, std::size_t observations, int threads) const;
   /// With the coefficients of a surface as further parameters, the last, under its prior (surface_prior.h).
   LinearModel with_surface(const Effect& effect) const;
   /// Without the surface of a term of smoothing().

@@ -138,7 +138,7 @@ void ModelState::find_noise() {
     projector_ = projector_without({});
     if (model_.smoothing().empty()) return;
     const std::vector<SmoothingTerm> before = model_.smoothing();
-    model_ = model_.smoothed(projector_->gram(), projector_->observations());
+    model_ = model_.smoothed(projector_->gram(), projector_->observations(), setting_->threads);
     if (alike(before, model_.smoothing())) break;
   }
   projector_ = projector_without({});

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "volcal/identify/numeric/dense.h"
+#include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
 namespace {
@@ -198,11 +200,14 @@ class AxisShapes {
 };
 
 /// The shape that most becomes all axes when each may depart from it at the price of kWorthADeparture.
-std::size_t common_shape(std::vector<AxisShapes>& axes) {
+std::size_t common_shape(std::vector<AxisShapes>& axes, int threads) {
   std::set<std::size_t> candidates;
   for (const AxisShapes& axis : axes) {
     for (const auto& [shape, choice] : axis.tried()) candidates.insert(shape);
   }
+  run_parallel(axes.size(), threads, [&](std::size_t axis) {
+    for (const std::size_t shape : candidates) axes[axis].with(shape);
+  });
   std::size_t common = 0;
   double highest = -std::numeric_limits<double>::infinity();
   for (const std::size_t shape : candidates) {
@@ -311,7 +316,8 @@ class EvidenceSearch {
   /// All amplitudes and variance components, and the spectra where they are corrected, to their common fixed
   /// point.
   double settle(Hyperparameters& at, Spectra spectra = Spectra::Held) const {
-    Posterior now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
+    Quadratic readings = readings_and_priors(at.scale);
+    Posterior now = posterior(readings, z0_, stretches_, at.prior, at.lambda);
     for (int step = 0; step < kSettlingSteps; ++step) {
       const double before = now.log_evidence;
       const Hyperparameters from = at;
@@ -320,7 +326,8 @@ class EvidenceSearch {
       for (std::size_t g = 0; options_.variance_components && g < equations_.size(); ++g)
         at.scale[g] = updated_scale(g, from.scale[g], now);
       if (spectra == Spectra::Corrected) correct_spectra(now, from, at);
-      now = posterior(readings_and_priors(at.scale), z0_, stretches_, at.prior, at.lambda);
+      if (at.scale != from.scale) readings = readings_and_priors(at.scale);
+      now = posterior(readings, z0_, stretches_, at.prior, at.lambda);
       if (std::abs(now.log_evidence - before) < kSettled) break;
     }
     return now.log_evidence;
@@ -342,14 +349,16 @@ class EvidenceSearch {
 
   void choose_shapes(const std::vector<AxisFunctions>& group, const Hyperparameters& before,
                      Hyperparameters& at) const {
-    std::vector<AxisShapes> axes;
-    for (const AxisFunctions& functions : group) {
-      const std::vector<std::size_t>& terms = axes_.at(functions);
+    std::vector<std::optional<AxisShapes>> made(group.size());
+    run_parallel(group.size(), options_.threads, [&](std::size_t a) {
+      const std::vector<std::size_t>& terms = axes_.at(group[a]);
       std::vector<double> lambda(terms.size());
       std::ranges::transform(terms, lambda.begin(), [&](std::size_t t) { return before.lambda[t]; });
-      axes.emplace_back(axis_evidence(terms, before), before.shape[terms.front()], lambda);
-    }
-    const std::size_t common = common_shape(axes);
+      made[a].emplace(axis_evidence(terms, before), before.shape[terms.front()], lambda);
+    });
+    std::vector<AxisShapes> axes;
+    for (std::optional<AxisShapes>& axis : made) axes.push_back(*std::move(axis));
+    const std::size_t common = common_shape(axes, options_.threads);
     for (std::size_t a = 0; a < group.size(); ++a) {
       const AxisEvidence::Choice& shared = axes[a].with(common);
       const bool departs = axes[a].best().log_evidence > shared.log_evidence + kWorthADeparture;

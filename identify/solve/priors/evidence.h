@@ -42,6 +42,7 @@ struct NoiseGroupEquations {
 
 struct EvidenceOptions {
   bool variance_components = true;
+  int threads = 1;  ///< results do not depend on it
 };
 
 struct EvidenceState {

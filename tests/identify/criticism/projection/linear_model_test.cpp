@@ -125,7 +125,7 @@ TEST(LinearModel, SmoothsByWhatTheReadingsAsk) {
   const auto roughness = [&](const Eigen::VectorXd& residual, bool explained) {
     Projector projector = testing_support::white_projector(model, residual);
     if (explained) projector.accept(residual);
-    const LinearModel smoothed = model.smoothed(projector.gram(), projector.observations());
+    const LinearModel smoothed = model.smoothed(projector.gram(), projector.observations(), 1);
     const auto term =
         std::ranges::find(smoothed.smoothing(), *ErrorSymbol::parse("EXX"), &SmoothingTerm::symbol);
     return 1.0 / std::sqrt(term->lambda);

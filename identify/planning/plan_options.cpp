@@ -93,7 +93,7 @@ class OptionSearch {
     run_parallel(layouts.size(), thread_count(settings_.threads),
                  [&](std::size_t i) { judged[i] = judge(layouts[i], problem); });
     std::ranges::stable_sort(judged, {}, [](const Judged& each) {
-      return std::pair(each.option.still_invisible.size(), each.value);
+      return std::pair(each.option.still_invisible.size(), each.order);
     });
     return summary(judged);
   }
@@ -115,7 +115,7 @@ class OptionSearch {
   struct Judged {
     PlanOption option;
     PlanLayout layout;
-    double value = 0.0;
+    double order = 0.0;  ///< the uncertainty that the table shows, or the criterion of another target
   };
 
   PlanLayout layout_of(const NamedPlace& place, std::size_t tool, const LineOfSight& sight) const {
@@ -241,7 +241,7 @@ class OptionSearch {
     const ExpectedCampaign with = expected_campaign("option", campaign_of(layout, settings), settings, false);
     Judged judged;
     judged.layout = layout;
-    judged.value = problem.value(layout);
+    judged.order = settings.target == PlanTarget::Volumetric ? with.volumetric.rms : problem.value(layout);
     PlanOption& option = judged.option;
     const PlanRun& run = layout.runs.front();
     const Tool& tool = settings.machine.tools[run.tool];

@@ -245,7 +245,8 @@ std::string options_table(const CampaignPlan& plan) {
                    {"u volume, RMS [um]"},
                    {"makes visible", Align::Left},
                    {"still not visible", Align::Left}},
-                  "What one setup more would bring, best first");
+                  "What one setup more would bring, best first: fewest errors not visible, then the least " +
+                      target_words(plan.settings));
   for (const PlanOption& option : plan.options) {
     table.add_row({sentence(option.what), count_number(static_cast<long long>(option.readings)),
                    fixed_number(option.volumetric_rms * kPerMicro, 3),

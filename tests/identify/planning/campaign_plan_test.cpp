@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "volcal/identify/report/text/plan_text.h"
 #include "volcal/identify/solve/fit.h"
@@ -252,6 +254,11 @@ TEST(CampaignPlan, FindsTheStationThatIsMissing) {
   const CampaignPlan plan = extend_campaign(settings);
   EXPECT_LT(plan.plan.invisible().size(), hidden);
   EXPECT_TRUE(plan.options.front().new_station);
+  // Best first is by what the table shows: what stays invisible, then the uncertainty in the volume.
+  ASSERT_GT(plan.options.size(), 2U);
+  EXPECT_TRUE(std::ranges::is_sorted(plan.options, {}, [](const PlanOption& option) {
+    return std::pair(option.still_invisible.size(), option.volumetric_rms);
+  }));
 }
 
 TEST(CampaignPlan, RefusesWhatMakesNoPlan) {

@@ -341,11 +341,39 @@ class Identification {
     if (options_.outliers != OutlierPolicy::Remove) return;
     for (int round = 0; round < kOutlierRounds; ++round) {
       const std::vector<std::size_t> worst = worst_outliers(result_.residuals, kSurelyAsWell, kMostOutliers);
-      if (worst.empty()) break;
-      for (const std::size_t i : worst) removed_[i] = true;
+      if (!remove(worst)) break;
       readjust();
       update_residuals();
     }
+  }
+
+  /// Readings that alone determine a parameter beside others that go, as one of two on a line with an offset
+  /// of its own, stay. False where none went.
+  bool remove(const std::vector<std::size_t>& outliers) {
+    for (const std::size_t i : outliers) removed_[i] = true;
+    if (is_determined()) return !outliers.empty();
+    for (const std::size_t i : outliers) removed_[i] = false;
+    bool any = false;
+    for (const std::size_t i : outliers) {
+      removed_[i] = true;
+      if (is_determined()) {
+        any = true;
+      } else {
+        removed_[i] = false;
+      }
+    }
+    return any;
+  }
+
+  /// Whether priors and the readings that were not removed determine every parameter.
+  bool is_determined() const {
+    constexpr double kLeastPivot = 1e-13;  // share of a pivot that is left of its diagonal
+    const std::vector<double> weight = weights(sigma());
+    NormalAccumulator accumulator(index_, weight, nullptr, threads_);
+    const Eigen::MatrixXd matrix =
+        datum_->reduce_matrix(accumulator.accumulate(parameters_).matrix) + prior().precision;
+    const auto factor = cholesky_lower(matrix);
+    return factor && (factor->diagonal().array().square() > kLeastPivot * matrix.diagonal().array()).all();
   }
 
   void readjust() {

@@ -63,15 +63,40 @@ TEST_F(InputCase, ScatteredTargetsGiveTheFiguresOfTheirTargets) {
   EXPECT_THAT(figures(folder + "a.toml")["notes"].dump(), Not(HasSubstr("taken as one target")));
 }
 
-/// A gauge block at four places, each with its own zero: nothing compares them.
-TEST_F(InputCase, LinesWithTargetsAndZerosOfTheirOwnGiveNoFigure) {
-  write_machine();
-  write("gauge.csv",
+/// A gauge block at four places, each with its own zero.
+class GaugeBlock : public InputCase {
+ protected:
+  void SetUp() override {
+    write_machine();
+    write(
+        "gauge.csv",
         "x_mm,y_mm,z_mm,displacement_mm,line\n-280,0,0,0,1\n-254.989,0,0,25.000,1\n-258,0,0,0,2\n"
         "-232.981,0,0,25.000,2\n-240,0,0,0,3\n-215.009,0,0,25.000,3\n-217,0,0,0,4\n-192.006,0,0,25.000,4\n");
-  write_campaign(
-      "instrument = \"displacement\"\ndata = \"gauge.csv\"\ndirection = [1, 0, 0]\noffset_per = \"line\"\n"
-      "noise = { constant_um = 3.0 }\n");
+    write_campaign(
+        "instrument = \"displacement\"\ndata = \"gauge.csv\"\ndirection = [1, 0, 0]\noffset_per = "
+        "\"line\"\nnoise = { constant_um = 3.0 }\n");
+    write("model.toml",
+          "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"zero\" }\n"
+          "EXX = { basis = \"legendre\", degree = 1 }\n[locations]\nEC0Y = \"zero\"\nEA0Z = \"zero\"\n"
+          "EB0Z = \"zero\"\n");
+  }
+};
+
+/// Of two readings with an offset of their own the w-test flags both alike; one of them has to stay.
+TEST_F(GaugeBlock, OneOfTwoReadingsOnALineStaysWhereOutliersGo) {
+  const std::string model = " --model " + path("model.toml");
+  const auto fit =
+      run_program("fit " + path("campaign.toml") + model + " --outliers remove --json -o " + path("result"));
+  ASSERT_EQ(fit.exit_code, 0) << fit.errors;
+  const auto setups = nlohmann::json::parse(fit.output).at("setups");
+  EXPECT_EQ(setups.at(0).at("observations").get<int>(), 6);
+  const auto diagnosis =
+      run_program("diagnose " + path("campaign.toml") + model + " -o " + path("diagnosis"));
+  EXPECT_EQ(diagnosis.exit_code, 0) << diagnosis.errors;
+}
+
+/// Nothing compares them.
+TEST_F(GaugeBlock, LinesWithTargetsAndZerosOfTheirOwnGiveNoFigure) {
   const auto test = figures(path("campaign.toml"));
   for (const char* figure : {"A_um", "E_um", "M_um", "R_um", "B_um"})
     EXPECT_TRUE(test["readings"][figure].is_null());

@@ -19,9 +19,28 @@ namespace {
 constexpr double kRounding = 1e-12;         // m or rad, of a value that the datum makes zero
 constexpr double kUnmeasuredTravel = 1e-6;  // m or rad, that is noticed
 
-/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions; the last step may be
-/// shorter.
-std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& options) {
+/// Shortest piece of the functions of a linear axis within the measured positions; infinite without one.
+double shortest_piece(const FitResult& result, AxisName axis) {
+  double shortest = std::numeric_limits<double>::infinity();
+  if (is_rotary(axis)) return shortest;
+  const MeasuredTravel measured(result);
+  for (const FunctionGroup& group : result.layout.groups) {
+    if (group.axis != axis) continue;
+    const std::vector<double> ends = group.basis->pieces();
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const bool inside = ends[i] > measured.min[index_of(axis)] - kUnmeasuredTravel &&
+                          ends[i + 1] < measured.max[index_of(axis)] + kUnmeasuredTravel;
+      if (inside) shortest = std::min(shortest, ends[i + 1] - ends[i]);
+    }
+  }
+  return shortest;
+}
+
+/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions, more where the functions
+/// have shorter pieces; the last step may be shorter.
+std::vector<double> table_positions(const FitResult& result, const Axis& axis,
+                                    const ErrorTableOptions& options) {
+  constexpr double kFewest = 20.0, kMost = 200.0;  // steps
   if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
   const int positions = options.positions;
   std::vector<double> table;
@@ -32,7 +51,8 @@ std::vector<double> table_positions(const Axis& axis, const ErrorTableOptions& o
     return table;
   }
   const double edge = position_unit(axis.name).si_per_unit;
-  const double coarsest = axis.travel() / edge / 20.0;
+  const double coarsest =
+      std::clamp(shortest_piece(result, axis.name), axis.travel() / kMost, axis.travel() / kFewest) / edge;
   const double decade = std::pow(10.0, std::floor(std::log10(coarsest)));
   double step = decade;
   for (const double factor : {2.0, 5.0}) {
@@ -209,7 +229,7 @@ void for_each_table_row(const FitResult& result, const ErrorTableOptions& option
       if (!rows.has(symbol)) continue;
       for (const int direction :
            rows.has_directions(symbol) ? std::vector<int>{1, -1} : std::vector<int>{0}) {
-        for (const double q : table_positions(axis, options)) {
+        for (const double q : table_positions(result, axis, options)) {
           ErrorTableRow place;
           place.symbol = symbol.name();
           place.axis = axis.name;

@@ -89,6 +89,19 @@ TEST(PartOfTravel, ValuesAreThoseOfAShortAxis) {
   EXPECT_NEAR(on_long.variance_components.front().scale, 1.0, 0.35) << "the wave is no noise";
 }
 
+/// Rows in steps of 50 mm would meet the wave of 100 mm at its zeros alone.
+TEST(PartOfTravel, TablesHaveARowForEveryPiece) {
+  double largest = 0.0, step = 0.0, before = 0.0;
+  for (const ErrorTableRow& row : error_table(positioning_of(line_on(1.0)))) {
+    if (row.symbol != "EXX" || row.position > kMeasured + 1e-9) continue;
+    largest = std::max(largest, std::abs(row.value));
+    step = std::max(step, row.position - before);
+    before = row.position;
+  }
+  EXPECT_LE(step, kStepOfTravel + 1e-9);
+  EXPECT_NEAR(largest, kAmplitude, 0.15 * kAmplitude);
+}
+
 // One draw of the noise may be off: seed 7 estimates 0.7 of it and is 1.9 U95 off at 25 mm, on either axis.
 // Over draws the values have no bias and U95 covers 95 % of them, within what 20 draws of 8 values tell.
 TEST(PartOfTravel, UncertaintyCoversTheTruth) {

@@ -76,6 +76,22 @@ TEST_F(NothingToEstimate, CompareDiagnoseAndMonteCarloEnd) {
   EXPECT_TRUE(drawn.at("quantities").empty());
 }
 
+TEST_F(NothingToEstimate, WhatCannotHoldNothingSaysSo) {
+  ASSERT_EQ(testing::run_program(fit()).exit_code, 0);
+  const std::string result = path("result");
+  for (const char* format : {"linuxcnc", "linuxcnc-grid", "neutral-csv", "klipper"}) {
+    const testing::ProgramRun zeros =
+        testing::run_program("tables " + result + " --dry-run --format " + format);
+    EXPECT_EQ(zeros.exit_code, 0) << format << zeros.errors;
+  }
+  const testing::ProgramRun csv = testing::run_program("tables " + result + " --format csv -o " + path("t"));
+  EXPECT_EQ(csv.exit_code, 2);
+  EXPECT_THAT(csv.errors, HasSubstr("every error motion and squareness is switched off in the model"));
+  const testing::ProgramRun npz = testing::run_program("export " + result + " --npz " + path("x.npz"));
+  EXPECT_EQ(npz.exit_code, 2);
+  EXPECT_THAT(npz.errors, HasSubstr("nothing was estimated"));
+}
+
 TEST_F(NothingToEstimate, ValidateSaysThatTheFitSawTheseReadings) {
   ASSERT_EQ(testing::run_program(fit()).exit_code, 0);
   const std::string validate = "validate " + path("result") + " " + path("campaign.toml");

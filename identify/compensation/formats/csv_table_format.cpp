@@ -70,10 +70,12 @@ class FunctionTables {
 std::vector<TableFile> write_csv(const FitResult& result, const TableFormatOptions& given) {
   TableFormatOptions options = given;
   options.functions.step = given.step;
+  const std::vector<ErrorTableRow> errors = error_table(result, function_options(result, options));
+  if (errors.empty())
+    throw InputError({}, "every error motion and squareness is switched off in the model: csv has no row",
+                     "leave one on in the model file, or take a format whose tables then hold zeros");
   std::vector<TableFile> files = result_tables(result, options);
-  files.push_back(
-      {"compensation_tables.csv", function_table_csv(error_table(result, function_options(result, options)),
-                                                     TableContent::Compensations)});
+  files.push_back({"compensation_tables.csv", function_table_csv(errors, TableContent::Compensations)});
   files.push_back(spatial_grid_file("compensation_grid.csv", result, options.grid_per_axis,
                                     conditions_of(result, options), TableContent::Compensations));
   if (!options.type.rotary().empty() && no_rotary_grid(result).empty()) {

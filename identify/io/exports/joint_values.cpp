@@ -22,6 +22,9 @@ Eigen::VectorXd parameter_units(const FitResult& result) {
 }
 
 void require_covariance(const FitResult& result) {
+  if (result.parameters.size() == 0)
+    throw InputError({}, "the result has no parameters: nothing was estimated",
+                     "leave an error on in the model file, and fit again");
   if (result.covariance.rows() == result.parameters.size() && !result.covariance.isZero(0.0)) return;
   throw InputError({}, "the result states no uncertainty",
                    "give the folder that volcal fit wrote; errors that are stated have none");

@@ -11,7 +11,7 @@
 namespace volcal {
 namespace {
 
-constexpr std::string_view kAsStated = "as stated", kMeanOfCampaign = "mean of the campaign",
+constexpr std::string_view kMeanOfCampaign = "mean of the campaign",
                            kReferenceTemperature = "reference temperature";
 
 /// Whether the model reduces the scale of an axis by this channel: a key of the machine file, or an effect

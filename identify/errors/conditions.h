@@ -31,6 +31,9 @@ Conditions stated_conditions(const FitResult& result, const std::map<std::string
 /// the result's.
 double stated_reference_temperature(const FitResult& result, const Conditions& conditions);
 
+/// Origin of a condition that the user stated.
+inline constexpr std::string_view kAsStated = "as stated";
+
 /// One condition as headers and JSON state it.
 struct StatedCondition {
   Variable variable;        ///< a temperature, time or feed

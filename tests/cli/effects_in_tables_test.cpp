@@ -141,6 +141,8 @@ TEST_F(EffectsInTables, KnownErrorsGoInAndTablesComeBack) {
     }
   }
   EXPECT_NE(at("effect", "--approach X+").at(0), at("effect", "--approach X-").at(0));
+  EXPECT_THAT(done("tables " + path("effect") + " --conditions T_column=23 --at X=0"),
+              ::testing::HasSubstr("no identified error depends on T_column: it changes nothing"));
   const Json budget = Json::parse(done("budget " + path("effect") + " --json"));
   double share = 0.0;
   for (const Json& cause : budget.at("causes")) share += cause.at("share_percent").get<double>();

@@ -36,13 +36,18 @@ std::set<Variable> influences_on(const FitResult& result, const Conditions& cond
 
 std::string conditions_text(const FitResult& result, const Conditions& conditions) {
   const std::set<Variable> influences = influences_on(result, conditions);
-  std::string text;
+  std::string text, without_effect;
   for (const StatedCondition& condition : list_conditions(result, conditions)) {
-    if (!influences.contains(condition.variable)) continue;
+    if (!influences.contains(condition.variable)) {
+      if (condition.origin == kAsStated)
+        without_effect +=
+            "! no identified error depends on " + condition.variable.name() + ": it changes nothing\n";
+      continue;
+    }
     text += fmt::format("{}{} {:.6g} {} ({})", text.empty() ? "" : ", ", condition.variable.name(),
                         condition.value, unit_text(condition.variable.unit().suffix), condition.origin);
   }
-  return text.empty() ? text : "Stated for " + text + "\n";
+  return (text.empty() ? text : "Stated for " + text + "\n") + without_effect;
 }
 
 nlohmann::ordered_json conditions_json(const FitResult& result, const Conditions& conditions) {

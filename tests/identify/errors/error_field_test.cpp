@@ -18,7 +18,10 @@
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/rigid_compromise.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
+#include "volcal/identify/errors/volume/volumetric.h"
+#include "volcal/identify/montecarlo/quantities.h"
 #include "volcal/identify/program/program_errors.h"
+#include "volcal/identify/report/values/volume_error.h"
 #include "volcal/identify/solve/summaries.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/effects/registry.h"
@@ -149,7 +152,7 @@ void for_each_effect(const std::string& structure, const Use& use) {
 
 TEST(ErrorField, IsWhatProbedPointsOfTheMeasurementModelRead) {
   const Conditions conditions = conditions_somewhere();
-  for (const char* structure : {"w X' b Y Z t", "w Y' X' b Z t"}) {
+  for (const char* structure : {"w X' b Y Z t", "w Y' X' b Z t", "w C' A' X' b Y Z t"}) {
     for_each_effect(structure, [&](const Campaign& campaign, const EffectSpec& spec, const FitResult& result,
                                    std::mt19937_64& random) {
       if (is_late(spec)) return;
@@ -222,6 +225,41 @@ TEST(ErrorField, GridsAreTheFieldAtTheirNodesWithItsUncertainty) {
         const Eigen::Vector3d u = covariances[node].variances().cwiseSqrt();
         ASSERT_LT((u - plain.u.head<3>()).norm(), 1e-9 * u.norm()) << spec.kind;
       }
+    }
+  });
+}
+
+/// What a Monte Carlo study draws about and what the report shows stand on the same field, at the conditions
+/// that a result has by default.
+TEST(ErrorField, MonteCarloAndReportsStandOnIt) {
+  for_each_effect("w X' b Y Z t", [&](const Campaign&, const EffectSpec& spec, const FitResult& result,
+                                      std::mt19937_64&) {
+    constexpr int kNodes = 3;
+    const std::vector<AxisPosition> positions = grid_positions(result.machine, kNodes);
+    const QuantitySet quantities = quantities_of(result, kNodes);
+    const std::vector<report::ToolVolume> shown = report::tool_volumes(result, kNodes);
+    ASSERT_EQ(quantities.volumes.size(), result.machine.tools.size());
+    ASSERT_EQ(shown.size(), result.machine.tools.size());
+    for (std::size_t t = 0; t < shown.size(); ++t) {
+      const ErrorField field(result, result.machine.tools[t]);
+      std::vector<Vector3d> errors;
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        errors.emplace_back(field.at(positions[i]).head<3>());
+        const auto row = static_cast<Eigen::Index>(3 * i);
+        const QuantitySet::Volume& volume = quantities.volumes[t];
+        ASSERT_LT((volume.error.segment<3>(row) - errors.back()).norm(), kSame) << spec.kind;
+        ASSERT_EQ(volume.rows.middleRows<3>(row), field.unheld_rows(positions[i]).topRows<3>()) << spec.kind;
+      }
+      const std::vector<Vector3d> aligned = without_rigid_motion(shown[t].point_w, errors);
+      for (std::size_t i = 0; i < positions.size(); ++i)
+        ASSERT_LT((shown[t].error_w[i] - aligned[i]).norm(), kSame) << spec.kind;
+    }
+    for (const Quantity& quantity : quantities.items) {
+      if (quantity.kind != QuantityKind::VolumetricError) continue;
+      const Tool& tool = result.machine.tools[*result.machine.tool_index(quantity.tool)];
+      const int component = quantity.name == "ex" ? 0 : quantity.name == "ey" ? 1 : 2;
+      ASSERT_NEAR(quantity.estimate, ErrorField(result, tool).at(*quantity.at)[component], kSame)
+          << spec.kind << " " << quantity.words();
     }
   });
 }

@@ -138,8 +138,12 @@ void known_screw_heating(const HiddenSettings& settings, HiddenScene& scene) {
 }
 
 void known_scale_expansion(const HiddenSettings& settings, HiddenScene& scene) {
-  scene.machine.set_scale_expansion(settings.linear_axis("axis"), amplitude_of(settings),
-                                    settings.channel("temperature").name);
+  const AxisName axis = settings.linear_axis("axis");
+  scene.machine.add_state_error(
+      positioning_of(axis), [a = amplitude_of(settings), q = from_home(settings, axis),
+                             excess = settings.excess_temperature("temperature")](const MachineState& state) {
+        return a * excess(state) * q(state);
+      });
 }
 
 void known_thermal_drift(const HiddenSettings& settings, HiddenScene& scene) {

@@ -104,6 +104,7 @@ void set_known_functions(const std::map<ErrorSymbol, FunctionSpec>& functions, c
 void set_known_errors(const ModelSpec& errors, TruthMachine& truth) {
   set_known_functions(errors.functions, errors.file, truth);
   for (const auto& [symbol, value] : errors.locations) truth.set_location(symbol, value);
+  for (const auto& [axis, ends] : errors.measured) truth.hold_beyond(axis, ends.first, ends.second);
 }
 
 }  // namespace volcal::sim

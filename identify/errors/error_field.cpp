@@ -44,13 +44,9 @@ MeasuredTravel::MeasuredTravel() {
 }
 
 MeasuredTravel::MeasuredTravel(const FitResult& result) : MeasuredTravel() {
-  std::array<bool, kAxisCount> known{};
-  for (const FunctionSummary& function : result.functions) {
-    if (!(function.measured_min <= function.measured_max)) continue;
-    const std::size_t a = index_of(function.symbol.axis);
-    min[a] = known[a] ? std::min(min[a], function.measured_min) : function.measured_min;
-    max[a] = known[a] ? std::max(max[a], function.measured_max) : function.measured_max;
-    known[a] = true;
+  for (const auto& [axis, ends] : measured_positions(result)) {
+    min[index_of(axis)] = ends.first;
+    max[index_of(axis)] = ends.second;
   }
 }
 

@@ -86,6 +86,12 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
   result.identified = model;
   result.reference_temperature_degC = kReferenceTemperature_degC;
   StatedLayout(machine, model).take(result);
+  for (const auto& [axis, ends] : model.measured) {
+    FunctionSummary& summary = result.functions.emplace_back();
+    summary.symbol = {Component::X, axis};
+    summary.measured_min = ends.first;
+    summary.measured_max = ends.second;
+  }
   constexpr RecordedRange kReference = {kReferenceTemperature_degC, kReferenceTemperature_degC,
                                         kReferenceTemperature_degC};
   for (const Axis& axis : machine.axes) {

@@ -1,5 +1,7 @@
 #include "volcal/identify/result/result.h"
 
+#include <algorithm>
+
 namespace volcal {
 
 std::string_view to_string(FitStatus status) {
@@ -14,6 +16,31 @@ std::string_view to_string(FitStatus status) {
       return "not_converged";
   }
   return "";
+}
+
+std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result) {
+  std::map<AxisName, std::pair<double, double>> positions;
+  for (const FunctionSummary& function : result.functions) {
+    if (!(function.measured_min <= function.measured_max)) continue;
+    const auto [place, is_new] =
+        positions.emplace(function.symbol.axis, std::pair(function.measured_min, function.measured_max));
+    auto& [first, last] = place->second;
+    first = std::min(first, function.measured_min);
+    last = std::max(last, function.measured_max);
+  }
+  return positions;
+}
+
+ModelSpec model_with_measured_travel(const FitResult& result) {
+  constexpr double kSameEnd = 1e-6;  // m or rad
+  ModelSpec model = result.identified;
+  for (const auto& [axis, ends] : measured_positions(result)) {
+    if (!result.machine.has_axis(axis)) continue;
+    const Axis& travel = result.machine.axis(axis);
+    if (ends.first > travel.travel_min + kSameEnd || ends.second < travel.travel_max - kSameEnd)
+      model.measured[axis] = ends;
+  }
+  return model;
 }
 
 }  // namespace volcal

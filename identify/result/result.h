@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/noise/noise_estimate.h"
@@ -172,5 +173,12 @@ struct FitResult {
   std::vector<Timing> timings;
   std::shared_ptr<const Adjustment> adjustment;  ///< adjustment.h; null in a result read from files
 };
+
+/// First and last position with readings of every axis that has functions, m or rad.
+std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result);
+
+/// The identified model with the positions that were measured, where these are not the whole travel: it says
+/// of an error at any position what the result says.
+ModelSpec model_with_measured_travel(const FitResult& result);
 
 }  // namespace volcal

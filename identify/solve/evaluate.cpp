@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/threads.h"
@@ -10,6 +12,7 @@
 #include "volcal/identify/solve/normals/stated_sigma.h"
 #include "volcal/identify/solve/residuals.h"
 #include "volcal/model/description/finding_codes.h"
+#include "volcal/model/description/units.h"
 #include "volcal/model/description/unknowns.h"
 #include "volcal/model/observation/channels.h"
 
@@ -56,10 +59,16 @@ std::vector<double> weights_of(const ReadingIndex& index, const std::vector<doub
 }
 
 /// u of every prediction: the model's covariance, less what the re-estimated nuisance parameters absorb.
+/// Beyond what was measured it is that of the functions there, not that of the value that is held.
 std::vector<double> prediction_uncertainty(const ReadingIndex& index, const DatumSpace& datum,
                                            const NormalEquations& sums, const GaussianPrior& prior,
                                            const Eigen::VectorXd& parameters, const FitResult& identified) {
-  const MeasurementModel& model = index.model();
+  std::optional<MeasurementModel> unheld;
+  if (ModelSpec spec = index.model().spec(); !spec.measured.empty()) {
+    spec.measured.clear();
+    unheld.emplace(index.model().campaign(), std::move(spec)).set_second_order_remainder(parameters);
+  }
+  const MeasurementModel& model = unheld ? *unheld : index.model();
   const auto shared = shared_parameters(identified.layout, model.layout());
   std::vector<int> fitted, here;
   for (const auto& [source, target] : shared) {
@@ -125,6 +134,32 @@ std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const Model
   std::vector<Finding> findings;
   for (const AxisName axis : rotary_axes_without_errors(campaign, model)) {
     findings.push_back({FindingCode::RotaryErrorsNotInModel, {{"axis", std::string(1, letter_of(axis))}}});
+  }
+  return findings;
+}
+
+std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model) {
+  constexpr double kBeyondEnd = 1e-6;  // m or rad
+  std::vector<Finding> findings;
+  for (const auto& [name, ends] : model.measured) {
+    const bool beyond = std::ranges::any_of(
+        campaign.setups, [&, axis = name, first = ends.first, last = ends.second](const Setup& setup) {
+          return std::ranges::any_of(setup.readings.position[index_of(axis)], [&](double q) {
+            return q < first - kBeyondEnd || q > last + kBeyondEnd;
+          });
+        });
+    if (!beyond) continue;
+    const Unit unit = position_unit(name);
+    const Axis& axis = campaign.machine.axis(name);
+    const auto number = [&](double q) {
+      return FindingNumber{q, std::string(unit.suffix), unit.si_per_unit};
+    };
+    findings.push_back({FindingCode::ErrorsHeldBeyondReadings,
+                        {{"axis", std::string(1, letter_of(name))},
+                         {"measured_from", number(ends.first)},
+                         {"measured_to", number(ends.second)},
+                         {"travel_from", number(axis.travel_min)},
+                         {"travel_to", number(axis.travel_max)}}});
   }
   return findings;
 }
@@ -248,7 +283,8 @@ Validation validate(const Campaign& campaign, const FitResult& result, int threa
   Validation validation;
   validation.before = evaluate_model(campaign, nominal_model(), nullptr, threads);
   const bool is_stated = result.covariance.isZero(0.0);
-  validation.after = evaluate_model(campaign, result.identified, is_stated ? nullptr : &result, threads);
+  validation.after =
+      evaluate_model(campaign, model_with_measured_travel(result), is_stated ? nullptr : &result, threads);
   ValidationFigures& figures = validation.figures;
   const Spread before = spread_of(campaign, validation.before.residuals);
   const Spread after = spread_of(campaign, validation.after.residuals);

@@ -32,6 +32,10 @@ struct Evaluation {
 /// One per rotary axis that moves in the campaign and has no errors in a model that states some.
 std::vector<Finding> missing_rotary_errors(const Campaign& campaign, const ModelSpec& model);
 
+/// "errors.held-beyond-readings" of every axis on which the campaign has readings beyond model.measured.
+std::vector<Finding> held_beyond_measured(const Campaign& campaign, const ModelSpec& model);
+
+/// Beyond model.measured errors keep their last value, as in tables.
 /// `identified` supplies the covariance when `model` is its identified model; null = predictions without u.
 /// Throws InputError when the campaign does not fit the model's machine.
 Evaluation evaluate_model(const Campaign& campaign, const ModelSpec& model,

@@ -2,9 +2,11 @@
 /// What we assume of a machine: bases of the error functions, effects beyond the rigid body, known values.
 /// Plain data as a model file holds it; SI units.
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "volcal/model/description/schema.h"
@@ -48,7 +50,16 @@ struct ModelSpec {
   std::vector<LocationSymbol> locations_off;      ///< left out of the model: held at zero
   std::vector<EffectSpec> effects;
   PriorWidths priors;
+  /// Positions with readings that stated errors follow from, m or rad, first and last: beyond them errors
+  /// keep their last value. An axis without is known over its whole travel.
+  std::map<AxisName, std::pair<double, double>> measured;
 
+  /// The nearest position that was measured.
+  double held(AxisName axis, double position) const {
+    const auto found = measured.find(axis);
+    return found == measured.end() ? position
+                                   : std::clamp(position, found->second.first, found->second.second);
+  }
   const FunctionSpec& function(ErrorSymbol symbol) const {
     const auto found = functions.find(symbol);
     return found == functions.end() ? default_function : found->second;

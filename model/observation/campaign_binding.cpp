@@ -275,7 +275,29 @@ class CampaignBinder {
   void tabulate_effects() {
     if (binding_.effects.empty()) return;
     const std::vector<SetupView> views = setup_views(campaign_, binding_, chain_);
-    for (EffectBinding& effect : binding_.effects) tabulate_drivers(views, effect);
+    const Campaign held = spec_.measured.empty() ? Campaign{} : held_campaign();
+    const std::vector<SetupView> held_views =
+        spec_.measured.empty() ? std::vector<SetupView>{} : setup_views(held, binding_, chain_);
+    for (EffectBinding& effect : binding_.effects)
+      tabulate_drivers(held_views.empty() || !acts_on_machine(effect) ? views : held_views, effect);
+  }
+
+  static bool acts_on_machine(const EffectBinding& binding) {
+    return std::ranges::all_of(binding.effect->terms(), [](const EffectTerm& term) {
+      return term.target.kind == TargetKind::Motion || term.target.kind == TargetKind::ToolOffset;
+    });
+  }
+
+  /// With positions beyond those that stated errors follow from moved to the last of these.
+  Campaign held_campaign() const {
+    Campaign held = campaign_;
+    for (Setup& setup : held.setups) {
+      for (const auto& [axis, ends] : spec_.measured) {
+        for (double& position : setup.readings.position[index_of(axis)])
+          position = spec_.held(axis, position);
+      }
+    }
+    return held;
   }
 
   void add_tool(std::size_t tool) {

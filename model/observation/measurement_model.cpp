@@ -14,7 +14,7 @@ MeasurementModel::MeasurementModel(const Campaign& campaign, ModelSpec spec)
       spec_(std::move(spec)),
       chain_(campaign.machine),
       binding_(bind_campaign(campaign_, spec_, chain_)),
-      tables_(campaign_, binding_.layout) {
+      tables_(campaign_, binding_.layout, spec_) {
   const std::size_t terms = binding_.shared_terms.size() + static_cast<std::size_t>(binding_.effect_drivers);
   if (terms > kMaxSharedTerms) {
     throw InputError({spec_.file, 0},
@@ -65,7 +65,10 @@ Eigen::VectorXd MeasurementModel::initial_parameters() const {
 
 PoseErrors<double> MeasurementModel::errors_at(const AxisPosition& position,
                                                const Eigen::VectorXd& parameters) const {
-  return pose_errors(layout(), position, parameters);
+  AxisPosition held = position;
+  for (const auto& [axis, ends] : spec_.measured)
+    held[index_of(axis)] = spec_.held(axis, position[index_of(axis)]);
+  return pose_errors(layout(), held, parameters);
 }
 
 PoseErrors<double> MeasurementModel::errors_at_reading(std::size_t setup, std::size_t row,

@@ -53,7 +53,8 @@ void function_values(const FunctionGroup& group, int start, const double* basis,
   }
 }
 
-PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& layout)
+PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& layout,
+                               const ModelSpec& model)
     : tables_(layout.groups.size()), entry_(campaign.setups.size()) {
   for (const AxisName axis : kAllAxes) {
     const auto on_axis = [axis](const FunctionGroup& group) { return group.axis == axis; };
@@ -71,8 +72,8 @@ PositionTables::PositionTables(const Campaign& campaign, const ParameterLayout& 
       const auto support = static_cast<std::size_t>(group.basis->support());
       tables_[g].values.resize(support * numbers.positions().size());
       for (std::size_t i = 0; i < numbers.positions().size(); ++i) {
-        tables_[g].start.push_back(
-            group.basis->evaluate(numbers.positions()[i], tables_[g].values.data() + support * i));
+        tables_[g].start.push_back(group.basis->evaluate(model.held(axis, numbers.positions()[i]),
+                                                         tables_[g].values.data() + support * i));
       }
     }
   }

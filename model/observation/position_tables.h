@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "volcal/model/description/campaign.h"
+#include "volcal/model/description/model_spec.h"
 #include "volcal/model/observation/parameters.h"
 
 namespace volcal {
@@ -22,7 +23,8 @@ using TabulatedFunctions = std::vector<std::vector<double>>;
 
 class PositionTables {
  public:
-  PositionTables(const Campaign& campaign, const ParameterLayout& layout);
+  /// Beyond `model.measured` functions have the value at the last position that was measured.
+  PositionTables(const Campaign& campaign, const ParameterLayout& layout, const ModelSpec& model);
 
   TabulatedFunctions tabulate(const ParameterLayout& layout, const Eigen::VectorXd& parameters) const;
 

@@ -68,7 +68,7 @@ void require_same_machine(const std::string& name, const Machine& machine, const
 }
 
 GivenModel given_result(const std::string& name, const FitResult& result, const Campaign& campaign) {
-  GivenModel model{name, name, result.identified, refittable_model(result), true, &result};
+  GivenModel model{name, name, model_with_measured_travel(result), refittable_model(result), true, &result};
   if (!result.alignment.empty()) adopt_alignment(model.aligned.emplace(campaign), result);
   require_same_machine(name, result.machine, model.readings(campaign).machine);
   return model;
@@ -110,14 +110,19 @@ std::vector<GivenModel> given_models(const py::sequence& given, const std::vecto
   return models;
 }
 
-/// The campaign with what the models lack of its rotary axes among its notes; itself where they lack nothing.
+/// The campaign with what the models lack of its rotary axes, and where they hold errors, among its notes;
+/// itself where there is nothing to say.
 std::shared_ptr<const Campaign> with_notes(const std::shared_ptr<const Campaign>& campaign,
                                            const std::vector<GivenModel>& models) {
   std::vector<Finding> missing;
   for (const GivenModel& model : models) {
     if (!states_errors(model.spec)) continue;
-    for (Finding& each : missing_rotary_errors(*campaign, model.spec)) {
-      const auto same = [&](const Finding& other) { return other.text("axis") == each.text("axis"); };
+    std::vector<Finding> found = missing_rotary_errors(*campaign, model.spec);
+    std::ranges::move(held_beyond_measured(*campaign, model.spec), std::back_inserter(found));
+    for (Finding& each : found) {
+      const auto same = [&](const Finding& other) {
+        return other.code == each.code && other.text("axis") == each.text("axis");
+      };
       if (std::ranges::none_of(missing, same)) missing.push_back(std::move(each));
     }
   }

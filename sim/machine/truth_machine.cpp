@@ -69,13 +69,26 @@ void TruthMachine::set_reversal(ErrorSymbol symbol, double reversal) {
 void TruthMachine::set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel) {
   const double home = machine_.axis(axis).home;
   const ErrorSymbol positioning{positioning_component(axis), axis};
-  add_state_error(positioning, [=](const MachineState& state) {
+  expansions_[positioning].emplace_back([=](const MachineState& state) {
     const auto found = state.temperature.find(channel);
     if (found == state.temperature.end()) {
       throw std::invalid_argument("no temperature of channel " + channel);
     }
     return per_kelvin * (found->second - kReferenceTemperature) * (state.position[index_of(axis)] - home);
   });
+}
+
+void TruthMachine::hold_beyond(AxisName axis, double first, double last) {
+  measured_[machine_.axis(axis).name] = {first, last};
+}
+
+MachineState TruthMachine::held(const MachineState& state) const {
+  MachineState at = state;
+  for (const auto& [axis, ends] : measured_) {
+    double& position = at.position[index_of(axis)];
+    position = std::clamp(position, ends.first, ends.second);
+  }
+  return at;
 }
 
 void TruthMachine::add_state_error(ErrorSymbol symbol, StateError error) {
@@ -99,7 +112,7 @@ double TruthMachine::location(LocationSymbol symbol, const MachineState& state) 
   double sum = location(symbol);
   const auto changes = location_changes_.find(symbol);
   if (changes == location_changes_.end()) return sum;
-  for (const StateError& change : changes->second) sum += change(state);
+  for (const StateError& change : changes->second) sum += change(measured_.empty() ? state : held(state));
   return sum;
 }
 
@@ -109,11 +122,19 @@ double TruthMachine::reversal(ErrorSymbol symbol) const {
 }
 
 double TruthMachine::error(ErrorSymbol symbol, const MachineState& state) const {
+  return measured_.empty() ? error(symbol, state, state) : error(symbol, held(state), state);
+}
+
+double TruthMachine::error(ErrorSymbol symbol, const MachineState& at, const MachineState& state) const {
   const std::size_t axis = index_of(symbol.axis);
-  double sum = function_value(symbol, state.position[axis]) + 0.5 * reversal(symbol) * state.direction[axis];
-  const auto extra = state_errors_.find(symbol);
-  if (extra == state_errors_.end()) return sum;
-  for (const StateError& contribution : extra->second) sum += contribution(state);
+  double sum = function_value(symbol, at.position[axis]) + 0.5 * reversal(symbol) * at.direction[axis];
+  const auto add = [&](const auto& errors, const MachineState& where) {
+    const auto found = errors.find(symbol);
+    if (found == errors.end()) return;
+    for (const StateError& contribution : found->second) sum += contribution(where);
+  };
+  add(state_errors_, at);
+  add(expansions_, state);
   return sum;
 }
 

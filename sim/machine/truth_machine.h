@@ -77,9 +77,11 @@ class TruthMachine {
   void set_location(LocationSymbol symbol, double value);
   /// Adds +-reversal/2 by direction of approach of the moving axis; nothing where it is unknown.
   void set_reversal(ErrorSymbol symbol, double reversal);
-  /// Positioning grows by per_kelvin (T - 20 degC) (q - home). Evaluating it without the channel throws
+  /// Positioning grows by per_kelvin (T - 20 degC) (q - home), all over the travel. Evaluating it without the channel throws
   /// std::invalid_argument.
   void set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel);
+  /// Beyond these positions functions and state errors, expansions of scales apart, keep their last value.
+  void hold_beyond(AxisName axis, double first, double last);
   /// Anything else that an error motion depends on.
   void add_state_error(ErrorSymbol symbol, StateError error);
   /// A location error that changes; symbols as in set_location(). It adds to location().
@@ -122,6 +124,9 @@ class TruthMachine {
  private:
   enum class Side { Workpiece, Tool, Both };
   MachineState corrected(const MachineState& state) const;
+  MachineState held(const MachineState& state) const;
+  /// `at`: the state within what was measured.
+  double error(ErrorSymbol symbol, const MachineState& at, const MachineState& state) const;
   Eigen::Matrix4d joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d nominal_joint_transform(const Joint& joint, const MachineState& state) const;
   Eigen::Matrix4d chain(Side side, bool nominal, const MachineState& programmed) const;
@@ -132,6 +137,8 @@ class TruthMachine {
   std::map<ErrorSymbol, ErrorFunction> functions_;
   std::map<ErrorSymbol, double> reversals_;
   std::map<ErrorSymbol, std::vector<StateError>> state_errors_;
+  std::map<ErrorSymbol, std::vector<StateError>> expansions_;
+  std::map<AxisName, std::pair<double, double>> measured_;
   std::map<LocationSymbol, double> locations_;
   std::map<LocationSymbol, std::vector<StateError>> location_changes_;
   CommandCorrection correction_;

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
@@ -207,6 +209,128 @@ TEST_F(InputCase, SquarenessBelowFunctionsIsSentToLocations) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.errors, HasSubstr("[locations]: EC0Y = \"zero\" switches it off"));
   EXPECT_THAT(run.errors, Not(HasSubstr("did you mean")));
+}
+
+/// X measured on 40 mm of its 120 mm of travel, 1 um per mm and a reversal of 6 um.
+class PartlyMeasured : public InputCase {
+ protected:
+  void SetUp() override {
+    std::string machine = "format = \"volcal-machine-1\"\nstructure = \"w b X Y Z t\"\n";
+    for (const char axis : {'X', 'Y', 'Z'})
+      machine += std::string("[axes.") + axis + "]\ntravel_mm = [-60.0, 60.0]\nhome_mm = 0.0\n";
+    write("machine.toml", machine + "[tools.t]\noffset_mm = [0.0, 0.0, 0.0]\n");
+    std::string csv = "x_mm,y_mm,z_mm,deviation_um,dir_x\n";
+    for (int cycle = -1; cycle <= 1; ++cycle) {
+      for (int k = -4; k <= 4; ++k) csv += row(cycle, 1, 5 * k);
+      for (int k = 4; k >= -4; --k) csv += row(cycle, -1, 5 * k);
+    }
+    write("line.csv", csv);
+    write_campaign(
+        "instrument = \"displacement\"\ndata = \"line.csv\"\ndirection = [1, 0, 0]\n"
+        "noise = { constant_um = 1.0 }\n");
+    write("model.toml",
+          "format = \"volcal-model-1\"\n[functions]\ndefault = { basis = \"zero\" }\n"
+          "EXX = { basis = \"bspline\", degree = 1, knots_mm = [-60, -20, 0, 20, 60] }\n[locations]\n"
+          "EC0Y = \"zero\"\nEA0Z = \"zero\"\nEB0Z = \"zero\"\n"
+          "[[effects]]\nkind = \"reversal\"\nsymbol = \"EXX\"\n");
+    const auto fit = run_program("fit " + path("campaign.toml") + " --model " + path("model.toml") + " -o " +
+                                 path("result"));
+    ASSERT_LE(fit.exit_code, 1) << fit.errors;
+  }
+  static std::string row(int cycle, int direction, int x) {
+    return std::to_string(x) + ",0,0," + std::to_string(x + 3 * direction + 0.5 * cycle) + "," +
+           std::to_string(direction) + "\n";
+  }
+
+  static constexpr const char* kHeld =
+      "X was measured from -20 to 20 of -60 to 60 mm: beyond it the last measured error is held";
+};
+
+/// The result, the model and the tables that it writes say the same of every position, and judge readings
+/// alike.
+TEST_F(PartlyMeasured, WhatIsWrittenHoldsTheLastErrorToo) {
+  ASSERT_EQ(run_program("tables " + path("result") + " -o " + path("tables")).exit_code, 0);
+  write("beyond.csv",
+        "x_mm,y_mm,z_mm,ex_um,ey_um,ez_um,dir_x\n0,0,0,3,0,0,1\n15,0,0,18,0,0,1\n"
+        "50,0,0,23,0,0,1\n-60,0,0,-17,0,0,1\n");
+  write("beyond.toml",
+        "format = \"volcal-campaign-1\"\nmachine = \"machine.toml\"\n[[setups]]\nname = \"P\"\n"
+        "instrument = \"volumetric-points\"\ndata = \"beyond.csv\"\nalignment = \"none\"\n"
+        "noise = { constant_um = 1.0 }\n");
+  for (const std::string& errors : {path("result"), path("result/identified.toml"), path("tables")}) {
+    const std::string tables = "tables " + errors + " --approach X+ --at X=60";
+    const auto at_end = nlohmann::json::parse(run_program(tables + " --json").output).at("volumetric_errors");
+    EXPECT_NEAR(at_end.at(0).at("error_um").at(0).get<double>(), 23.0, 0.5) << errors;
+    EXPECT_TRUE(at_end.at(0).at("extrapolated").get<bool>()) << errors;
+    EXPECT_EQ(run_program(tables + " --no-extrapolation").exit_code, 2) << errors;
+    EXPECT_THAT(run_program("tables " + errors + " --format linuxcnc --dry-run").output,
+                HasSubstr("beyond it the last measured error is held"))
+        << errors;
+    const auto validated = run_program("validate " + errors + " " + path("beyond.toml"));
+    ASSERT_EQ(validated.exit_code, 0) << validated.errors;
+    EXPECT_THAT(validated.output, HasSubstr("beyond it the last measured error is held")) << errors;
+    const auto judged = nlohmann::json::parse(
+        run_program("validate " + errors + " " + path("beyond.toml") + " --json").output);
+    EXPECT_LT(judged.at("max_after_um").get<double>(), 1.0) << errors;
+    const auto compared = run_program("compare " + path("beyond.toml") + " " + errors);
+    EXPECT_THAT(compared.output, HasSubstr("beyond it the last measured error is held")) << errors;
+  }
+}
+
+/// What each format needs to be told; all that are registered.
+const std::vector<std::string> kFormats = {"csv",
+                                           "neutral-csv",
+                                           "linuxcnc",
+                                           "linuxcnc-grid",
+                                           "klipper",
+                                           "marlin",
+                                           "isg-csv",
+                                           "etalon-exchange",
+                                           "isg-ssfk",
+                                           "sinumerik",
+                                           "sinumerik-cec --set cec_sign=error",
+                                           "heidenhain --set sign=error",
+                                           "fanuc --set sign=error --set output=even --set directions=mean"};
+
+TEST_F(PartlyMeasured, EveryFormatSaysWhereItHoldsTheLastErrorOrRefuses) {
+  const std::string tables = "tables " + path("result") + " --dry-run --format ";
+  for (const std::string& format : kFormats) {
+    const auto held = run_program(tables + format);
+    EXPECT_EQ(held.exit_code, 0) << format << held.errors;
+    EXPECT_THAT(held.output, HasSubstr(kHeld)) << format;
+    const auto refused = run_program(tables + format + " --no-extrapolation");
+    EXPECT_EQ(refused.exit_code, 2) << format;
+    EXPECT_THAT(refused.errors, HasSubstr("X was measured from -20 to 20")) << format;
+  }
+  const auto known = nlohmann::json::parse(run_program("tables --list --json").output).at("formats");
+  std::set<std::string> names;
+  for (const auto& format : known) names.insert(format.at("name").get<std::string>());
+  for (const std::string& format : kFormats) names.erase(format.substr(0, format.find(' ')));
+  EXPECT_THAT(names, ::testing::ElementsAre("linuxcnc-trt")) << "it is for machines with rotary axes";
+}
+
+TEST_F(PartlyMeasured, PointsAndProgramsHoldTheLastErrorOrRefuse) {
+  const auto ex_at = [&](const std::string& x) {
+    const auto run = run_program("tables " + path("result") + " --json --approach X+ --at X=" + x);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return nlohmann::json::parse(run.output).at("volumetric_errors").at(0);
+  };
+  EXPECT_NEAR(ex_at("20").at("error_um").at(0).get<double>() - ex_at("0").at("error_um").at(0).get<double>(),
+              20.0, 0.5);
+  for (const char* x : {"25", "60"}) {
+    EXPECT_EQ(ex_at(x).at("error_um").at(0), ex_at("20").at("error_um").at(0)) << x;
+    EXPECT_TRUE(ex_at(x).at("extrapolated").get<bool>()) << x;
+    EXPECT_GT(ex_at(x).at("u_um").at(0), ex_at("20").at("u_um").at(0)) << x;
+  }
+  EXPECT_EQ(run_program("tables " + path("result") + " --no-extrapolation --at X=25").exit_code, 2);
+  EXPECT_EQ(run_program("tables " + path("result") + " --no-extrapolation --at X=15").exit_code, 0);
+  write("part.ngc", "G21 G90\nF600\nG0 X0 Y0 Z0\nG1 X50\nM2\n");
+  const std::string compensate = "compensate " + path("result") + " " + path("part.ngc") +
+                                 " --work-offset G54=X0,Y0,Z0 -o " + path("out.ngc");
+  const auto held = run_program(compensate);
+  EXPECT_EQ(held.exit_code, 0) << held.errors;
+  EXPECT_THAT(held.output, HasSubstr("beyond the measured positions: the last measured error is held"));
+  EXPECT_EQ(run_program(compensate + " --no-extrapolation").exit_code, 2);
 }
 
 TEST_F(InputCase, NamesAreShownWithoutControlCharacters) {

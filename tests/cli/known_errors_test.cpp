@@ -128,6 +128,18 @@ TEST_F(KnownErrors, AMachineIsSimulatedFromAModelAndExplainedByIt) {
   }
 }
 
+/// The simulator, which evaluates functions and effects by code of its own, holds them as the model does.
+TEST_F(KnownErrors, AreHeldBeyondWhatWasMeasured) {
+  const std::string known = testing::content(path("known.toml"));
+  write("held.toml", known + "[measured]\nX_mm = [-200, 150]\nZ_mm = [-300, -10]\n");
+  done("simulate " + path("study.toml") + " --errors " + path("held.toml") + " -o " + path("campaign"));
+  EXPECT_LT(left("campaign", path("held.toml")).second, 0.01);
+  EXPECT_GT(left("campaign", path("known.toml")).second, 1.0);
+  write("wrong.toml", known + "[measured]\nX_mm = [150, -200]\n");
+  refused("budget " + path("wrong.toml"), "measured.X_mm is not the first and the last position",
+          "[FIRST, LAST]");
+}
+
 TEST_F(KnownErrors, TablesAndResultsAreSimulatedToo) {
   write("rigid.toml",
         testing::content(path("known.toml"))

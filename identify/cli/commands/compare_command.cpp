@@ -86,7 +86,8 @@ NamedModel load(const std::string& argument, const Campaign& campaign) {
       throw InputError({argument, 0}, "it belongs to another machine than the campaign: " + difference,
                        "compare with a result of the same machine");
     }
-    return {argument, result.identified, refittable_model(result), true, result, std::move(aligned)};
+    return {argument,          model_with_measured_travel(result), refittable_model(result), true, result,
+            std::move(aligned)};
   }
   NamedModel model{argument, read_model(argument, campaign.machine), {}, true};
   model.refittable = model.spec;
@@ -134,6 +135,16 @@ std::vector<HeldOutModel> judge_heldout(const Campaign& campaign, const std::vec
   return judged;
 }
 
+/// Each axis once.
+void note_held_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
+  std::set<std::string> said;
+  for (const NamedModel& model : models) {
+    for (Finding& held : held_beyond_measured(campaign, model.spec)) {
+      if (said.insert(held.text("axis")).second) campaign.notes.push_back(std::move(held));
+    }
+  }
+}
+
 /// Of models that state errors, each axis once.
 void note_missing_rotary_errors(const std::vector<NamedModel>& models, Campaign& campaign) {
   std::set<std::string> said;
@@ -171,6 +182,7 @@ int run_compare(const CompareArguments& arguments) {
     if (model.result) models.back().rotary = rotary_pictures(*model.result, readings);
   }
   note_missing_rotary_errors(named, campaign);
+  note_held_errors(named, campaign);
   std::vector<HeldOutModel> heldout;
   if (arguments.heldout) heldout = judge_heldout(campaign, named, arguments, comparison);
   const std::string json = comparison_json(campaign, models, heldout);

@@ -107,6 +107,8 @@ int run_validate(const ValidateArguments& arguments) {
   }
   const std::optional<MeasuredError> compensated = verify(arguments, campaign);
   std::ranges::move(missing_rotary_errors(campaign, result.identified), std::back_inserter(campaign.notes));
+  std::ranges::move(held_beyond_measured(campaign, model_with_measured_travel(result)),
+                    std::back_inserter(campaign.notes));
   const Validation validation = validate(campaign, result, arguments.threads);
   auto figures = validation_json(validation.figures, fitted);
   if (compensated) {

@@ -48,6 +48,7 @@ class ModelReader {
     read_functions();
     read_locations();
     read_priors();
+    read_measured();
     read_effects();
     document.reject_unknown();
     check_default();
@@ -273,6 +274,21 @@ class ModelReader {
       return value;
     };
     spec_.priors = {width("displacement_um"), width("rotation_urad"), width("squareness_mrad")};
+  }
+
+  /// "X_mm = [-20, 20]", "C_deg = [0, 270]".
+  void read_measured() {
+    const auto table = root_.table("measured");
+    if (!table) return;
+    for (const Axis& axis : machine_.axes) {
+      const std::string key = letter_of(axis.name) + std::string(is_rotary(axis.name) ? "_deg" : "_mm");
+      const auto ends = table->numbers(key);
+      if (!ends) continue;
+      if (ends->size() != 2 || !(ends->front() <= ends->back()))
+        table->fail(key, "measured." + key + " is not the first and the last position",
+                    "write [FIRST, LAST]");
+      spec_.measured[axis.name] = {ends->front(), ends->back()};
+    }
   }
 
   void fail_location(const TomlTable& table, const std::string& key,

@@ -103,6 +103,16 @@ std::string priors_toml(const PriorWidths& priors) {
   return text;
 }
 
+std::string measured_toml(const ModelSpec& spec) {
+  std::string text;
+  for (const auto& [axis, ends] : spec.measured) {
+    const Unit unit = position_unit(axis);
+    text += fmt::format("{}{}_{} = {}\n", text.empty() ? "\n[measured]\n" : "", letter_of(axis), unit.suffix,
+                        array(std::vector<double>{ends.first, ends.second}, unit.si_per_unit));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string effect_toml(const EffectSpec& effect) {
@@ -191,7 +201,7 @@ std::string model_toml(const ModelSpec& spec, const std::string& machine_path, c
         fmt::format("{}_{} = {}\n", symbol.name(), edge_unit(symbol.component), edge_number(value, kMicro));
   }
   for (const LocationSymbol& symbol : spec.locations_off) text += symbol.name() + " = \"zero\"\n";
-  text += priors_toml(spec.priors);
+  text += priors_toml(spec.priors) + measured_toml(spec);
   for (const EffectSpec& effect : spec.effects) text += effect_toml(effect);
   return text;
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "volcal/identify/compensation/csv_tables.h"
@@ -79,16 +81,52 @@ void add_function(ErrorSymbol symbol, const ErrorRows& rows, ModelSpec& model) {
   }
 }
 
+/// Up to the first row of any error that is marked as extrapolated: rows in between hold what was measured.
+class MeasuredRows {
+ public:
+  void add(AxisName axis, const ErrorTableRow& row) {
+    if (row.extrapolated) {
+      beyond_[axis].push_back(row.position);
+    } else {
+      const auto [place, is_new] = measured_.emplace(axis, std::pair(row.position, row.position));
+      auto& [first, last] = place->second;
+      first = std::min(first, row.position);
+      last = std::max(last, row.position);
+    }
+  }
+  std::map<AxisName, std::pair<double, double>> ranges() const {
+    std::map<AxisName, std::pair<double, double>> ranges;
+    for (const auto& [axis, positions] : beyond_) {
+      const auto measured = measured_.find(axis);
+      if (measured == measured_.end()) continue;
+      auto [first, last] = measured->second;
+      double below = -std::numeric_limits<double>::infinity(), above = -below;
+      for (const double q : positions) {
+        if (q < first) below = std::max(below, q);
+        if (q > last) above = std::min(above, q);
+      }
+      ranges[axis] = {std::isfinite(below) ? below : first, std::isfinite(above) ? above : last};
+    }
+    return ranges;
+  }
+
+ private:
+  std::map<AxisName, std::vector<double>> beyond_;
+  std::map<AxisName, std::pair<double, double>> measured_;
+};
+
 FitResult result_of_tables(const std::filesystem::path& folder) {
   const TableMetadata metadata = read_table_metadata(table_file(folder, kMetadata));
   ModelSpec model;
   model.default_function.basis = "zero";
   std::map<ErrorSymbol, ErrorRows> functions;
+  MeasuredRows measured;
   for (const ErrorTableRow& row :
        read_function_table(table_file(folder, kErrorTables), TableContent::Errors)) {
     if (const auto location = LocationSymbol::parse(row.symbol)) model.locations[*location] = row.value;
     const auto symbol = ErrorSymbol::parse(row.symbol);
     if (!symbol) continue;
+    measured.add(symbol->axis, row);
     if (row.direction >= 0) functions[*symbol].forward[row.position] = row.value;
     if (row.direction <= 0) functions[*symbol].backward[row.position] = row.value;
   }
@@ -99,6 +137,7 @@ FitResult result_of_tables(const std::filesystem::path& folder) {
     add_function(symbol, rows, model);
     add_reversal(symbol, rows, metadata.machine.axis(symbol.axis).home, model);
   }
+  model.measured = measured.ranges();
   return stated_result(metadata.machine, model);
 }
 

@@ -149,6 +149,7 @@ ModelSpec resolve_knots(const ModelSpec& spec, const Campaign& campaign) {
   for (const ErrorSymbol symbol : modelled_motions(machine, result))
     result.functions[symbol] = resolved(result.function(symbol), symbol, campaign);
   resolve_effects(campaign, result);
+  result.measured.clear();  // what is measured is the campaign's
   return result;
 }
 

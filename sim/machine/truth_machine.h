@@ -77,8 +77,8 @@ class TruthMachine {
   void set_location(LocationSymbol symbol, double value);
   /// Adds +-reversal/2 by direction of approach of the moving axis; nothing where it is unknown.
   void set_reversal(ErrorSymbol symbol, double reversal);
-  /// Positioning grows by per_kelvin (T - 20 degC) (q - home), all over the travel. Evaluating it without the channel throws
-  /// std::invalid_argument.
+  /// Positioning grows by per_kelvin (T - 20 degC) (q - home), all over the travel. Evaluating it without the
+  /// channel throws std::invalid_argument.
   void set_scale_expansion(AxisName axis, double per_kelvin, const std::string& channel);
   /// Beyond these positions functions and state errors, expansions of scales apart, keep their last value.
   void hold_beyond(AxisName axis, double first, double last);

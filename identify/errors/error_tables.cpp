@@ -36,11 +36,12 @@ double shortest_piece(const FitResult& result, AxisName axis) {
   return shortest;
 }
 
-/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions, more where the functions
-/// have shorter pieces; the last step may be shorter.
+/// As asked for; otherwise steps of 1, 2 or 5 x 10^n that give 21 to 51 positions, more where these are long
+/// beside the pieces of the functions; the last step may be shorter.
 std::vector<double> table_positions(const FitResult& result, const Axis& axis,
                                     const ErrorTableOptions& options) {
   constexpr double kFewest = 20.0, kMost = 200.0;  // steps
+  constexpr double kOfPiece = 1.5;  // longest step; beyond two a wave of the pieces may be met at its zeros
   if (options.step > 0.0 && !is_rotary(axis.name)) return correction_positions(axis, options.step, false);
   const int positions = options.positions;
   std::vector<double> table;
@@ -51,8 +52,9 @@ std::vector<double> table_positions(const FitResult& result, const Axis& axis,
     return table;
   }
   const double edge = position_unit(axis.name).si_per_unit;
-  const double coarsest =
-      std::clamp(shortest_piece(result, axis.name), axis.travel() / kMost, axis.travel() / kFewest) / edge;
+  const double coarsest = std::clamp(kOfPiece * shortest_piece(result, axis.name), axis.travel() / kMost,
+                                     axis.travel() / kFewest) /
+                          edge;
   const double decade = std::pow(10.0, std::floor(std::log10(coarsest)));
   double step = decade;
   for (const double factor : {2.0, 5.0}) {

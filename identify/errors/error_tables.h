@@ -28,7 +28,7 @@ struct ErrorTableRow {
 
 struct ErrorTableOptions {
   /// Per axis, ends included; 0 = steps of 1/2/5 x 10^n giving 21 to 51 rows, up to 501 where functions have
-  /// shorter pieces.
+  /// short pieces.
   int positions = 0;
   double step = 0.0;  ///< of linear axes from home, m, with the ends of the travel; 0 = as `positions` says
   bool zero_plus = false;  ///< shift so that the + direction is zero at home (ISO/TR 16907, Table 1)

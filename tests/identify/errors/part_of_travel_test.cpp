@@ -90,7 +90,7 @@ TEST(PartOfTravel, ValuesAreThoseOfAShortAxis) {
 }
 
 /// Rows in steps of 50 mm would meet the wave of 100 mm at its zeros alone.
-TEST(PartOfTravel, TablesHaveARowForEveryPiece) {
+TEST(PartOfTravel, StepsOfTablesFollowThePieces) {
   double largest = 0.0, step = 0.0, before = 0.0;
   for (const ErrorTableRow& row : error_table(positioning_of(line_on(1.0)))) {
     if (row.symbol != "EXX" || row.position > kMeasured + 1e-9) continue;

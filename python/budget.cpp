@@ -41,6 +41,7 @@ struct BudgetOf {
     json["tool"] = tool;
     json["conditions"] = conditions_json(of, conditions);
     if (!tolerances) add_findings("invisible", of.rank.invisible, json);
+    if (!tolerances) add_findings("contradicted", contradictions(of), json);
     return json;
   }
   std::string text() const {

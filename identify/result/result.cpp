@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "volcal/model/description/finding_codes.h"
+
 namespace volcal {
 
 std::string_view to_string(FitStatus status) {
@@ -16,6 +18,17 @@ std::string_view to_string(FitStatus status) {
       return "not_converged";
   }
   return "";
+}
+
+std::vector<Finding> contradictions(const FitResult& result) {
+  std::vector<Finding> findings;
+  for (const Finding& each : result.findings) {
+    const bool contradicts = each.code == FindingCode::FitLackOfFit ||
+                             each.code == FindingCode::ModelContradicted ||
+                             each.code == FindingCode::FitNotConverged;
+    if (contradicts) findings.push_back(each);
+  }
+  return findings;
 }
 
 std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result) {

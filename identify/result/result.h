@@ -174,6 +174,10 @@ struct FitResult {
   std::shared_ptr<const Adjustment> adjustment;  ///< adjustment.h; null in a result read from files
 };
 
+/// Findings that the fit did not converge or that readings contradict its model: what is made of it is not
+/// the whole error.
+std::vector<Finding> contradictions(const FitResult& result);
+
 /// First and last position with readings of every axis that has functions, m or rad.
 std::map<AxisName, std::pair<double, double>> measured_positions(const FitResult& result);
 

@@ -111,11 +111,12 @@ int run_align(const AlignArguments& arguments) {
                                    {"squareness_before", angles_json(squareness_of(before))},
                                    {"squareness", angles_json(squareness_of(aligned.result))}};
     add_findings("invisible", before.rank.invisible, json);
+    add_findings("contradicted", contradictions(before), json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}\n{}written to {}\n", aligned.result.alignment, angles_text(aligned, before),
                arguments.output);
-    fmt::print("{}", findings_text(before.rank.invisible));
+    fmt::print("{}{}", findings_text(before.rank.invisible), findings_text(contradictions(before)));
   }
   return before.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

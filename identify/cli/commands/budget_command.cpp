@@ -68,12 +68,13 @@ int run_budget(const BudgetArguments& arguments) {
     json["tool"] = tool.name;
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("contradicted", contradictions(result), json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     fmt::print("{}{}", conditions_text(result, conditions),
                error_budget_text(budget, tool.name, result.coverage_factor, arguments.verbose));
     fmt::print("{}", findings_text(unmeasured_travel(result)));
-    fmt::print("{}", findings_text(result.rank.invisible));
+    fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

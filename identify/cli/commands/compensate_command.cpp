@@ -114,7 +114,7 @@ void print_text(const RewrittenProgram& done, const FitResult& result, const Com
   if (done.check) fmt::print("{}", program_check_text(*done.check));
   fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
   fmt::print("{}", findings_text(errors_in_no_table(result)));
-  fmt::print("{}", findings_text(result.rank.invisible));
+  fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
@@ -180,11 +180,13 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments) {
     add_findings("effects_not_compensated", left_by_tcp(result), json);
     json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    fmt::print("{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
-               findings_text(left_by_tcp(result)), findings_text(result.rank.invisible));
+    fmt::print("{}{}{}{}{}", tcp_summary_text(summary, arguments.check), conditions_text(result, conditions),
+               findings_text(left_by_tcp(result)), findings_text(result.rank.invisible),
+               findings_text(contradictions(result)));
     if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
@@ -204,6 +206,7 @@ int run_compensate(const CompensateArguments& arguments) {
     add_findings("effects_not_compensated", errors_in_no_table(result), json);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {

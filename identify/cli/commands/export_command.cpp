@@ -62,6 +62,7 @@ int run_export(const ExportArguments& arguments) {
     if (!arguments.gtc.empty()) json["gtc"] = arguments.gtc;
     if (!arguments.npz.empty()) json["npz"] = arguments.npz;
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("contradicted", contradictions(result), json);
     fmt::print("{}\n", json_text(json, 2));
   } else {
     if (!arguments.gtc.empty())
@@ -70,7 +71,7 @@ int run_export(const ExportArguments& arguments) {
     if (!arguments.npz.empty())
       fmt::print("written: {}, {} parameters and {} rows of tables, each with their covariance\n",
                  arguments.npz, parameters.names.size(), rows);
-    fmt::print("{}", findings_text(result.rank.invisible));
+    fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -307,6 +307,7 @@ int run_tables(const TablesArguments& arguments) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
     if (made) json = tables_json(*made, arguments, result.machine);
     add_findings("invisible", result.rank.invisible, json);
+    add_findings("contradicted", contradictions(result), json);
     json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
     add_findings("beyond_readings", unmeasured_travel(result), json);
     if (!errors.empty()) json["volumetric_errors"] = volumetric_json(result, errors);
@@ -320,7 +321,7 @@ int run_tables(const TablesArguments& arguments) {
       fmt::print("{}", corrections_text(result.machine, made->read_back, points_of(result, arguments)));
       print_tables(*made, arguments, result);
     }
-    fmt::print("{}", findings_text(result.rank.invisible));
+    fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -13,6 +13,7 @@ namespace volcal::cli {
   STUDY(effect_tables_command)      \
   STUDY(five_axis_study_command)    \
   STUDY(hidden_study)               \
+  STUDY(mill_study_command)         \
   STUDY(planning_study_command)     \
   STUDY(previews_study)             \
   STUDY(rules_study)

@@ -1,0 +1,51 @@
+/// Mills whose error functions are all missing, counted by the program; docs/studies.md has the full count.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "tests/support/long_tests.h"
+#include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
+
+namespace volcal {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::run_program;
+
+nlohmann::json mills(const std::string& options) {
+  const auto run = run_program("study mills --json " + options);
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  return nlohmann::json::parse(run.output).at("campaigns");
+}
+
+/// One mill in every run, at night eight: most of what is hidden comes back, and other poses are predicted.
+TEST(MillsStudy, ErrorFunctionsComeBack) {
+  for (const auto& mill : mills(testing::long_tests() ? "-n 8 --seed 21" : "-n 1 --seed 24")) {
+    const auto hidden = mill.at("hidden").get<std::set<std::string>>();
+    const auto found = mill.at("found").get<std::set<std::string>>();
+    EXPECT_TRUE(std::ranges::includes(hidden, found)) << mill.dump();
+    EXPECT_GE(2 * found.size(), hidden.size()) << mill.dump();
+    for (const std::string other : mill.at("other_functions")) EXPECT_FALSE(hidden.contains(other)) << other;
+    EXPECT_LT(mill.at("offered_um").get<double>(), 0.3 * mill.at("given_um").get<double>()) << mill.dump();
+  }
+}
+
+/// What is finished is not run again, and another seed is refused.
+TEST(MillsStudy, GoesOnWhereItWasInterrupted) {
+  const testing::ScratchFolder scratch;
+  const std::string folder = (scratch.path() / "kept").string();
+  const auto one = mills("-n 1 --seed 24 -o " + folder);
+  EXPECT_EQ(mills("-n 1 --seed 24 --resume -o " + folder), one);
+  EXPECT_THAT(run_program("study mills -n 1 --seed 24 -o " + folder).errors, HasSubstr("--resume"));
+  EXPECT_THAT(run_program("study mills -n 1 --seed 99 --resume -o " + folder).errors,
+              HasSubstr("another seed"));
+}
+
+}  // namespace
+}  // namespace volcal

@@ -36,6 +36,14 @@ TEST(MillsStudy, ErrorFunctionsComeBack) {
   }
 }
 
+/// The effect does better than any one of the error functions that are missing, and not beside all of them.
+TEST(MillsStudy, NoEffectIsNamedThatMissingErrorFunctionsMayHold) {
+  const auto alone = mills("-n 1 --seed 24 --without open-errors");
+  EXPECT_FALSE(alone.at(0).at("wrong_effects").empty()) << "another mill tells what is tested here";
+  const auto beside = mills("-n 1 --seed 24");
+  EXPECT_TRUE(beside.at(0).at("wrong_effects").empty()) << beside.dump();
+}
+
 /// What is finished is not run again, and another seed is refused.
 TEST(MillsStudy, GoesOnWhereItWasInterrupted) {
   const testing::ScratchFolder scratch;

@@ -25,6 +25,7 @@ constexpr auto kWords = [] {
       {ComponentMargin, "component-margin", "a wider margin for displacements of independent components"},
       {NamesTogether, "names-together", "several names are tried at once against a scan"},
       {AbsorbedEffects, "absorbed-effects", "effects that the noise may hold are tested jointly with it"},
+      {OpenErrors, "open-errors", "no effect that errors which the model holds at zero may hold"},
       {OneAmplitude, "one-amplitude",
        "no name of several axes is added whose amplitude differs between them"},
       {Departure, "departure", "a name that is weak beside the others leaves"},

@@ -21,6 +21,7 @@ enum class SearchRule {
   ComponentMargin,   ///< a wider margin for displacements whose components are independent
   NamesTogether,     ///< several names at once against a scan
   AbsorbedEffects,   ///< effects that the noise may hold
+  OpenErrors,        ///< no effect that errors which the model holds at zero may hold
   OneAmplitude,      ///< no name of several axes is added whose amplitude differs between them
   Departure,         ///< a name that is weak beside the others leaves
   Exchange,          ///< a better name replaces another

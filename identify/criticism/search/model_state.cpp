@@ -11,6 +11,12 @@
 #include "volcal/identify/solve/correlated_adjustment.h"
 
 namespace volcal {
+namespace {
+
+constexpr int kShapeSteps = 20;
+constexpr double kSettledShape = 0.05;  // of its standard uncertainty
+
+}  // namespace
 
 void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all) {
   const Eigen::Index before = all.cols();
@@ -32,6 +38,24 @@ Eigen::MatrixXd accept(const LinearModel& model, const Family& family, const Fam
     append_columns(*derivative, columns);
   }
   return columns;
+}
+
+NoiseProblem with_columns(NoiseProblem problem, const Eigen::MatrixXd& columns,
+                          const Eigen::VectorXd& precision) {
+  if (columns.cols() == 0) return problem;
+  const Eigen::Index before = problem.jacobian.cols(), count = before + columns.cols();
+  Eigen::MatrixXd all(problem.jacobian.rows(), count);
+  all.leftCols(before) = problem.jacobian;
+  all.rightCols(columns.cols()) = columns;
+  problem.jacobian = std::move(all);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(count, count);
+  prior.topLeftCorner(problem.prior_mean.size(), problem.prior_mean.size()) = problem.prior_precision;
+  prior.diagonal().tail(columns.cols()) = precision;
+  problem.prior_precision = std::move(prior);
+  const Eigen::Index known = problem.prior_mean.size();
+  problem.prior_mean.conservativeResize(count);
+  problem.prior_mean.tail(count - known).setZero();
+  return problem;
 }
 
 ModelState::ModelState(LinearModel model, std::shared_ptr<const SearchSetting> setting)
@@ -192,6 +216,37 @@ std::vector<FamilyTest> ModelState::moved_effects(const Projector& all) const {
   return moved;
 }
 
+ModelState ModelState::with_settled_shapes() const {
+  ModelState next = *this;
+  for (int step = 0; step < kShapeSteps && next.move_shapes(); ++step) next.tests_.reset();
+  return next;
+}
+
+/// False: no shape has moved by more than a small part of its uncertainty.
+bool ModelState::move_shapes() {
+  const auto all = projector_of_all_readings();
+  const Eigen::MatrixXd covariance = all->accepted_covariance();
+  const std::vector<FamilyTest> moved = moved_effects(*all);
+  std::vector<std::size_t> others;
+  Eigen::Index at = 0;
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    const Eigen::Index amplitudes = family_of(added_[i]).amplitudes();
+    if (added_[i].columns.cols() > amplitudes) {
+      const double u = std::sqrt(covariance(at + amplitudes, at + amplitudes));
+      if (std::abs(moved[i].shape[0] - added_[i].test.shape[0]) > kSettledShape * u) others.push_back(i);
+    }
+    at += added_[i].columns.cols();
+  }
+  for (const std::size_t i : others) {
+    added_[i].test.shape = moved[i].shape;
+    added_[i].test.score.amplitude = moved[i].score.amplitude;
+    const auto without = projector_without({i});
+    added_[i].columns = accept(model_, family_of(added_[i]), added_[i].test, *without);
+  }
+  if (!others.empty()) find_noise();
+  return !others.empty();
+}
+
 NoiseEstimate ModelState::noise_with_uncertainty() const {
   return estimate_noise(problem(), noise_options(), &noise_estimate_);
 }
@@ -247,25 +302,12 @@ Eigen::VectorXd ModelState::residual() const {
   return residual;
 }
 
-NoiseProblem ModelState::problem() const {
-  NoiseProblem problem = model_.problem();
-  if (added_.empty()) return problem;
-  Eigen::Index at = problem.jacobian.cols(), all = at;
-  for (const AddedEffect& effect : added_) all += effect.columns.cols();
-  Eigen::MatrixXd columns(problem.jacobian.rows(), all);
-  columns.leftCols(at) = problem.jacobian;
-  for (const AddedEffect& effect : added_) {
-    columns.middleCols(at, effect.columns.cols()) = effect.columns;
-    at += effect.columns.cols();
+NoiseProblem ModelState::problem(const std::set<std::size_t>& left_out) const {
+  Eigen::MatrixXd columns(model_.problem().jacobian.rows(), 0);
+  for (std::size_t i = 0; i < added_.size(); ++i) {
+    if (!left_out.contains(i)) append_columns(added_[i].columns, columns);
   }
-  problem.jacobian = std::move(columns);
-  const Eigen::Index before = problem.prior_mean.size(), count = problem.jacobian.cols();
-  Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(count, count);
-  precision.topLeftCorner(before, before) = problem.prior_precision;
-  problem.prior_precision = std::move(precision);
-  problem.prior_mean.conservativeResize(count);
-  problem.prior_mean.tail(count - before).setZero();
-  return problem;
+  return with_columns(model_.problem(), columns, Eigen::VectorXd::Zero(columns.cols()));
 }
 
 bool ModelState::has(std::size_t family) const {

@@ -67,6 +67,9 @@ class ModelState {
   /// The added effects at their amplitudes and, where the readings see a shape move, at the shape that `all`
   /// finds: this model's projector from all readings.
   std::vector<FamilyTest> moved_effects(const Projector& all) const;
+  /// With the shapes that the readings see move where all readings together want them beside all that was
+  /// added: moved_effects() again and again. Each was found when fewer effects were in the model.
+  ModelState with_settled_shapes() const;
   /// Readings that are left out and no outliers of this model.
   std::vector<std::size_t> explained_outliers() const;
   /// With tests().
@@ -97,8 +100,8 @@ class ModelState {
 
   /// Reading minus prediction, all observations.
   Eigen::VectorXd residual() const;
-  /// The linear model with the added effects as further columns.
-  NoiseProblem problem() const;
+  /// The linear model with the added effects, but those in `left_out`, as further columns.
+  NoiseProblem problem(const std::set<std::size_t>& left_out = {}) const;
   /// Without some of the added effects, by their places.
   std::unique_ptr<Projector> projector_without(const std::set<std::size_t>& left_out) const;
   /// At the same noise and smoothing, `left_out` of the added effects.
@@ -113,6 +116,7 @@ class ModelState {
  private:
   std::unique_ptr<Projector> make_projector(const NoiseData& data, const std::vector<NoiseParameters>& noise,
                                             const std::set<std::size_t>& left_out = {}) const;
+  bool move_shapes();
   void accept_added(const std::set<std::size_t>& left_out, Projector& projector) const;
   void find_noise();
   bool refine_shape_of_last();
@@ -130,6 +134,10 @@ class ModelState {
 };
 
 void append_columns(const Eigen::MatrixXd& more, Eigen::MatrixXd& all);
+
+/// With further columns, the last, of independent amplitudes about 0; `precision` of each, 0 = free.
+NoiseProblem with_columns(NoiseProblem problem, const Eigen::MatrixXd& columns,
+                          const Eigen::VectorXd& precision);
 
 /// Takes an effect into the model of `projector`: columns of its amplitudes, of those alone that stand
 /// (orders of Family), and of its shape where the readings see it move.

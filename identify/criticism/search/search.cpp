@@ -13,6 +13,7 @@
 #include "volcal/identify/criticism/search/errors_first.h"
 #include "volcal/identify/criticism/search/joint_noise.h"
 #include "volcal/identify/criticism/search/one_cause.h"
+#include "volcal/identify/criticism/search/open_errors.h"
 #include "volcal/identify/criticism/search/unknown_findings.h"
 #include "volcal/identify/statistics/chi_squared.h"
 #include "volcal/model/description/finding_codes.h"
@@ -92,8 +93,16 @@ void Search::run() {
     while (may_draw() && draw_surface()) explain();
   } while (widen_surface());
   replace_surfaces();
+  settle_shapes();
   if (!options_.climb) keep_one_step();
   recall_rejected();
+}
+
+/// Where error functions came back: each takes part of what a shape was found by before it.
+void Search::settle_shapes() {
+  if (!any_function_came_back(*state_)) return;
+  state_ = state_->with_settled_shapes();
+  test();
 }
 
 void Search::report(const std::string& stage, double done) const {
@@ -231,6 +240,11 @@ void Search::recall_rejected() {
   }
 }
 
+void Search::test() {
+  state_ = state_->tested();
+  open_.emplace(*state_);
+}
+
 void Search::restart_with(const std::vector<FamilyTest>& effects) {
   state_ = base_;
   for (const FamilyTest& effect : effects) add(effect);
@@ -255,10 +269,6 @@ bool Search::may_be_added(const FamilyTest& test) const {
 }
 
 /// The best of those that are not in the model; null: none.
-const FamilyTest* Search::leading_exceeding() const {
-  return leading_exceeding([](const FamilyTest& /*any*/) { return true; });
-}
-
 const FamilyTest* Search::leading_exceeding(const std::function<bool(const FamilyTest&)>& among) const {
   const ModelTests& tests = state_->tests();
   const auto found = std::ranges::find_if(tests.exceeding, [&](std::size_t i) {
@@ -267,16 +277,25 @@ const FamilyTest* Search::leading_exceeding(const std::function<bool(const Famil
   return found == tests.exceeding.end() ? nullptr : &tests.families[*found];
 }
 
-bool Search::something_exceeds() const {
-  return leading_exceeding() != nullptr || state_->tests().any_scan_exceeds();
+/// What leads, an effect beyond the errors of the machine only where it comes before `own`, the best of
+/// these, and exceeds beside those that the model holds at zero.
+const FamilyTest* Search::leading_beside_open_errors(const FamilyTest* own) {
+  return leading_exceeding([&](const FamilyTest& test) {
+    return is_left_out(*setting_, test) ||
+           ((own == nullptr || comes_before(*setting_, test, *own)) && open_->admits(test));
+  });
+}
+
+bool Search::something_exceeds() {
+  return leading_beside_open_errors(nullptr) != nullptr || state_->tests().any_scan_exceeds();
 }
 
 /// False when nothing exceeds, or something that is in no catalogue does better.
 bool Search::add_leading() {
-  const FamilyTest* best = leading_exceeding();
-  if (best == nullptr) return false;
   const FamilyTest* own =
       leading_exceeding([this](const FamilyTest& test) { return is_left_out(*setting_, test); });
+  const FamilyTest* best = leading_beside_open_errors(own);
+  if (best == nullptr) return false;
   const FamilyTest* first = first_to_add(*setting_, *best, own, [this](const FamilyTest& name) {
     return rules().decide(SearchRule::ScanVeto, [&] { return any_scan_does_better(*state_, name); });
   });
@@ -296,7 +315,7 @@ bool Search::add_several() {
   if (!tried_together_.insert(start).second) return false;
   for (int names = 1; names <= kThresholds.most_together; ++names) {
     if (effects_beyond_errors(*state_) >= options_.most) break;
-    const FamilyTest* best = leading_exceeding();
+    const FamilyTest* best = leading_beside_open_errors(nullptr);
     if (best == nullptr && names == 1) best = best_by_variables_of_scan();
     if (best == nullptr) break;
     rules().tell(SearchRule::NamesTogether);
@@ -312,7 +331,7 @@ bool Search::add_several() {
 }
 
 /// Of the names that go with nothing but what the most improbable scan goes with; null: no scan exceeds.
-const FamilyTest* Search::best_by_variables_of_scan() const {
+const FamilyTest* Search::best_by_variables_of_scan() {
   const std::vector<const GenericTest*> scans = state_->tests().exceeding_scans();
   if (scans.empty()) return nullptr;
   const GenericTest& least = **std::ranges::min_element(scans, {}, &GenericTest::log10_p);
@@ -323,7 +342,7 @@ const FamilyTest* Search::best_by_variables_of_scan() const {
     const bool among = std::ranges::all_of(own, [&](const Variable& variable) {
       return std::ranges::find(least.variables, variable) != least.variables.end();
     });
-    if (among && !own.empty()) best = &test;
+    if (among && !own.empty() && open_->admits(test)) best = &test;
   }
   return best;
 }
@@ -359,8 +378,8 @@ bool Search::explain_together(std::size_t first) const {
 bool Search::add_absorbed() {
   if (!rules().follows(SearchRule::AbsorbedEffects)) return false;
   report("effects that noise may hold", 0.9);
-  const std::optional<FamilyTest> best =
-      JointNoiseTest(*state_).effect([this](const FamilyTest& test) { return may_be_added(test); });
+  const std::optional<FamilyTest> best = JointNoiseTest(*state_).effect(
+      [&](const FamilyTest& test) { return may_be_added(test) && open_->admits(test); });
   if (!best) return false;
   rules().tell(SearchRule::AbsorbedEffects);
   add(*best);
@@ -386,14 +405,17 @@ bool Search::compare_with_rivals(bool may_change) {
     const std::vector<FamilyTest> tests =
         refined_tests(*setting_, state_->model(), *state_->projector_without({i}));
     const FamilyTest& own = tests[kept[i].family];
-    const auto is_weak = [&] { return setting_->family_wise_log10_p(own) > log10_family_risk(); };
+    OpenErrors open(*state_, {i});
+    const auto is_weak = [&] {
+      return setting_->family_wise_log10_p(own) > log10_family_risk() || !open.admits(own);
+    };
     if (may_change && rules().decide(SearchRule::Departure, is_weak)) {
       dropped_.insert(own.family);
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
       restart_with(kept);
       return true;
     }
-    const FamilyTest* best = leading(tests, own.family);
+    const FamilyTest* best = leading(tests, own, open);
     const auto is_better = [&] { return best != nullptr && comes_before(*setting_, *best, own); };
     if (may_change && rules().decide(SearchRule::Exchange, is_better)) {
       kept[i] = *best;
@@ -433,10 +455,12 @@ bool Search::near(const FamilyTest& own, const FamilyTest& other) const {
   });
 }
 
-/// Of those that are not in the model, `but` one that is.
-const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, std::size_t but) const {
+/// Of those that are not in the model, but `own`, which is.
+const FamilyTest* Search::leading(const std::vector<FamilyTest>& tests, const FamilyTest& own,
+                                  OpenErrors& open) const {
   return leading_errors_first(*setting_, tests, [&](const FamilyTest& test) {
-    return may_be_added(test) || (test.family == but && test.score.dof > 0);
+    if (test.family == own.family) return test.score.dof > 0;
+    return may_be_added(test) && (!comes_before(*setting_, test, own) || open.admits(test));
   });
 }
 

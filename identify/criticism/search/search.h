@@ -7,7 +7,8 @@
 ///   1. climb: the leading effect of the catalogue is added while it exceeds the noise and no scan does
 ///      better; where a scan does, up to three names together; where nothing exceeds, what the noise may have
 ///      absorbed (joint_noise.h). An error of the machine that the model holds at zero comes before effects
-///      that are no better, whatever the scans do (errors_first.h),
+///      that are no better, whatever the scans do (errors_first.h), and while some are missing an effect is
+///      added only where it stands out beside all of them (open_errors.h); shapes are settled in the end,
 ///   2. every added effect is compared with all others, the rest being in the model, and may be exchanged or
 ///      leave,
 ///   3. what is no name is rejected (rejection.h), or a rival that stands takes its place,
@@ -31,6 +32,7 @@
 
 #include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/criticism/search/one_cause.h"
+#include "volcal/identify/criticism/search/open_errors.h"
 #include "volcal/identify/criticism/search/rejection.h"
 #include "volcal/identify/criticism/search/surface_search.h"
 
@@ -81,14 +83,14 @@ class Search {
   void recall_rejected();
   void rebuild(const std::vector<SurfaceTest>& surfaces, const std::vector<FamilyTest>& effects);
   void add(const FamilyTest& effect) { state_ = state_->with(effect); }
-  void test() { state_ = state_->tested(); }
+  void test();
   void restart_with(const std::vector<FamilyTest>& effects);
   void climb();
   bool may_be_added(const FamilyTest& test) const;
-  const FamilyTest* leading_exceeding() const;
   const FamilyTest* leading_exceeding(const std::function<bool(const FamilyTest&)>& among) const;
-  const FamilyTest* best_by_variables_of_scan() const;
-  bool something_exceeds() const;
+  const FamilyTest* leading_beside_open_errors(const FamilyTest* own);
+  const FamilyTest* best_by_variables_of_scan();
+  bool something_exceeds();
   bool add_leading();
   bool add_several();
   bool add_absorbed();
@@ -96,10 +98,12 @@ class Search {
   void settle(const std::function<void()>& after_a_change);
   bool compare_with_rivals(bool may_change);
   bool near(const FamilyTest& own, const FamilyTest& other) const;
-  const FamilyTest* leading(const std::vector<FamilyTest>& tests, std::size_t but) const;
+  const FamilyTest* leading(const std::vector<FamilyTest>& tests, const FamilyTest& own,
+                            OpenErrors& open) const;
   void reject();
   void recheck(const std::set<std::size_t>& stood);
   void keep(const std::vector<FamilyTest>& effects);
+  void settle_shapes();
   void keep_one_step();
 
   SearchOptions options_;
@@ -108,6 +112,7 @@ class Search {
   std::optional<ModelState> given_;
   std::optional<ModelState> base_;  ///< the given model with the surfaces that were drawn
   std::optional<ModelState> state_;
+  std::optional<OpenErrors> open_;  ///< of `state_`, once it is tested
   Reasons rejected_;
   Reasons rejected_before_;                         ///< before the last surface was drawn
   std::set<std::size_t> dropped_;                   ///< not significant beside the others

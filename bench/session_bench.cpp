@@ -104,9 +104,14 @@ void measure_session(const SessionArguments& arguments) {
     times.measure("the ranking behind it", [&] { session->rank(); });
     times.measure("a refit", [&] { session->take(session->refit()); });
     times.measure("the ranking behind a refit", [&] { session->rank(); });
-    if (names.size() < 2) continue;
-    times.measure("an effect added to a refit", [&] { session->add(of(k + 1)); });
+    session->go_to(0);
+    times.measure("preparing refits", [&] { session->take(session->preparation()); });
+    session->add(names.front());
+    times.measure("a prepared refit", [&] { session->take(session->refit()); });
     times.measure("the ranking behind that", [&] { session->rank(); });
+    if (names.size() < 2) continue;
+    times.measure("an effect added to a refit", [&] { session->add(names[1]); });
+    times.measure("the ranking behind two", [&] { session->rank(); });
   }
   fmt::print("{} readings, {} threads\n", session->linear().size(), arguments.threads);
   times.print();

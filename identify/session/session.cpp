@@ -27,6 +27,7 @@ namespace {
 constexpr double kContradiction = 0.25;       // of U95: a preview that is off by more was wrong
 constexpr double kShareOfSearch = 0.8;        // of the time of a climb
 constexpr std::size_t kPreviewedAtOnce = 12;  // of the ranking
+constexpr std::size_t kPrepared = 2;          // of the ranking: seconds of a processor each at 10^5 readings
 constexpr std::size_t kKeptFigures = 2;       // of models: 100 to 200 MB at 10^5 readings each
 constexpr std::size_t kKeptModels = 8;        // linear models in memory; those of previews share a full fit's
 
@@ -153,6 +154,7 @@ void Session::go(std::size_t number) {
   std::size_t models = 0;
   for (const std::size_t each : recent_) {
     Node& of = *nodes_[each];
+    if (each != number) of.prepared.reset();
     const Fitted* base = of.recipe.base.get();
     const bool known = std::ranges::find(kept, base) != kept.end();
     if (++models <= kKeptModels && (known || kept.size() < kKeptFits)) {
@@ -488,13 +490,47 @@ SelectionSummary Session::summary(const std::vector<bool>& selected) const {
   return out;
 }
 
-const SessionModel& Session::add(const EffectName& effect) {
-  const FamilyTest& test = test_of(effect);
+/// The current model with an effect more: what is prepared, or made here.
+std::shared_ptr<const Session::Node> Session::node_with(const FamilyTest& test) {
   const Node& here = node();
   const SearchSetting& setting = *here.recipe.setting;
-  auto next = std::make_unique<Node>(here.with(test, finding(setting, test)));
-  return append(current_, std::move(next), "+ " + setting.families[test.family].label(),
-                ModelStanding::Preview);
+  if (here.prepared) {
+    const auto known = here.prepared->find(setting.families[test.family].name());
+    if (known != here.prepared->end()) return known->second;
+  }
+  return std::make_shared<const Node>(here.with(test, finding(setting, test)));
+}
+
+SessionWork Session::preparation() {
+  renew_setting();
+  const SearchSetting& setting = *node().recipe.setting;
+  std::map<EffectName, std::shared_ptr<const Node>> ahead;
+  for (const FamilyTest* test : ranked()) {
+    if (ahead.size() == kPrepared || setting.family_wise_log10_p(*test) > log10_family_risk()) break;
+    const Family& family = setting.families[test->family];
+    if (!family.effect) continue;
+    std::shared_ptr<const Node> next = node_with(*test);
+    next->shared_refit();
+    ahead.emplace(family.name(), std::move(next));
+  }
+  node().prepared = ahead;
+  return interruptible([ahead = std::move(ahead)](const SessionProgress& progress) -> SessionChange {
+    double done = 0.0;
+    for (const auto& [effect, next] : ahead) {
+      report(progress, next->effects.back().label, done);
+      next->shared_refit()->get(progress).tests->get_unless_stopped();
+      done += 1.0 / static_cast<double>(ahead.size());
+    }
+    return [](Session&) {};
+  });
+}
+
+bool Session::is_prepared() const { return node().prepared.has_value(); }
+
+const SessionModel& Session::add(const EffectName& effect) {
+  const FamilyTest& test = test_of(effect);
+  const std::string change = "+ " + node().recipe.setting->families[test.family].label();
+  return append(current_, std::make_unique<Node>(*node_with(test)), change, ModelStanding::Preview);
 }
 
 /// Throws std::invalid_argument.
@@ -559,21 +595,21 @@ SessionWork Session::confirmation(std::size_t number) const {
 
 SessionWork Session::refit(std::size_t number) const {
   const Node& of = *nodes_.at(number);
-  return interruptible(
-      [recipe = of.recipe, state = of.state(), number](const SessionProgress& progress) -> SessionChange {
-        if (recipe.added.empty()) return [](Session&) {};
-        report(progress, "noise with what was added", 0.1);
-        RefittedModel found = refitted(recipe, state, progress);
-        report(progress, "done", 1.0);
-        return [found = std::move(found), base = recipe.base, number](Session& session) {
-          SessionModel& shown = session.models_[number];
-          Node& here = *session.nodes_[number];
-          if (shown.standing != ModelStanding::Preview || here.recipe.base != base) return;
-          here.becomes(found);
-          shown.standing = ModelStanding::Refitted;
-          session.describe(here, shown);
-        };
-      });
+  return interruptible([base = of.recipe.base, changes = !of.recipe.added.empty(), refit = of.shared_refit(),
+                        number](const SessionProgress& progress) -> SessionChange {
+    if (!changes) return [](Session&) {};
+    report(progress, "noise with what was added", 0.1);
+    const RefittedModel& found = refit->get(progress);
+    report(progress, "done", 1.0);
+    return [found, base, number](Session& session) {
+      SessionModel& shown = session.models_[number];
+      Node& here = *session.nodes_[number];
+      if (shown.standing != ModelStanding::Preview || here.recipe.base != base) return;
+      here.becomes(found);
+      shown.standing = ModelStanding::Refitted;
+      session.describe(here, shown);
+    };
+  });
 }
 
 namespace {

@@ -4,11 +4,11 @@
 /// A session holds a campaign, the model that was fitted to it, and a tree of models that came of it by
 /// adding and removing effects. A step is first a linear preview: the fitted model's derivatives, with noise
 /// and smoothing of its last full fit, in tens of milliseconds. A refit lets the noise give back what it took
-/// for drift or offsets of lines, and takes along what is not linear; smoothing and derivatives are kept. The
-/// full fit finds all anew and says whether what stood before held. No step is lost: undo, redo and go_to()
-/// move between models, and further steps from an earlier one are another branch. Lines that judge are chosen
-/// before the first step and choose nothing; what a person tries counts as a test, like those of the
-/// catalogue.
+/// for drift or offsets of lines and finds smoothing anew, and takes along what is not linear; resolution and
+/// derivatives are kept. The full fit finds all anew and says whether what stood before held. No step is
+/// lost: undo, redo and go_to() move between models, and further steps from an earlier one are another
+/// branch. Lines that judge are chosen before the first step and choose nothing; what a person tries counts
+/// as a test, like those of the catalogue.
 ///
 ///   Session session(campaign, model, {});
 ///   session.rank();                                   // effects of the catalogue, best first
@@ -64,7 +64,7 @@ using SessionWork = std::function<SessionChange(const SessionProgress&)>;
 enum class ModelStanding {
   Fitted,       ///< by a full fit
   Preview,      ///< linear, at the noise of the last full fit or refit
-  Refitted,     ///< noise found again in what the effects leave, smoothing of the last full fit
+  Refitted,     ///< noise and smoothing found again, functions and derivatives of the last full fit
   Contradicted  ///< by a full fit, which differs from the preview or refit by more than U95/4
 };
 
@@ -190,11 +190,18 @@ class Session {
 
   /// A full fit without an effect that was added. Throws std::invalid_argument where there is no such effect.
   SessionWork removal(const EffectName& effect) const;
-  /// A linear preview with its noise found again, shapes of its effects moved to where readings want them,
-  /// and residuals of the exact model; 0.25 s of processor time at 6,720 readings. Nothing changes
+  /// A linear preview with its noise and smoothing found again, shapes of its effects moved to where readings
+  /// want them, and residuals of the exact model; 0.25 s of processor time at 6,720 readings. Nothing changes
   /// where it has been refitted or fitted. Throws std::out_of_range.
   SessionWork refit(std::size_t model) const;
   SessionWork refit() const { return refit(current_); }
+  /// Makes refits of the current model with each of the effects that lead its ranking, and the tests behind
+  /// them, before anybody asks: refit() and rank() then take what is there. Kept until another model is the
+  /// current one. Not beside other work of the session: who asks for what is being made waits for it, and it
+  /// asks `progress` meanwhile.
+  SessionWork preparation();
+  /// Of the current model.
+  bool is_prepared() const;
   /// A model of the tree by a full fit, noise and smoothing anew; nothing changes where it is one already.
   /// Throws std::out_of_range.
   SessionWork confirmation(std::size_t model) const;
@@ -227,6 +234,7 @@ class Session {
  private:
   class Fitted;
   class SharedTests;
+  class SharedRefit;
   struct Recipe;
   struct Refit;
   struct RefittedModel;
@@ -247,6 +255,7 @@ class Session {
   const ModelState& scanned();
   Eigen::VectorXd previewed_residual(const FamilyTest& test);
   void preview_leading();
+  std::shared_ptr<const Node> node_with(const FamilyTest& test);
   std::vector<const FamilyTest*> ranked();
   const FamilyTest& test_of(const EffectName& effect);
   const SessionModel& append(std::size_t parent, std::unique_ptr<Node> made, std::string change,

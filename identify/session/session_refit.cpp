@@ -31,8 +31,8 @@ bool any_shape_moved(const std::vector<FamilyTest>& before, const std::vector<Fa
 
 }  // namespace
 
-/// The noise first, about the preview's amplitudes; then, at that noise, what is not linear in the parameters
-/// and in the shapes of effects, and which readings are no outliers any more.
+/// The noise first, about the preview's amplitudes, and smoothing under it; then, at these, what is not
+/// linear in the parameters and in the shapes of effects, and which readings are no outliers any more.
 Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState& state,
                                          const SessionProgress& progress) {
   const auto tell = [&](const std::string& stage, double done) {
@@ -58,11 +58,21 @@ Session::RefittedModel Session::refitted(const Recipe& preview, const ModelState
   Refit refit;
   refit.noise = state.readjusted_noise(*preview.projector_without_effects());
   if (preview.refit) {
+    refit.smoothing = preview.refit->smoothing;
     refit.residual = preview.refit->residual;
     refit.reinstated = preview.refit->reinstated;
   }
-  tell("the model at this noise", 0.4);
   recipe.refit = std::make_shared<const Refit>(refit);
+  if (!state.model().smoothing().empty()) {
+    tell("smoothing", 0.2);
+    const ModelState at_noise = recipe.make();
+    const Projector& projector = at_noise.projector();
+    refit.smoothing = at_noise.model()
+                          .smoothed(projector.gram(), projector.observations(), at_noise.setting().threads)
+                          .smoothing();
+    recipe.refit = std::make_shared<const Refit>(refit);
+  }
+  tell("the model at this noise", 0.4);
   const ModelState plain = recipe.with_residuals_of_fit();
   const auto all = plain.projector_of_all_readings();
   const RefittedModel found = make(plain, *all, refit);

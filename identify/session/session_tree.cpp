@@ -135,6 +135,7 @@ ModelState Session::Recipe::without_effects() const {
 
 ModelState Session::Recipe::with_residuals_of_fit() const {
   LinearModel model = base->state().model();
+  if (!refit->smoothing.empty()) model = model.with_smoothing(refit->smoothing);
   if (!refit->reinstated.empty()) model = model.with_reinstated(refit->reinstated);
   return {std::move(model), setting, refit->noise};
 }
@@ -156,7 +157,8 @@ std::shared_ptr<const Projector> Session::Recipe::projector_without_effects() co
 /// A refit of the fit itself has other residuals, and the columns of the fit's own projector.
 std::shared_ptr<const Projector> Session::Recipe::projector_at(const Fitted& least,
                                                                const ModelState& state) const {
-  if (base.get() != &least || !reinstated().empty()) return state.projector_at(least.noise());
+  if (base.get() != &least || !reinstated().empty())
+    return state.projector_at(least.noise(), base->smoothing());
   auto projector =
       std::make_shared<Projector>(base->state().projector().with_residual(state.model().problem().residual));
   for (const AddedEffect& effect : state.added()) projector->accept(effect.columns);
@@ -179,14 +181,29 @@ std::shared_ptr<const Session::FiguresOfModel> Session::FiguresOfModel::of(
         recipe.base, against, recipe.reinstated(), KeptFigures(state, against->noise(), projector)});
   };
   if (!other_readings && recipe.base == against) return figures(state.projector());
-  return figures(*state.projector_at(against->noise()));
+  return figures(*state.projector_at(against->noise(), recipe.base->smoothing()));
 }
 
 const CatalogueTests& Session::SharedTests::get() {
-  const UndisturbedLock lock(mutex_);
+  const Interruption::Share undisturbed{nullptr};
+  return get_unless_stopped();
+}
+
+const CatalogueTests& Session::SharedTests::get_unless_stopped() {
+  const std::lock_guard lock(mutex_);
   if (!made_) {
     made_.emplace(make_());
     make_ = {};
+  }
+  return *made_;
+}
+
+const Session::RefittedModel& Session::SharedRefit::get(const SessionProgress& progress) {
+  const std::lock_guard lock(mutex_);
+  if (!made_) {
+    made_ = refitted(preview_, state_, progress);
+    made_->tests =
+        std::make_shared<SharedTests>([own = made_->recipe] { return CatalogueTests(own.make()); });
   }
   return *made_;
 }
@@ -209,6 +226,7 @@ void Session::Node::becomes(Recipe other) {
 
 void Session::Node::becomes(RefittedModel refitted) {
   becomes(std::move(refitted.recipe));
+  tests = std::move(refitted.tests);
   state_ = std::move(refitted.state);
   all_readings = std::move(refitted.all_readings);
 }
@@ -223,6 +241,8 @@ void Session::Node::with_setting(std::shared_ptr<const SearchSetting> setting) {
   recipe.setting = std::move(setting);
   tests = std::make_shared<SharedTests>(tests->get().with_more(*state_));
   ranking.reset();
+  prepared.reset();
+  refit_.reset();
 }
 
 Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding) const {
@@ -248,6 +268,11 @@ Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding)
   return next;
 }
 
+const std::shared_ptr<Session::SharedRefit>& Session::Node::shared_refit() const {
+  if (!refit_) refit_ = std::make_shared<SharedRefit>(recipe, state());
+  return refit_;
+}
+
 std::shared_ptr<const Projector> Session::Node::of_all_readings() const {
   if (all_readings) return all_readings;
   auto projector = recipe.projector_without_effects();
@@ -262,6 +287,8 @@ void Session::Node::let_go() {
   state_.reset();
   scanned.reset();
   previewed.clear();
+  prepared.reset();
+  refit_.reset();
   at_least.reset();
   least.reset();
   all_readings.reset();

@@ -26,6 +26,7 @@ class Session::Fitted {
   /// Per observation; infinite: left out.
   const std::vector<double>& variance() const { return variance_; }
   const std::vector<NoiseParameters>& noise() const { return noise_; }
+  const std::vector<SmoothingTerm>& smoothing() const { return smoothing_; }
   const std::shared_ptr<const SearchSetting>& setting() const { return setting_; }
   /// As it was, kept from here on.
   ModelState state() const;
@@ -56,6 +57,7 @@ class Session::Fitted {
 /// What a refit has found besides amplitudes and shapes of effects.
 struct Session::Refit {
   NoiseEstimate noise;
+  std::vector<SmoothingTerm> smoothing;
   std::vector<double> variance;         ///< of every reading
   Eigen::VectorXd residual;             ///< of the linear model; empty: as it was
   std::vector<std::size_t> reinstated;  ///< readings that are no outliers of this model
@@ -75,7 +77,8 @@ struct Session::Recipe {
   ModelState with_effects(ModelState state) const;
   /// From all readings, off the model without the effects that were added.
   std::shared_ptr<const Projector> projector_without_effects() const;
-  /// From readings that are not held out, at the noise of a fit, off this model, which is `state`.
+  /// From readings that are not held out, at the noise of a fit and the smoothing of the model's own, off
+  /// this model, which is `state`.
   std::shared_ptr<const Projector> projector_at(const Fitted& least, const ModelState& state) const;
   /// Of every reading by the model's noise; infinite: left out.
   const std::vector<double>& variance() const { return refit ? refit->variance : base->variance(); }
@@ -89,9 +92,26 @@ struct Session::RefittedModel {
   Recipe recipe;
   ModelState state;
   std::shared_ptr<const Projector> all_readings;
+  std::shared_ptr<SharedTests> tests = nullptr;
 };
 
-/// What the figures of a full fit's model stand on, against the noise of `least`.
+/// The refit of a model, made once, by whoever asks first. Who makes it may be stopped: the next one begins
+/// anew.
+class Session::SharedRefit {
+ public:
+  SharedRefit(Recipe preview, ModelState state) : preview_(std::move(preview)), state_(std::move(state)) {}
+  /// Throws SessionStopped.
+  const RefittedModel& get(const SessionProgress& progress);
+
+ private:
+  std::mutex mutex_;
+  Recipe preview_;
+  ModelState state_;
+  std::optional<RefittedModel> made_;
+};
+
+/// What the figures of a full fit's model stand on, against the noise of `least`. Those of refits are at the
+/// smoothing of the full fit as well.
 struct Session::FiguresOfModel {
   std::shared_ptr<const Fitted> base, least;
   std::vector<std::size_t> reinstated;  ///< readings that are in use against the fit
@@ -110,6 +130,8 @@ class Session::SharedTests {
   explicit SharedTests(Make make) : make_(std::move(make)) {}
   explicit SharedTests(CatalogueTests made) : made_(std::move(made)) {}
   const CatalogueTests& get();
+  /// Stopped as other work is; the next one begins anew.
+  const CatalogueTests& get_unless_stopped();
 
  private:
   std::mutex mutex_;
@@ -129,6 +151,8 @@ struct Session::Node {
   std::vector<MeasurementProposal> proposals;
   std::vector<SurfaceFinding> drawn;                ///< for some of these
   std::map<EffectName, Eigen::VectorXd> previewed;  ///< residuals with an effect in the model
+  /// Models with a further effect that are ready to be added; once prepared, if none.
+  std::optional<std::map<EffectName, std::shared_ptr<const Node>>> prepared;
   std::optional<Eigen::VectorXd> residual;
   /// At the least noise of a full fit, from readings that are not held out; and that fit.
   std::shared_ptr<const Projector> at_least;
@@ -144,6 +168,7 @@ struct Session::Node {
   /// With more effects of the user's own in the catalogue.
   void with_setting(std::shared_ptr<const SearchSetting> setting);
   const ModelState& state() const;
+  const std::shared_ptr<SharedRefit>& shared_refit() const;
   std::shared_ptr<const Projector> of_all_readings() const;
   /// What can be made again.
   void let_go();
@@ -151,6 +176,7 @@ struct Session::Node {
 
  private:
   mutable std::optional<ModelState> state_;
+  mutable std::shared_ptr<SharedRefit> refit_;
 };
 
 /// A fit, and where its noise is the least so far the figures of the models before against that noise.

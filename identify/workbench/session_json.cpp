@@ -71,7 +71,7 @@ Json contradiction_json(const std::optional<Contradiction>& contradiction) {
       "the model.",
       contradiction->label, contradiction->fitted * edge, kCoverageFactor * contradiction->u * edge,
       contradiction->unit, refit ? "refit" : "linear preview", contradiction->previewed * edge,
-      contradiction->unit, refit ? "smoothing was" : "noise and smoothing were");
+      contradiction->unit, refit ? "resolution was" : "noise and smoothing were");
 }
 
 Json model_json(const SessionModel& model) {

@@ -28,6 +28,8 @@ constexpr std::chrono::milliseconds kLook{400};  // between looks at files that 
 constexpr std::size_t kLinesShown = 5;           // on either side of a wrong line
 constexpr std::size_t kMostColumns = 64;
 const std::string kRefit = "refit";  // awaited: short, and not behind other programs
+const std::string kScan = "scan";
+const std::string kPrepare = "prepare";
 const std::string kConfirm = "confirm";
 
 /// What cannot be done now.
@@ -352,10 +354,12 @@ void Workbench::confirm_what_is_linear() {
              -> std::function<void()> { return [this, change = work(progress)] { change(*session_); }; }});
 }
 
-/// Behind as well, once nothing else is under way; event "unknown" tells what was found.
+/// Behind as well, once nothing else is under way; event "unknown" tells what was found. Then what is likely
+/// to be asked next.
 void Workbench::look_for_unknown() {
-  if (session().is_scanned() || waiting_ || (busy_ && !cancelled_)) return;
-  start({"scan", "", true,
+  if (waiting_ || (busy_ && !cancelled_)) return;
+  if (session().is_scanned()) return prepare_refits();
+  start({kScan, "", true,
          [this, scan = session_->scan()](const SessionProgress& progress) -> std::function<void()> {
            return [this, change = scan(progress)] {
              change(*session_);
@@ -363,6 +367,15 @@ void Workbench::look_for_unknown() {
            };
          },
          session_->testing()});
+}
+
+void Workbench::prepare_refits() {
+  if (!options_.confirm_behind || session().is_prepared()) return;
+  start({kPrepare, "", true,
+         [work = session_->preparation()](const SessionProgress& progress) -> std::function<void()> {
+           work(progress);
+           return [] {};
+         }});
 }
 
 void Workbench::export_now(const std::string& what) {
@@ -490,7 +503,7 @@ void Workbench::run(Job& job, Lock& lock) {
   }
   const bool further = !job.behind || (job.what == kRefit && take && !stopped);
   if (further && !waiting_) confirm_what_is_linear();
-  if (job.what != "scan") look_for_unknown();
+  if (job.what == kScan ? take && !stopped : job.what != kPrepare) look_for_unknown();
   publish_state();
 }
 

@@ -85,6 +85,7 @@ class Workbench {
   void start(Job job);
   void confirm_what_is_linear();
   void look_for_unknown();
+  void prepare_refits();
   SessionProgress progress();
 
   WorkbenchOptions options_;

@@ -263,6 +263,16 @@ std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParam
   return make_projector(without(model_.problem().data, setting_->heldout), noise);
 }
 
+std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParameters>& noise,
+                                                    const std::vector<SmoothingTerm>& smoothing) const {
+  const LinearModel model = model_.with_smoothing(smoothing);
+  auto projector =
+      std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise,
+                                  setting_->threads, model.parts());
+  accept_added({}, *projector);
+  return projector;
+}
+
 std::unique_ptr<Projector> ModelState::projector_without_surface(
     const AddedSurface& surface, const std::set<std::size_t>& left_out) const {
   const LinearModel model = model_.without_surface(surface.term);

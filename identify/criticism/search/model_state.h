@@ -108,6 +108,8 @@ class ModelState {
   std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface,
                                                        const std::set<std::size_t>& left_out = {}) const;
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
+  std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise,
+                                          const std::vector<SmoothingTerm>& smoothing) const;
   /// From all readings, those that are held out as well.
   std::unique_ptr<Projector> projector_of_all_readings() const;
   /// Of an added effect's amplitudes among the projector's parameters.

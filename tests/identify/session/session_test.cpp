@@ -365,6 +365,60 @@ TEST_F(SessionOfTwo, ARefitComesBetweenPreviewAndFullFit) {
   EXPECT_NEAR(own->sigma(1).sum(), then.sum(), 0.02 * then.sum());
 }
 
+/// To the bit, and no stage of them is left for later.
+TEST_F(SessionOfTwo, PreparedRefitsAreThoseThatAreMadeWhenAsked) {
+  const auto asked = open(), prepared = open();
+  EXPECT_FALSE(prepared->is_prepared());
+  prepared->take(prepared->preparation());
+  ASSERT_TRUE(prepared->is_prepared());
+  EXPECT_EQ(prepared->models().size(), 1U);
+  EXPECT_EQ(prepared->current().standing, ModelStanding::Fitted);
+
+  std::set<std::string> stages;
+  const auto note = [&](const std::string& stage, double /*done*/) {
+    stages.insert(stage);
+    return true;
+  };
+  ASSERT_EQ(prepared->rank().front().name, kReversal);
+  for (Session* each : {asked.get(), prepared.get()}) each->add(kReversal);
+  EXPECT_EQ(prepared->current().standing, ModelStanding::Preview);
+  asked->take(asked->refit(), note);
+  const std::string noise = "noise with what was added", smoothed = "the model at this noise";
+  EXPECT_TRUE(stages.contains(noise) && stages.contains(smoothed));
+  stages.clear();
+  prepared->take(prepared->refit(), note);
+  EXPECT_FALSE(stages.contains(smoothed));
+
+  const SessionModel &one = asked->current(), &other = prepared->current();
+  EXPECT_EQ(other.standing, ModelStanding::Refitted);
+  EXPECT_EQ(other.effects[0].amplitudes[0].value, one.effects[0].amplitudes[0].value);
+  EXPECT_EQ(other.effects[0].amplitudes[0].u, one.effects[0].amplitudes[0].u);
+  EXPECT_EQ(other.figures.systematic, one.figures.systematic);
+  EXPECT_EQ(prepared->residual(), asked->residual());
+  EXPECT_EQ(prepared->sigma(1), asked->sigma(1));
+  ASSERT_EQ(prepared->rank().size(), asked->rank().size());
+  for (std::size_t i = 0; i < asked->rank().size(); ++i) {
+    EXPECT_EQ(prepared->rank()[i].name, asked->rank()[i].name);
+    EXPECT_EQ(prepared->rank()[i].gain, asked->rank()[i].gain);
+  }
+  EXPECT_FALSE(prepared->is_prepared());
+  prepared->undo();
+  EXPECT_FALSE(prepared->is_prepared()) << "kept for the current model alone";
+}
+
+/// What is stopped is made when it is asked for.
+TEST_F(SessionOfTwo, APreparationThatIsStoppedLosesNothing) {
+  const auto asked = open(), stopped = open();
+  const auto stop = [](const std::string& stage, double /*done*/) { return stage != "the exact model"; };
+  EXPECT_THROW(stopped->take(stopped->preparation(), stop), SessionStopped);
+  for (Session* each : {asked.get(), stopped.get()}) {
+    each->add(kReversal);
+    each->take(each->refit());
+    EXPECT_EQ(each->current().standing, ModelStanding::Refitted);
+  }
+  EXPECT_EQ(stopped->residual(), asked->residual());
+}
+
 /// Asked far more often than there are stages; stopped within one, the session is as it was.
 TEST_F(SessionOfTwo, IsStoppedWithinAStage) {
   std::map<std::string, int> asked;

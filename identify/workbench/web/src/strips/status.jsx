@@ -5,7 +5,7 @@ import { seconds } from '../app/sentences.js';
 import { busy, isWriter, line, state, trouble } from '../app/store.js';
 import { words } from '../panels/parts.jsx';
 
-const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', scan: 'Looking for what has no name', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
+const kDoing = { confirm: 'Full fit of this model', climb: 'Search to the end', draw: 'Drawing what has no name', scan: 'Looking for what has no name', prepare: 'Preparing what leads', 'leave-out': 'Fit without these readings', remove: 'Fit without this effect', export: 'Writing', load: 'Reading the campaign', fit: 'Fit of the campaign' };
 
 export function Progress() {
   const now = busy.value;

@@ -27,9 +27,11 @@ namespace {
 constexpr double kContradiction = 0.25;       // of U95: a preview that is off by more was wrong
 constexpr double kShareOfSearch = 0.8;        // of the time of a climb
 constexpr std::size_t kPreviewedAtOnce = 12;  // of the ranking
-constexpr std::size_t kPrepared = 2;          // of the ranking: seconds of a processor each at 10^5 readings
-constexpr std::size_t kKeptFigures = 2;       // of models: 100 to 200 MB at 10^5 readings each
-constexpr std::size_t kKeptModels = 8;        // linear models in memory; those of previews share a full fit's
+constexpr std::size_t kPrepared = 2;          // of the ranking
+constexpr std::size_t kPreparedOfMany = 1;    // 15 s of a processor and 600 MB at 10^5 readings
+constexpr std::size_t kManyReadings = 30000;
+constexpr std::size_t kKeptFigures = 2;  // of models: 100 to 200 MB at 10^5 readings each
+constexpr std::size_t kKeptModels = 8;   // linear models in memory; those of previews share a full fit's
 
 void report(const SessionProgress& progress, const std::string& stage, double done) {
   if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
@@ -504,9 +506,10 @@ std::shared_ptr<const Session::Node> Session::node_with(const FamilyTest& test) 
 SessionWork Session::preparation() {
   renew_setting();
   const SearchSetting& setting = *node().recipe.setting;
+  const std::size_t most = linear().size() > kManyReadings ? kPreparedOfMany : kPrepared;
   std::map<EffectName, std::shared_ptr<const Node>> ahead;
   for (const FamilyTest* test : ranked()) {
-    if (ahead.size() == kPrepared || setting.family_wise_log10_p(*test) > log10_family_risk()) break;
+    if (ahead.size() == most || setting.family_wise_log10_p(*test) > log10_family_risk()) break;
     const Family& family = setting.families[test->family];
     if (!family.effect) continue;
     std::shared_ptr<const Node> next = node_with(*test);

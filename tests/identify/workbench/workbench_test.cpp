@@ -11,6 +11,10 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
@@ -184,6 +188,37 @@ TEST_F(WorkbenchOnACampaign, RequestsThatAreNoneAreRefused) {
   EXPECT_EQ(page().ask("leave-out", {{"observations", {1}}, {"reason", " "}}).status, 400);
   EXPECT_EQ(page().ask("leave-out", {{"observations", {9999999}}, {"reason", "why"}}).status, 422);
   EXPECT_EQ(page().ask("export", {{"what", "../../etc"}}).status, 422);
+}
+
+/// What was under way, as the page was told.
+std::vector<std::string> told_of_work(Page& page, EventHub::Line& line) {
+  page.bench->events().publish("end", "{}");
+  std::vector<std::string> work;
+  for (std::optional<std::string> event = line.next(); event && !event->starts_with("event: end");
+       event = line.next()) {
+    const std::size_t at = event->find("data: ");
+    if (!event->starts_with("event: state") || at == std::string::npos) continue;
+    const Json busy = Json::parse(event->substr(at + 6))["busy"];
+    if (busy.is_object() && (work.empty() || work.back() != busy["what"])) work.push_back(busy["what"]);
+  }
+  return work;
+}
+
+TEST(WorkbenchDoors, PreparesWhatIsLikelyToBeAskedNext) {
+  Page page;
+  const auto line = page.bench->events().connect();
+  page.told("go", {{"model", 0}});
+  page.bench->wait_until_idle();
+  EXPECT_THAT(told_of_work(page, *line), ::testing::ElementsAre("scan", "prepare"));
+  page.told("go", {{"model", 0}});
+  page.bench->wait_until_idle();
+  EXPECT_THAT(told_of_work(page, *line), ::testing::IsEmpty()) << "it is there";
+  page.told("add", {{"effect", kReversalOfX}});
+  while (page.state()["models"][1]["standing"] == "preview") std::this_thread::yield();
+  page.told("undo");
+  page.told("cancel");
+  page.bench->wait_until_idle();
+  EXPECT_TRUE(page.state()["busy"].is_null()) << "not begun again once it is cancelled";
 }
 
 /// The page, the library and the command line: the same numbers to the bit.

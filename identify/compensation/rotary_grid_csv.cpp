@@ -155,6 +155,7 @@ const JointLever& carrier_lever(const RotaryGrid& grid, const JointLever* levers
     const bool of_grid = std::ranges::find(grid.axes, levers[i].axis, &RotaryNodes::axis) != grid.axes.end();
     if (of_grid && (nearest == nullptr || levers[i].workpiece_side)) nearest = &levers[i];
   }
+  if (nearest == nullptr) throw std::logic_error("no axis of a rotary grid is a joint of the machine");
   return *nearest;
 }
 

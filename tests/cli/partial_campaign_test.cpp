@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/support/program.h"
+#include "tests/support/scratch_folder.h"
 #include "tests/support/simulated_campaign.h"
 
 namespace volcal {
@@ -132,6 +133,20 @@ INSTANTIATE_TEST_SUITE_P(All, PartialCampaignProgram,
                          ::testing::Values(std::pair("BallBarAndDiagonals", kCirclesAndDiagonals),
                                            std::pair("OneTracerSetup", kOneTracerSetup)),
                          [](const auto& tested) { return tested.param.first; });
+
+/// Readings that were computed scatter by their last digit, a ten-thousandth of the noise stated for them,
+/// where few positions leave most of every function to its prior.
+TEST(ComputedReadings, AreFitted) {
+  const testing::ScratchFolder folder;
+  const std::string study = (folder.path() / "study").string();
+  ASSERT_EQ(run_program("study criticism --one pairs:10 --seed 4001 --readings 1000 -o " + study).exit_code,
+            0);
+  const std::string exact = study + "/truth/unseen_without_hidden/campaign.toml";
+  const auto run = run_program("fit " + exact + " --json -o " + (folder.path() / "result").string());
+  EXPECT_EQ(run.exit_code, 1) << run.errors;
+  EXPECT_EQ(nlohmann::json::parse(run.output).at("status"), "rank_deficient");
+  EXPECT_THAT(run_program("diagnose " + exact).output, HasSubstr("NOTHING_ABOVE"));
+}
 
 TEST(TablesProgram, NamesTheFormatsWhenItDoesNotKnowOne) {
   const auto run = run_program("tables r -o t --format ?");

@@ -27,6 +27,10 @@ constexpr double kSettled = 0.02;  // of log evidence in one step
 // Of log evidence, for an axis to have another shape than the others: very strong evidence (Kass and Raftery
 // 1995, JASA 90, 773).
 constexpr double kWorthADeparture = 5.0;
+// Readings that were computed scatter by their last digit alone. Below, wide priors are lost beside their
+// weights in numbers of 16 digits.
+constexpr double kLeastScale = 1e-3;
+
 // Of coefficients: what is expected of the spectrum of all linear axes counts little beside their eighteen
 // functions; what follows for one axis, beside its six, counts more.
 constexpr double kWorthOfShape = 1.0;
@@ -308,7 +312,7 @@ class EvidenceSearch {
     const Eigen::VectorXd step = now.mean - z0_;
     const double squares =
         instrument.squares + 2.0 * instrument.gradient.dot(step) + step.dot(instrument.matrix * step);
-    return squares > 0.0 ? std::sqrt(squares / redundancy) : scale;
+    return squares > 0.0 ? std::max(kLeastScale, std::sqrt(squares / redundancy)) : scale;
   }
 
   enum class Spectra { Held, Corrected };

@@ -3,7 +3,7 @@ import { call, latest, NoAnswer, Refusal } from '../api/call.js';
 import { abandon, begin, painted } from '../draw/timing.js';
 import { whenDrawn } from '../draw/schedule.js';
 import { emptySelection, indices } from '../data/selection.js';
-import { clearColumns, ensure, kFirst, residualNames } from './columns.js';
+import { clearColumns, ensure, keep, kFirst, residualNames } from './columns.js';
 import { columnsOfPictures, openOn, openPictures, pictures, shiftOf, variablesIn } from './pictures.js';
 import { fallSentence } from './sentences.js';
 import { beforeModel, busy, chosenBefore, currentModel, exported, line, preview, ranking, rankingBusy, said, selection, shown, state, surfaces, trouble, unknowns, variables } from './store.js';
@@ -25,9 +25,20 @@ async function takeState(next) {
   if (next.phase !== 'ready') return;
   if (pictures.value.length === 0) openPictures();
   if (sentence) said.value = sentence;
-  if (former?.current !== next.current) preview.value = null;
+  if (former?.current !== next.current) {
+    keepWhatWasLookedAt(former);
+    preview.value = null;
+  }
   await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
+  if (adding && former?.current !== next.current) whenDrawn(() => painted('add'));
   lookAgain();
+}
+
+/** The residuals that an effect would leave are those of the linear model with it. */
+function keepWhatWasLookedAt(former) {
+  const { number, parent, standing } = currentModel.value ?? {};
+  if (!preview.value || preview.value.name !== adding || standing !== 'preview' || parent !== former?.current) return;
+  keep(`residual@${number}`, preview.value.residual);
 }
 
 /** What is missing now: asked for, not waited for. */
@@ -98,10 +109,13 @@ export async function act(name, body = {}) {
   }
 }
 
+let adding = null;
+
 export async function add(effect) {
   begin('add');
-  if (!await act('add', { effect })) return abandon('add');
-  return whenDrawn(() => painted('add'));
+  adding = effect;
+  if (!await act('add', { effect })) abandon('add');
+  adding = null;
 }
 
 /** A law that stands behind a surface: tried as a formula, then added by the name that it got. */

@@ -4,7 +4,7 @@ import { call } from '../api/call.js';
 import { numberLines } from '../data/statistics.js';
 import { modelOf, state } from './store.js';
 
-const kept = new Map();
+const kept = new Map(); // by name: { key, values }
 const asked = new Map();
 /** Grows whenever a column has come. */
 export const arrived = signal(0);
@@ -17,8 +17,15 @@ function stamp(name) {
   return `${name} ${model?.standing} ${JSON.stringify(model?.figures)}`;
 }
 
-/** The column, or null while it is not there. */
-export const column = (name) => kept.get(stamp(name)) ?? null;
+/** The column, of a model as it stood before until the new one is there; null: it was never there. */
+export const column = (name) => kept.get(name)?.values ?? null;
+const isKept = (name) => kept.get(name)?.key === stamp(name);
+
+/** A column that is here already under another name. */
+export function keep(name, values) {
+  kept.set(name, { key: stamp(name), values });
+  arrived.value += 1;
+}
 
 let batch = null;
 
@@ -28,27 +35,19 @@ function flush() {
   const stamps = names.map(stamp);
   batch = null;
   call('columns', { names }).then(({ columns }) => {
-    names.forEach((name, k) => { if (columns[name]) kept.set(stamps[k], columns[name]); });
-    dropOld();
+    const isWanted = (name, k) => columns[name] && (stamps[k] === stamp(name) || !kept.has(name));
+    names.forEach((name, k) => { if (isWanted(name, k)) kept.set(name, { key: stamps[k], values: columns[name] }); });
     arrived.value += 1;
     resolve();
   }).catch(reject).finally(() => stamps.forEach((key) => asked.delete(key)));
-}
-
-/** Residuals of models as they stood before are of no use. */
-function dropOld() {
-  for (const key of kept.keys()) {
-    const name = key.split(' ')[0];
-    if (name.includes('@') && key !== stamp(name)) kept.delete(key);
-  }
 }
 
 /** Asks for what is not there yet; all that is asked for at once goes in one request. */
 export function ensure(names) {
   const waits = [];
   for (const name of names.filter(Boolean)) {
+    if (isKept(name)) continue;
     const key = stamp(name);
-    if (kept.has(key)) continue;
     if (!asked.has(key)) {
       if (!batch) {
         batch = { names: [] };

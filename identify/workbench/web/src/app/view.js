@@ -23,17 +23,21 @@ export const visible = computed(() => {
   return mask;
 });
 
+let last = null;
+
+/** That of the model before, until the residuals of the current one are there. */
 export const view = computed(() => {
   arrived.value;
   const model = currentModel.value;
   const mask = visible.value;
   const now = model ? column(`residual@${model.number}`) : null;
-  if (!now || !mask) return null;
+  if (!now || !mask) return last?.length === mask?.length ? last : null;
   const former = beforeModel.value;
-  return {
+  last = {
     now, before: former ? column(`residual@${former.number}`) : null, length: now.length, shown: mask, lines: linesOfReadings(), sigma: column('stated_sigma'),
     unit: unit.value === 'urad' ? 'µrad' : 'µm', setups: campaign.value.setups, variables: variables.value, column,
   };
+  return last;
 });
 
 /** What changes under the pointer: what is marked and what is looked at. */

@@ -16,15 +16,18 @@ export function rangeOf(values, mask = null) {
 /** Value below which a share of the finite magnitudes lies, from an even choice of some thousand. */
 export function magnitudeQuantile(values, share, mask = null) {
   const step = Math.max(1, Math.floor(values.length / 8000));
-  const sizes = [];
+  const all = new Float32Array(Math.ceil(values.length / step));
+  let count = 0;
   for (let i = 0; i < values.length; i += step) {
     if (mask && !mask[i]) continue;
     const size = Math.abs(values[i]);
-    if (size < Infinity) sizes.push(size);
+    if (!(size < Infinity)) continue;
+    all[count] = size;
+    count += 1;
   }
-  if (sizes.length === 0) return 1;
-  sizes.sort((a, b) => a - b);
-  return sizes[Math.min(sizes.length - 1, Math.floor(share * sizes.length))] || 1e-9;
+  if (count === 0) return 1;
+  const sizes = all.subarray(0, count).sort();
+  return sizes[Math.min(count - 1, Math.floor(share * count))] || 1e-9;
 }
 
 /** Distinct finite values in order, or null where there are more than `most`. */

@@ -1,5 +1,5 @@
 // Readings as dots where they are few, as density where they are many.
-import { alpha, channels, hex } from './palette.js';
+import { channels, hex } from './palette.js';
 
 const kMostDots = 20000;
 
@@ -26,17 +26,23 @@ export function places(x, y, box, sx, sy, shown, shift = null) {
   return { column, row, w, h };
 }
 
-/** How many readings lie in every pixel. */
-function countPixels({ column, row, w, h }, mask = null) {
-  const counts = new Uint16Array(w * h);
+/** How many readings cover every pixel of a box with `edge` pixels around it, each a square of `size` pixels. */
+function countPixels({ column, row, w, h }, size, edge, mask) {
+  const width = w + 2 * edge;
+  const counts = new Uint16Array(width * (h + 2 * edge));
+  const off = edge - Math.floor(size / 2);
   let largest = 0;
   for (let i = 0; i < column.length; i += 1) {
     if (column[i] < 0 || (mask && !mask[i])) continue;
-    const at = row[i] * w + column[i];
-    const count = (counts[at] += 1);
-    if (count > largest) largest = count;
+    let at = (row[i] + off) * width + column[i] + off;
+    for (let j = 0; j < size; j += 1, at += width) {
+      for (let k = at; k < at + size; k += 1) {
+        const count = (counts[k] += 1);
+        if (count > largest) largest = count;
+      }
+    }
   }
-  return { counts, largest };
+  return { counts, largest, width, height: h + 2 * edge };
 }
 
 let scratch = null;
@@ -48,33 +54,35 @@ function scratchOf(w, h) {
   return scratch;
 }
 
-/** Draws density in the shade of `name`: stronger where more readings lie. */
-function drawDensity(ctx, box, where, name, { mask = null, floor = 0.28 } = {}) {
-  const { w, h } = where;
-  if (w < 1 || h < 1) return;
-  const { counts, largest } = countPixels(where, mask);
+/** In the shade of `name`, `strength(k, largest)` 0..1 where k readings cover a pixel: one image, however many. */
+function drawCounts(ctx, box, where, name, { size, edge, mask, strength }) {
+  if (where.w < 1 || where.h < 1) return;
+  const { counts, largest, width, height } = countPixels(where, size, edge, mask);
   if (largest === 0) return;
-  const canvas = scratchOf(w, h);
+  const canvas = scratchOf(width, height);
   const context = canvas.getContext('2d', { willReadFrequently: true });
-  const image = context.createImageData(w, h);
+  const image = context.createImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);
   const [r, g, b] = channels(hex(name));
   const rgb = (b << 16) | (g << 8) | r;
-  const strength = new Uint8Array(largest + 1);
-  for (let k = 1; k <= largest; k += 1) strength[k] = 255 * (floor + (1 - floor) * (Math.log(k) / Math.log(largest + 1)));
-  for (let k = 0; k < pixels.length; k += 1) if (counts[k] > 0) pixels[k] = ((strength[counts[k]] << 24) | rgb) >>> 0;
+  const shades = Uint32Array.from({ length: largest + 1 }, (_, k) => (k === 0 ? 0 : ((Math.round(255 * strength(k, largest)) << 24) | rgb) >>> 0));
+  for (let k = 0; k < pixels.length; k += 1) if (counts[k] > 0) pixels[k] = shades[counts[k]];
   context.putImageData(image, 0, 0);
-  ctx.drawImage(canvas, box.left, box.top);
+  ctx.save();
+  ctx.imageSmoothingEnabled = false;
+  ctx.drawImage(canvas, box.left - edge, box.top - edge);
+  ctx.restore();
 }
 
-/** Draws dots of `size` pixels in one path. */
-function drawDots(ctx, box, { column, row }, name, { mask = null, opacity = 0.45, size = 3 } = {}) {
-  ctx.fillStyle = alpha(name, opacity);
-  const off = (size - 1) / 2;
-  for (let i = 0; i < column.length; i += 1) {
-    if (column[i] < 0 || (mask && !mask[i])) continue;
-    ctx.fillRect(box.left + column[i] - off, box.top + row[i] - off, size, size);
-  }
+/** Density: stronger where more readings lie. */
+function drawDensity(ctx, box, where, name, { mask = null, floor = 0.28 } = {}) {
+  const strength = (k, largest) => floor + (1 - floor) * (Math.log(k) / Math.log(largest + 1));
+  drawCounts(ctx, box, where, name, { size: 1, edge: 0, mask, strength });
+}
+
+/** Dots of `size` pixels, translucent: several over each other are stronger. */
+function drawDots(ctx, box, where, name, { mask = null, opacity = 0.45, size = 3 } = {}) {
+  drawCounts(ctx, box, where, name, { size, edge: size, mask, strength: (k) => 1 - (1 - opacity) ** k });
 }
 
 export function drawReadings(ctx, box, where, name, options = {}) {

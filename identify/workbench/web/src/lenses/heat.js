@@ -55,14 +55,17 @@ function prepare(view, config, size) {
 
 const mix = (from, to, t) => from.map((v, k) => Math.round(v + (to[k] - v) * t));
 
-/** One hue below zero, another above, the page at zero. */
-function shadeOf(value, limit) {
-  const t = Math.max(-1, Math.min(1, value / limit));
-  const rgb = mix(channels(hex('page')), channels(hex(t < 0 ? 'series-0' : 'bad')), Math.abs(t));
-  return `rgb(${rgb.join(',')})`;
+const kShades = 128; // on either side of zero
+
+/** Of a value by its size against a limit: one hue below zero, another above, the page at zero. */
+function shades() {
+  const [page, below, above] = ['page', 'series-0', 'bad'].map((name) => channels(hex(name)));
+  const list = Array.from({ length: 2 * kShades + 1 }, (_, k) => `rgb(${mix(page, k < kShades ? below : above, Math.abs(k / kShades - 1)).join(',')})`);
+  return (value, limit) => list[Math.round(kShades * (1 + Math.max(-1, Math.min(1, value / limit))))];
 }
 
 function drawCells(ctx, { x, y, sx, sy, limit }, means) {
+  const shadeOf = shades();
   for (let j = 0; j < y.bins; j += 1) {
     for (let i = 0; i < x.bins; i += 1) {
       const value = means.mean[j * x.bins + i];
@@ -77,6 +80,7 @@ function drawCells(ctx, { x, y, sx, sy, limit }, means) {
 function drawBar(ctx, { box, limit, view, config }) {
   const left = box.right + 12;
   const height = box.bottom - box.top;
+  const shadeOf = shades();
   for (let k = 0; k < height; k += 1) {
     ctx.fillStyle = shadeOf(1 - (2 * k) / height, 1);
     ctx.fillRect(left, box.top + k, 10, 1.5);

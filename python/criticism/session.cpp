@@ -73,10 +73,10 @@ void define_session_model(py::module_& module) {
       .def_property_readonly(
           "change", [](const SessionModel& model) { return text_of(model.change); },
           "What was done: \"+ reversal EXX\"; \"\" for the first.")
-      .def_property_readonly(
-          "standing", &standing_text,
-          "\"fitted\", \"preview\" (linear), \"refitted\" (its noise found again) or \"contradicted\": by a "
-          "full fit, which is off what stood before by more than U95/4.")
+      .def_property_readonly("standing", &standing_text,
+                             "\"fitted\", \"preview\" (linear), \"refitted\" (its noise and smoothing found "
+                             "again) or \"contradicted\": by a "
+                             "full fit, which is off what stood before by more than U95/4.")
       .def_readonly(
           "figures", &SessionModel::figures,
           "Figures on fitted and on held-out readings, a LadderStep, against the least noise that a "
@@ -151,7 +151,7 @@ void define_session(py::module_& module) {
           "refit",
           [](Session& session, const py::object& progress) { return do_line(session, "refit", progress); },
           py::arg("progress") = py::none(),
-          "The current linear preview with its noise found again, smoothing and derivatives kept. progress: "
+          "The current linear preview with its noise and smoothing found again, derivatives kept. progress: "
           "as for fit().")
       .def(
           "confirm",

@@ -46,8 +46,8 @@ function standingOf(model) {
 }
 
 const kStandings = {
-  preview: 'linear preview: noise and smoothing as before the step', refitted: 'refit: noise found again, smoothing as before the step; not yet a full fit',
-  confirming: 'refit: noise found again; being confirmed by a full fit', fitted: 'confirmed by a full fit',
+  preview: 'linear preview: noise and smoothing as before the step', refitted: 'refit: noise and smoothing found again; not yet a full fit',
+  confirming: 'refit: noise and smoothing found again; being confirmed by a full fit', fitted: 'confirmed by a full fit',
   contradicted: 'the full fit contradicts what stood before', stale: 'as last heard: the program does not answer',
 };
 const about = (standing) => (isAwaiting(standing) || standing === 'confirming' ? '~' : '');

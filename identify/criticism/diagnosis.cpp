@@ -72,38 +72,13 @@ void compare_hypotheses(const ModelState& reached, const FitResult& result, cons
   add_next_measurements(state, planning, diagnosis);
 }
 
-}  // namespace
-
-DiagnosedModel diagnose_model(const Campaign& campaign, const ModelSpec& model,
-                              const DiagnoseOptions& options) {
-  constexpr double kShareOfFit = 0.3;
-  FitOptions fit_options;
-  fit_options.threads = options.threads;
-  fit_options.outliers = OutlierPolicy::Remove;
-  fit_options.noise = NoisePolicy::White;
-  DiagnoseOptions after = options;
-  if (options.progress) {
-    fit_options.progress = [&](const std::string& stage, double done) {
-      options.progress("fit: " + stage, kShareOfFit * done);
-    };
-    after.progress = [&](const std::string& stage, double done) {
-      options.progress(stage, kShareOfFit + (1.0 - kShareOfFit) * done);
-    };
-  }
-  DiagnosedModel diagnosed{fit(campaign, model, fit_options), {}};
-  diagnosed.diagnosis = diagnose(campaign, diagnosed.fit, after);
-  return diagnosed;
-}
-
-Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
+Diagnosis diagnosis_by(Search search, const FitResult& result, const DiagnoseOptions& options) {
   const auto progress = [&](const std::string& stage, double done) {
     if (options.progress) options.progress(stage, done);
   };
-  const LinearModel model(campaign, result);
-  for (const EffectSpec& surface : options.asked_laws) check_asked_surface(model, surface);
-  Search search(model, heldout_lines(model, options.heldout_share), search_options(options));
   search.run();
   const ModelState& reached = search.reached();
+  const Campaign& campaign = reached.model().campaign();
   Diagnosis diagnosis;
   diagnosis.removed_readings = removed_readings(reached.model());
   diagnosis.notes = campaign.notes;
@@ -134,6 +109,41 @@ Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const Diag
   if (options.figures) diagnosis.figures = diagnosis_figures(search.given(), reached);
   progress("done", 1.0);
   return diagnosis;
+}
+
+}  // namespace
+
+DiagnosedModel diagnose_model(const Campaign& campaign, const ModelSpec& model,
+                              const DiagnoseOptions& options) {
+  constexpr double kShareOfFit = 0.3;
+  FitOptions fit_options;
+  fit_options.threads = options.threads;
+  fit_options.outliers = OutlierPolicy::Remove;
+  fit_options.noise = NoisePolicy::White;
+  DiagnoseOptions after = options;
+  if (options.progress) {
+    fit_options.progress = [&](const std::string& stage, double done) {
+      options.progress("fit: " + stage, kShareOfFit * done);
+    };
+    after.progress = [&](const std::string& stage, double done) {
+      options.progress(stage, kShareOfFit + (1.0 - kShareOfFit) * done);
+    };
+  }
+  DiagnosedModel diagnosed{fit(campaign, model, fit_options), {}};
+  diagnosed.diagnosis = diagnose(campaign, diagnosed.fit, after);
+  return diagnosed;
+}
+
+Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options) {
+  const LinearModel model(campaign, result);
+  for (const EffectSpec& surface : options.asked_laws) check_asked_surface(model, surface);
+  return diagnosis_by(Search(model, heldout_lines(model, options.heldout_share), search_options(options)),
+                      result, options);
+}
+
+Diagnosis diagnose(const FitResult& result, const ModelState& given, const DiagnoseOptions& options) {
+  for (const EffectSpec& surface : options.asked_laws) check_asked_surface(given.model(), surface);
+  return diagnosis_by(Search(given, search_options(options)), result, options);
 }
 
 }  // namespace volcal

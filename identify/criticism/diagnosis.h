@@ -35,6 +35,8 @@ struct DiagnoseOptions {
   std::function<void(const std::string& stage, double done)> progress;
 };
 
+class ModelState;
+
 /// A diagnosis with the fit that it is of.
 struct DiagnosedModel {
   FitResult fit;
@@ -48,5 +50,8 @@ DiagnosedModel diagnose_model(const Campaign& campaign, const ModelSpec& model,
 
 /// `result` must come from fit() of this campaign.
 Diagnosis diagnose(const Campaign& campaign, const FitResult& result, const DiagnoseOptions& options);
+/// The same where the noise about `result` is known already: `given` is its linear model at that noise, and
+/// its held-out lines count, not the share of the options.
+Diagnosis diagnose(const FitResult& result, const ModelState& given, const DiagnoseOptions& options);
 
 }  // namespace volcal

@@ -670,21 +670,31 @@ SessionWork Session::leaving_out(const std::vector<bool>& selected, const std::s
                 "- " + std::to_string(count) + (count == 1 ? " reading: " : " readings: ") + reason);
 }
 
+DiagnosisWork Session::diagnosis(DiagnoseOptions options) const {
+  options.threads = options_.threads;
+  options.heldout_share = options_.heldout_share;
+  return [options = std::move(options), base = node().recipe.base, model = model(),
+          is_fitted = !awaits_full_fit(current().standing)](const SessionProgress& progress) {
+    DiagnoseOptions told = options;
+    told.progress = [&](const std::string& stage, double done) { report(progress, stage, done); };
+    if (!is_fitted) return diagnose_model(*base->campaign(), model, told);
+    return DiagnosedModel{base->result(), diagnose(base->result(), base->state(), told)};
+  };
+}
+
 SessionWork Session::climb() const {
-  return interruptible([fit_it = fitting(), campaign = node().recipe.base->campaign(), given = given_,
-                        model = model(), effects = current().effects,
+  DiagnoseOptions options;
+  options.climb = true;
+  options.own = own_;
+  options.figures = options.compare = false;
+  return interruptible([diagnosis = diagnosis(options), fit_it = fitting(),
+                        campaign = node().recipe.base->campaign(), given = given_,
+                        effects = current().effects,
                         parent = current_](const SessionProgress& progress) -> SessionChange {
-    DiagnoseOptions options;
-    options.threads = fit_it.options.threads;
-    options.climb = true;
-    options.heldout_share = fit_it.options.heldout_share;
-    options.own = fit_it.own;
-    options.figures = options.compare = false;
-    options.progress = [&](const std::string& stage, double done) {
-      report(progress, stage, kShareOfSearch * done);
+    const SessionProgress of_search = [&](const std::string& stage, double done) {
+      return !progress || progress(stage, kShareOfSearch * done);
     };
-    const std::vector<EffectFinding> found =
-        accepted_effects(diagnose_model(*campaign, model, options).diagnosis);
+    const std::vector<EffectFinding> found = accepted_effects(diagnosis(of_search).diagnosis);
     std::vector<SessionChange> changes;
     std::vector<EffectFinding> all = effects;
     Fitting fit_next = fit_it;

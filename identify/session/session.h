@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "volcal/identify/criticism/data/diagnosis_data.h"
+#include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/search/model_state.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/model/description/campaign.h"
@@ -60,6 +61,9 @@ using SessionChange = std::function<void(Session&)>;
 /// Work apart from the session: it may run in another thread while the session is used. Throws
 /// SessionStopped, InputError.
 using SessionWork = std::function<SessionChange(const SessionProgress&)>;
+
+/// Throws SessionStopped, InputError.
+using DiagnosisWork = std::function<DiagnosedModel(const SessionProgress&)>;
 
 enum class ModelStanding {
   Fitted,       ///< by a full fit
@@ -216,6 +220,9 @@ class Session {
   /// A full fit without these observations: another campaign. Throws std::invalid_argument where none are
   /// marked.
   SessionWork leaving_out(const std::vector<bool>& selected, const std::string& reason) const;
+  /// What a diagnosis says of the current model: by the full fit that is there, or by one that is made for
+  /// it. `options`: its threads, share of held-out lines and progress are the session's.
+  DiagnosisWork diagnosis(DiagnoseOptions options) const;
   /// The search of a diagnosis from the current model to its end; every effect is a further model by a full
   /// fit.
   SessionWork climb() const;

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double kShareOfFit = 0.6;    // of the time of a full step
 constexpr double kShareOfNoise = 0.9;  // with that of the noise
+constexpr int kRefitSteps = 3;
+constexpr double kMovedNoise = 0.1;  // of the variance: what the noise was found about is no more near
 
 void tell(const SessionProgress& progress, const std::string& stage, double done) {
   if (progress && !progress(stage, done)) throw SessionStopped("stopped at: " + stage);
@@ -48,6 +50,17 @@ double mean_noise_variance(const ModelState& state) {
     count += 1.0;
   }
   return count > 0.0 ? sum / count : 0.0;
+}
+
+/// Of the mean over the readings in use.
+double log_change(const std::vector<double>& before, const std::vector<double>& after) {
+  double sum_before = 0.0, sum_after = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (!std::isfinite(before[i]) || !std::isfinite(after[i])) continue;
+    sum_before += before[i];
+    sum_after += after[i];
+  }
+  return std::log(sum_after / sum_before);
 }
 
 }  // namespace
@@ -202,6 +215,12 @@ const Session::RefittedModel& Session::SharedRefit::get(const SessionProgress& p
   const std::lock_guard lock(mutex_);
   if (!made_) {
     made_ = refitted(preview_, state_, progress);
+    double change = log_change(preview_.variance(), made_->recipe.variance());
+    for (int step = 1; step < kRefitSteps && std::abs(change) > kMovedNoise; ++step) {
+      const std::vector<double> before = made_->recipe.variance();
+      made_ = refitted(made_->recipe, made_->state, progress);
+      change = log_change(before, made_->recipe.variance());
+    }
     made_->tests =
         std::make_shared<SharedTests>([own = made_->recipe] { return CatalogueTests(own.make()); });
   }

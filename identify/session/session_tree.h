@@ -95,8 +95,8 @@ struct Session::RefittedModel {
   std::shared_ptr<SharedTests> tests = nullptr;
 };
 
-/// The refit of a model, made once, by whoever asks first. Who makes it may be stopped: the next one begins
-/// anew.
+/// The refit of a model, in further steps while its noise changes much, made once, by whoever asks first. Who
+/// makes it may be stopped: the next one begins anew.
 class Session::SharedRefit {
  public:
   SharedRefit(Recipe preview, ModelState state) : preview_(std::move(preview)), state_(std::move(state)) {}

@@ -90,12 +90,10 @@ ExportWork report_work(const Session& session, const ExportPlace& place, int thr
   };
 }
 
-ExportWork diagnosis_work(const Session& session, const ExportPlace& place, int threads) {
-  return [=, campaign = session.campaign(), model = session.model()](const SessionProgress& progress) {
-    DiagnoseOptions options;
-    options.threads = threads;
-    options.progress = [&](const std::string& stage, double done) { report_stage(progress, stage, done); };
-    const DiagnosedModel diagnosed = diagnose_model(campaign, model, options);
+ExportWork diagnosis_work(const Session& session, const ExportPlace& place) {
+  return [=, campaign = session.campaign(), model = session.model(),
+          diagnosis_of = session.diagnosis({})](const SessionProgress& progress) {
+    const DiagnosedModel diagnosed = diagnosis_of(progress);
     const Diagnosis& diagnosis = diagnosed.diagnosis;
     std::map<std::string, std::string> more = {{"diagnosis.txt", diagnosis_text(diagnosis)}};
     if (report_available()) {
@@ -142,7 +140,7 @@ ExportWork export_work(const std::string& what, const Session& session, const Ex
   make_folder(place.folder);
   if (what == "result") return result_work(session, place, threads);
   if (what == "report") return report_work(session, place, threads);
-  if (what == "diagnosis") return diagnosis_work(session, place, threads);
+  if (what == "diagnosis") return diagnosis_work(session, place);
   throw InputError({}, "\"" + what + "\" cannot be exported", "model, result, diagnosis, report or commands");
 }
 

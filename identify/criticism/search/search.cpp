@@ -84,6 +84,12 @@ Search::Search(LinearModel model, std::vector<bool> heldout, SearchOptions optio
       model_(std::move(model)),
       setting_(setting_of(model_, std::move(heldout), options_)) {}
 
+Search::Search(const ModelState& given, SearchOptions options)
+    : options_(std::move(options)),
+      model_(given.model()),
+      setting_(setting_of(model_, given.setting().heldout, options_)),
+      given_(given.with_setting(setting_)) {}
+
 void Search::run() {
   start();
   explain();
@@ -111,7 +117,7 @@ void Search::report(const std::string& stage, double done) const {
 
 void Search::start() {
   report("noise model", 0.05);
-  given_.emplace(model_, setting_);
+  if (!given_) given_.emplace(model_, setting_);
   base_ = state_ = given_;
 }
 

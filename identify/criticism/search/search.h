@@ -55,6 +55,8 @@ class Search {
  public:
   /// `heldout`: observations that judge and never choose.
   Search(LinearModel model, std::vector<bool> heldout, SearchOptions options);
+  /// From a model whose noise is known, without effects that were added; its held-out observations judge.
+  Search(const ModelState& given, SearchOptions options);
 
   void run();
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -22,6 +23,7 @@
 #include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/criticism/search/ladder.h"
 #include "volcal/identify/criticism/search/model_state.h"
+#include "volcal/identify/io/results/diagnosis_json.h"
 #include "volcal/identify/session/proposed_measurements.h"
 #include "volcal/identify/solve/fit.h"
 #include "volcal/model/effects/effect_keys.h"
@@ -146,6 +148,21 @@ TEST_F(SessionOfTwo, IsADoorToTheNumbersOfDiagnose) {
   fit_options.noise = NoisePolicy::White;
   const FitResult fitted = fit(campaign(), extended, fit_options);
   EXPECT_EQ(fitted.parameters, own->fitted_result().parameters) << "to the bit";
+}
+
+/// No second fit, and to the bit what a diagnosis of the campaign says.
+TEST_F(SessionOfTwo, DiagnosesByTheFitThatItHas) {
+  DiagnoseOptions options;
+  options.figures = options.compare = false;
+  std::set<std::string> stages;
+  const auto note = [&](const std::string& stage, double /*done*/) {
+    stages.insert(stage);
+    return true;
+  };
+  const DiagnosedModel own = session().diagnosis(options)(note);
+  EXPECT_FALSE(std::ranges::any_of(stages, [](const auto& stage) { return stage.starts_with("fit"); }));
+  const DiagnosedModel anew = diagnose_model(campaign(), testing_support::polynomials(), options);
+  EXPECT_EQ(diagnosis_json(own.diagnosis), diagnosis_json(anew.diagnosis));
 }
 
 /// The ranking of a preview follows from products that were kept; here the effect is taken into the model and

@@ -513,19 +513,20 @@ SessionWork Session::preparation() {
     const Family& family = setting.families[test->family];
     if (!family.effect) continue;
     std::shared_ptr<const Node> next = node_with(*test);
-    next->shared_refit();
+    next->shared_refit(least_);
     ahead.emplace(family.name(), std::move(next));
   }
   node().prepared = ahead;
-  return interruptible([ahead = std::move(ahead)](const SessionProgress& progress) -> SessionChange {
-    double done = 0.0;
-    for (const auto& [effect, next] : ahead) {
-      report(progress, next->effects.back().label, done);
-      next->shared_refit()->get(progress).tests->get_unless_stopped();
-      done += 1.0 / static_cast<double>(ahead.size());
-    }
-    return [](Session&) {};
-  });
+  return interruptible(
+      [ahead = std::move(ahead), least = least_](const SessionProgress& progress) -> SessionChange {
+        double done = 0.0;
+        for (const auto& [effect, next] : ahead) {
+          report(progress, next->effects.back().label, done);
+          next->shared_refit(least)->get(progress).tests->get_unless_stopped();
+          done += 1.0 / static_cast<double>(ahead.size());
+        }
+        return [](Session&) {};
+      });
 }
 
 bool Session::is_prepared() const { return node().prepared.has_value(); }
@@ -598,7 +599,8 @@ SessionWork Session::confirmation(std::size_t number) const {
 
 SessionWork Session::refit(std::size_t number) const {
   const Node& of = *nodes_.at(number);
-  return interruptible([base = of.recipe.base, changes = !of.recipe.added.empty(), refit = of.shared_refit(),
+  return interruptible([base = of.recipe.base, changes = !of.recipe.added.empty(),
+                        refit = of.shared_refit(least_),
                         number](const SessionProgress& progress) -> SessionChange {
     if (!changes) return [](Session&) {};
     report(progress, "noise with what was added", 0.1);

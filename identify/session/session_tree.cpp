@@ -221,6 +221,8 @@ const Session::RefittedModel& Session::SharedRefit::get(const SessionProgress& p
       made_ = refitted(made_->recipe, made_->state, progress);
       change = log_change(before, made_->recipe.variance());
     }
+    made_->at_least = made_->recipe.projector_at(*least_, made_->state);
+    made_->least = least_;
     made_->tests =
         std::make_shared<SharedTests>([own = made_->recipe] { return CatalogueTests(own.make()); });
   }
@@ -247,6 +249,8 @@ void Session::Node::becomes(RefittedModel refitted) {
   becomes(std::move(refitted.recipe));
   tests = std::move(refitted.tests);
   state_ = std::move(refitted.state);
+  at_least = std::move(refitted.at_least);
+  least = std::move(refitted.least);
   all_readings = std::move(refitted.all_readings);
 }
 
@@ -287,8 +291,9 @@ Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding)
   return next;
 }
 
-const std::shared_ptr<Session::SharedRefit>& Session::Node::shared_refit() const {
-  if (!refit_) refit_ = std::make_shared<SharedRefit>(recipe, state());
+const std::shared_ptr<Session::SharedRefit>& Session::Node::shared_refit(
+    const std::shared_ptr<const Fitted>& least_noise) const {
+  if (!refit_) refit_ = std::make_shared<SharedRefit>(recipe, state(), least_noise);
   return refit_;
 }
 

@@ -93,13 +93,18 @@ struct Session::RefittedModel {
   ModelState state;
   std::shared_ptr<const Projector> all_readings;
   std::shared_ptr<SharedTests> tests = nullptr;
+  /// At the noise of that fit, from readings that are not held out.
+  std::shared_ptr<const Projector> at_least = nullptr;
+  std::shared_ptr<const Fitted> least = nullptr;
 };
 
 /// The refit of a model, in further steps while its noise changes much, made once, by whoever asks first. Who
 /// makes it may be stopped: the next one begins anew.
 class Session::SharedRefit {
  public:
-  SharedRefit(Recipe preview, ModelState state) : preview_(std::move(preview)), state_(std::move(state)) {}
+  /// `least`: that the figures of the session's models are against.
+  SharedRefit(Recipe preview, ModelState state, std::shared_ptr<const Fitted> least)
+      : preview_(std::move(preview)), state_(std::move(state)), least_(std::move(least)) {}
   /// Throws SessionStopped.
   const RefittedModel& get(const SessionProgress& progress);
 
@@ -107,6 +112,7 @@ class Session::SharedRefit {
   std::mutex mutex_;
   Recipe preview_;
   ModelState state_;
+  std::shared_ptr<const Fitted> least_;
   std::optional<RefittedModel> made_;
 };
 
@@ -168,7 +174,7 @@ struct Session::Node {
   /// With more effects of the user's own in the catalogue.
   void with_setting(std::shared_ptr<const SearchSetting> setting);
   const ModelState& state() const;
-  const std::shared_ptr<SharedRefit>& shared_refit() const;
+  const std::shared_ptr<SharedRefit>& shared_refit(const std::shared_ptr<const Fitted>& least_noise) const;
   std::shared_ptr<const Projector> of_all_readings() const;
   /// What can be made again.
   void let_go();

@@ -18,6 +18,7 @@ async function takeState(next) {
   const former = state.value;
   if (former && next.revision !== undefined && next.revision < former.revision) return;
   const sentence = former ? fallSentence(former, next) : null;
+  const isAdded = adding !== null && former?.current !== next.current;
   state.value = next;
   busy.value = next.busy ?? null;
   watchDrawing();
@@ -30,7 +31,7 @@ async function takeState(next) {
     preview.value = null;
   }
   await ensure([...kFirst, ...residualNames(currentModel.value, beforeModel.value), ...columnsOfPictures()]).catch((error) => report('columns', error));
-  if (adding && former?.current !== next.current) whenDrawn(() => painted('add'));
+  if (isAdded) whenDrawn(() => painted('add'));
   lookAgain();
 }
 

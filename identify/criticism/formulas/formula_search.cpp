@@ -177,10 +177,11 @@ class FormulaSearch {
       double best_lm = -1.0;
       for (const std::vector<double>& start : function.starts) {
         const double lm = of_driver.lm(function, start);
-        if (lm <= best_lm) continue;
+        if (!(lm > best_lm)) continue;
         best_lm = lm;
         best = &start;
       }
+      if (best == nullptr) continue;
       Law other = law;
       const auto begin = other.shape.begin() + static_cast<std::ptrdiff_t>(at);
       other.shape.erase(begin, begin + static_cast<std::ptrdiff_t>(law.factors[driver].function->shapes()));

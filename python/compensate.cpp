@@ -7,7 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/program/program_header.h"
 #include "volcal/identify/report/text/program_text.h"
 #include "volcal/identify/text/json_text.h"
 #include "volcal/model/description/errors.h"
@@ -86,10 +88,11 @@ CompensatedProgram compensate_program(const Result& of, const std::string& progr
   options.arc_tolerance = arc_tolerance_um * kMetrePerMicrometre;
   options.decimals_mm = decimals;
   options.within_readings = within_readings;
-  options.header = fmt::format("{} {})", kCompensatedMark, "in Python");
   return without_lock([&] {
     const FunctionalPoint point = functional_point(result.machine, tool, lengths_from);
-    const ProgramErrors errors = program_errors(result, tool, stated_conditions(result, texts));
+    const Conditions conditions_stated = stated_conditions(result, texts);
+    options.header = program_header("in Python", acting_conditions(result, conditions_stated));
+    const ProgramErrors errors = program_errors(result, tool, conditions_stated);
     return compensated(errors, setup, point, options, program, name);
   });
 }

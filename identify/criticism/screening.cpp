@@ -11,6 +11,9 @@
 #include "volcal/identify/criticism/catalogue/families.h"
 #include "volcal/identify/criticism/scans/generic_scan.h"
 #include "volcal/identify/numeric/threads.h"
+#include "volcal/identify/result/fitted_readings.h"
+#include "volcal/identify/statistics/even_sample.h"
+#include "volcal/model/description/finding_codes.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
@@ -46,6 +49,31 @@ std::vector<ObservationPlace> places(const FitResult& result) {
   for (const ResidualRecord& record : result.residuals)
     places.push_back({record.setup, record.row, record.channel});
   return places;
+}
+
+/// Of at most so many setups, and of these so many observations; ascending.
+std::vector<std::size_t> chosen_of(const std::vector<ObservationPlace>& all, std::size_t setups,
+                                   std::size_t most_observations, std::size_t most_setups) {
+  std::vector<bool> is_chosen(setups, false);
+  for (const std::size_t setup : even_sample(setups, most_setups)) is_chosen[setup] = true;
+  std::vector<std::size_t> numbers;
+  std::vector<ObservationPlace> places;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!is_chosen[all[i].setup]) continue;
+    numbers.push_back(i);
+    places.push_back(all[i]);
+  }
+  std::vector<std::size_t> chosen;
+  for (const std::size_t i : evenly_chosen(places, most_observations)) chosen.push_back(numbers[i]);
+  return chosen;
+}
+
+/// Without what only setups have that were not chosen.
+NoiseProblem problem_of(const LinearModel& model, const Campaign& campaign, const FitResult& result) {
+  if (model.size() == result.residuals.size()) return model.problem();
+  const ParameterLayout& layout = model.model().layout();
+  return without_unseen_nuisance(model.problem(), layout,
+                                 DatumSpace(layout, campaign.machine, result.parameters));
 }
 
 double root_mean_square(const Eigen::VectorXd& moved) {
@@ -87,14 +115,15 @@ void consider_scans(const std::vector<GenericTest>& tests, Leading& leading) {
 }  // namespace
 
 Screening screen(const Campaign& campaign, const FitResult& result, int threads,
-                 std::size_t most_observations) {
+                 std::size_t most_observations, std::size_t most_setups) {
   if (result.dof < kThresholds.screening_spare_observations) return {};
   threads = thread_count(threads);
-  const std::vector<std::size_t> chosen = evenly_chosen(places(result), most_observations);
+  const std::vector<std::size_t> chosen =
+      chosen_of(places(result), campaign.setups.size(), most_observations, most_setups);
   const LinearModel model(campaign, result, chosen);
   const std::vector<NoiseParameters> noise = fitted_noise(result, model.noise_groups());
   const NoiseData data = without(model.problem().data, flagged(result, chosen));
-  const Projector projector(model.problem(), data, noise, threads, model.parts());
+  const Projector projector(problem_of(model, campaign, result), data, noise, threads, model.parts());
   const std::vector<Family> families = volcal::families(model);
   Leading leading;
   consider_families(model, families, test_families(model, families, projector, threads), leading);
@@ -107,6 +136,34 @@ Screening screen(const Campaign& campaign, const FitResult& result, int threads,
   screening.observations = model.size();
   screening.of_a_sample = model.size() < result.residuals.size();
   return screening;
+}
+
+namespace {
+
+/// As the fit's finding has it.
+std::optional<Screening> found_by(const FitResult& fitted) {
+  const auto found = std::ranges::find(fitted.findings, FindingCode::ModelContradicted, &Finding::code);
+  if (found == fitted.findings.end()) return std::nullopt;
+  Screening screening;
+  screening.tests = static_cast<std::size_t>(found->count("tests"));
+  screening.of_a_sample = found->has("sampled");
+  screening.observations =
+      screening.of_a_sample ? static_cast<std::size_t>(found->count("sampled")) : fitted.residuals.size();
+  screening.contradicts = true;
+  screening.leading = found->text("leading");
+  screening.log10_p = found->number("log10_p").si;
+  screening.rms = found->number("rms").si;
+  return screening;
+}
+
+}  // namespace
+
+Screening screen_evaluated(const Campaign& campaign, const FitResult& evaluated, const FitResult& fitted,
+                           int threads) {
+  Screening screening = screen(campaign, evaluated, threads);
+  const std::optional<Screening> own = found_by(fitted);
+  const bool is_worse = own && own->log10_p < screening.log10_p;
+  return is_worse && fitted_readings(campaign, fitted).are_all() ? *own : screening;
 }
 
 void screen_fit(const Campaign& campaign, const FitOptions& options, FitResult& result) {

@@ -15,11 +15,18 @@ namespace volcal {
 
 /// Nothing is tested without readings to spare. `result` must come from fit() of this campaign. Noise that is
 /// more than white is not exactly known: a test then counts from a much smaller probability on. Readings that
-/// the outlier test flags are left out. Campaigns of more readings than the tests need
-/// are tested on an even choice of them. The same for any number of
-/// threads.
+/// the outlier test flags are left out. Campaigns of more readings or setups than the tests
+/// need are tested on an even choice of them. The same for any number of threads.
 Screening screen(const Campaign& campaign, const FitResult& result, int threads,
-                 std::size_t most_observations = kThresholds.screening_most_observations);
+                 std::size_t most_observations = kThresholds.screening_most_observations,
+                 std::size_t most_setups = kThresholds.screening_most_setups);
+
+/// Of readings against a finished fit, whose errors are held: `evaluated` (as_fitted(), evaluate.h), where
+/// stations and the like are free alone, by screen(). Where all of them are the readings that the fit was
+/// made from, the more improbable of that and what the fit's own tests found, with the error functions free,
+/// too.
+Screening screen_evaluated(const Campaign& campaign, const FitResult& evaluated, const FitResult& fitted,
+                           int threads);
 
 /// screen() and judge() with the time that they took. Nothing where there are no residuals to test: a robust
 /// loss has no likelihood, an adjustment that did not converge none to trust.

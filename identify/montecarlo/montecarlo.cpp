@@ -96,6 +96,7 @@ class MonteCarloStudy::Work {
         set_(quantities_of(result, options_.grid_per_axis)),
         projection_(repeated_, set_),
         solvers_(repeated_),
+        contradicted_(contradictions(result)),
         sums_(set_.items.size()),
         tolerance_(projection_.quantities()) {
     for (Eigen::Index i = 0; i < tolerance_.size(); ++i)
@@ -158,6 +159,7 @@ class MonteCarloStudy::Work {
     result.to_come = tally_.to_come;
     for (std::size_t i = 0; i < set_.items.size(); ++i) result.quantities.push_back(quantity_result(i));
     result.budget = uncertainty_budget(repeated_, set_);
+    result.contradicted = contradicted_;
     return result;
   }
 
@@ -456,6 +458,7 @@ class MonteCarloStudy::Work {
   QuantitySet set_;
   DrawProjection projection_;
   PathSolvers solvers_;
+  std::vector<Finding> contradicted_;
   StudySums sums_;
   Eigen::ArrayXd tolerance_;  ///< by linear propagation, SI
   RefitCheck check_;

@@ -108,8 +108,9 @@ struct MonteCarloResult {
   std::uint64_t not_converged = 0;  ///< draws; they are in the sums
   double to_come = 0.0;  ///< largest bound on what further chord steps would change, standard deviations
   std::vector<QuantityResult> quantities;
-  UncertaintyBudget budget;    ///< rows as `quantities`
-  std::vector<Finding> notes;  ///< on the campaign's files (Campaign::notes)
+  UncertaintyBudget budget;           ///< rows as `quantities`
+  std::vector<Finding> contradicted;  ///< of the fit (contradictions(), result.h)
+  std::vector<Finding> notes;         ///< on the campaign's files (Campaign::notes)
 };
 
 /// One study: made, run block by block, read out.

@@ -7,30 +7,15 @@
 #include <string_view>
 #include <utility>
 
+#include "volcal/identify/program/program_header.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
 namespace volcal {
 namespace {
 
-constexpr double kShareOfJumps = 0.25;        ///< of the tolerance
-constexpr double kTravelRounding = 1e-9;      // m
-constexpr std::size_t kLongestWritten = 255;  // characters without line end: what LinuxCNC reads
-
-/// "(a b c)" as comments of at most `longest` characters, broken at blanks, the later ones behind "(".
-std::vector<std::string> comments_of(const std::string& text, std::size_t longest) {
-  std::vector<std::string> comments;
-  std::string_view rest = text;
-  while (rest.size() > longest) {
-    std::size_t cut = rest.rfind(' ', longest - 1);
-    if (cut == std::string_view::npos || cut == 0) cut = longest - 1;
-    comments.push_back(std::string(rest.substr(0, cut)) + ")");
-    comments.back().insert(0, comments.size() > 1 ? "(" : "");
-    rest.remove_prefix(rest[cut] == ' ' ? cut + 1 : cut);
-  }
-  comments.push_back((comments.empty() ? "" : "(") + std::string(rest));
-  return comments;
-}
+constexpr double kShareOfJumps = 0.25;    ///< of the tolerance
+constexpr double kTravelRounding = 1e-9;  // m
 
 std::size_t length_without_end(std::string_view line) {
   const std::size_t last = line.find_last_not_of("\r\n");
@@ -190,7 +175,7 @@ void NcRewriter::correct_motions(const NcStep& step, const std::array<bool, 3>& 
 
 /// Above the program, below its first %.
 void NcRewriter::write_header(std::string_view line) {
-  if (line.find(kCompensatedMark) != std::string_view::npos)
+  if (is_compensated(line))
     interpreter_.place().refuse("the program has been compensated already",
                                 "compensate the original program");
   if (header_written_ || options_.header.empty()) return;
@@ -198,8 +183,7 @@ void NcRewriter::write_header(std::string_view line) {
   const bool percent = !written_.empty() && written_.front().text.starts_with('%');
   const std::string end = line.ends_with("\r\n") ? "\r\n" : "\n";
   std::vector<NcWrittenLine> header;
-  for (const std::string& comment : comments_of(options_.header, kLongestWritten - 1))
-    header.push_back({comment + end, 0.0});
+  for (const std::string& comment : options_.header) header.push_back({comment + end, 0.0});
   written_.insert(percent ? written_.begin() + 1 : written_.begin(), header.begin(), header.end());
 }
 
@@ -207,9 +191,9 @@ void NcRewriter::write_header(std::string_view line) {
 void NcRewriter::require_readable(std::string_view line) const {
   for (const NcWrittenLine& written : written_) {
     const std::size_t length = length_without_end(written.text);
-    if (length <= kLongestWritten || length <= length_without_end(line)) continue;
+    if (length <= kLongestLine || length <= length_without_end(line)) continue;
     interpreter_.place().refuse(
-        fmt::format("the rewritten block has {} characters, and controls read {}", length, kLongestWritten),
+        fmt::format("the rewritten block has {} characters, and controls read {}", length, kLongestLine),
         "write its comment on a line of its own");
   }
 }

@@ -23,15 +23,12 @@
 namespace volcal {
 
 struct NcRewriteOptions {
-  double tolerance = 0.5e-6;      ///< of the corrected path, m
-  double arc_tolerance = 0.5e-6;  ///< of chords in place of arcs, m
-  int decimals_mm = 4;            ///< of coordinates in mm; inches get one more
-  bool within_readings = false;   ///< refuse motions beyond the measured positions
-  std::string header;             ///< comment that is written above the program; empty = none
+  double tolerance = 0.5e-6;        ///< of the corrected path, m
+  double arc_tolerance = 0.5e-6;    ///< of chords in place of arcs, m
+  int decimals_mm = 4;              ///< of coordinates in mm; inches get one more
+  bool within_readings = false;     ///< refuse motions beyond the measured positions
+  std::vector<std::string> header;  ///< lines above the program (program_header.h); empty = none
 };
-
-/// Begins the header of rewritten programs, by which they are known.
-inline constexpr std::string_view kCompensatedMark = "(volcal compensate:";
 
 struct NcRewriteSummary {
   std::int64_t lines_read = 0;

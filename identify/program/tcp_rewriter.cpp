@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "volcal/identify/program/program_header.h"
 #include "volcal/model/description/errors.h"
 #include "volcal/model/description/units.h"
 
@@ -68,12 +69,13 @@ bool is_stop(int m) { return m == 0 || m == 10 || m == 20 || m == 300 || m == 60
 
 }  // namespace
 
-bool begins_tcp(std::string_view line) {
+std::optional<TcpBegin> tcp_begin(std::string_view line) {
   const std::string text = bare(line);
-  if (text.starts_with("TRAORI")) return true;
+  if (text.starts_with("TRAORI")) return TcpBegin::ByName;
   const std::size_t at = text.find("G43.4");
-  return at != std::string::npos &&
-         (at + 5 == text.size() || std::isdigit(static_cast<unsigned char>(text[at + 5])) == 0);
+  if (at == std::string::npos) return std::nullopt;
+  const bool longer = at + 5 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 5])) != 0;
+  return longer ? std::nullopt : std::optional(TcpBegin::ByCode);
 }
 
 /// What a block says.
@@ -470,7 +472,7 @@ void TcpRewriter::write_block(const Words& words, const NcBlock& block, const st
 
 void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {
   written_.clear();
-  if (line.find(kCompensatedMark) != std::string_view::npos)
+  if (is_compensated(line))
     place().refuse("the program has been compensated already", "compensate the original program");
   NcBlock block;
   try {
@@ -502,7 +504,9 @@ void TcpRewriter::rewrite(std::string_view line, const Sink& sink) {
   if (!header_written_ && !options_.header.empty()) {
     header_written_ = true;
     const std::string end = line.ends_with("\r\n") ? "\r\n" : "\n";
-    written_.insert(written_.begin() + (block.percent ? 1 : 0), options_.header + end);
+    std::vector<std::string> header;
+    for (const std::string& comment : options_.header) header.push_back(comment + end);
+    written_.insert(written_.begin() + (block.percent ? 1 : 0), header.begin(), header.end());
   }
   ++summary_.lines_read;
   summary_.lines_written += static_cast<std::int64_t>(written_.size());

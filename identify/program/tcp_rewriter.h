@@ -26,8 +26,9 @@
 
 namespace volcal {
 
-/// Whether a line begins tool centre point motion.
-bool begins_tcp(std::string_view line);
+enum class TcpBegin { ByCode, ByName };  ///< G43.4 H, TRAORI
+/// Nothing where a line does not begin tool centre point motion.
+std::optional<TcpBegin> tcp_begin(std::string_view line);
 
 struct TcpRewriteOptions {
   double tolerance = 0.5e-6;  ///< of the corrected path, m; of rotary positions a tenth of a metre away
@@ -38,7 +39,7 @@ struct TcpRewriteOptions {
   std::array<bool, 3> identified = {true, true, true};  ///< errors of A, B, C; others must stay at 0
   std::optional<MeasuredTravel> measured;  ///< beyond it errors are held; nothing = not looked at
   bool within_readings = false;            ///< refuse motions beyond it
-  std::string header;                      ///< comment that is written above the program; empty = none
+  std::vector<std::string> header;         ///< lines above the program (program_header.h); empty = none
 };
 
 /// Weighted by length of the path of the functional point.

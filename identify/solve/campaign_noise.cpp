@@ -79,13 +79,19 @@ CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> 
   return noise;
 }
 
-CampaignNoise sampled(const CampaignNoise& all, std::size_t limit) {
-  if (all.places.size() <= limit) return all;
+CampaignNoise sampled(const CampaignNoise& all, std::size_t limit, std::size_t most_setups) {
+  std::set<std::size_t> setups;
+  for (const ObservationPlace& place : all.places) setups.insert(place.setup);
+  if (all.places.size() <= limit && setups.size() <= most_setups) return all;
+  setups.clear();
   CampaignNoise sample{{}, {}, all.groups};
   for (const std::size_t which : sampling_order(all.data.sequences)) {
     const bool each_instrument = sample.data.sequences.size() >= all.groups.size();
     if (each_instrument && sample.places.size() >= limit) break;
     const NoiseSequence& sequence = all.data.sequences[which];
+    const std::size_t setup = all.places[sequence.observation.front()].setup;
+    if (each_instrument && setups.size() >= most_setups && !setups.contains(setup)) continue;
+    setups.insert(setup);
     NoiseSequence kept;
     kept.group = sequence.group;
     for (const std::size_t k : first_in_time(sequence, limit)) {
@@ -204,6 +210,24 @@ void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eig
     problem.residual[i] = readings.value[static_cast<std::size_t>(channel)][reading] - row.predicted[channel];
   });
   problem.jacobian = std::move(jacobian);
+}
+
+NoiseProblem without_unseen_nuisance(NoiseProblem problem, const ParameterLayout& layout,
+                                     const DatumSpace& datum) {
+  std::vector<bool> is_unseen(static_cast<std::size_t>(problem.jacobian.cols()), false);
+  for (const DatumSpace::BlockCoordinates& block : datum.blocks()) {
+    if (layout.blocks[block.block].kind != ParameterKind::Nuisance) continue;
+    if (!problem.jacobian.middleCols(block.offset, block.size).isZero(0.0)) continue;
+    std::fill_n(is_unseen.begin() + block.offset, block.size, true);
+  }
+  std::vector<Eigen::Index> seen;
+  for (std::size_t k = 0; k < is_unseen.size(); ++k) {
+    if (!is_unseen[k]) seen.push_back(static_cast<Eigen::Index>(k));
+  }
+  problem.jacobian = problem.jacobian(Eigen::all, seen).eval();
+  problem.prior_precision = problem.prior_precision(seen, seen).eval();
+  problem.prior_mean = problem.prior_mean(seen).eval();
+  return problem;
 }
 
 LocalRows local_rows(const MeasurementModel& model, const DatumSpace& datum,

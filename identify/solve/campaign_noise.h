@@ -33,10 +33,10 @@ struct CampaignNoise {
 CampaignNoise campaign_noise(const MeasurementModel& model, std::vector<double> stated_sigma,
                              const std::vector<bool>& removed, const Eigen::VectorXd* estimated = nullptr);
 
-/// Whole sequences, evenly chosen, until `limit` observations are reached; every instrument keeps one at
-/// least. A sequence that alone is longer than the limit gives its first readings in time. All when there are
-/// no more.
-CampaignNoise sampled(const CampaignNoise& all, std::size_t limit);
+/// Whole sequences, evenly chosen, until `limit` observations are reached, of `most_setups` setups; every
+/// instrument keeps one at least. A sequence that alone is longer than the limit gives its first readings in
+/// time. All when there are no more.
+CampaignNoise sampled(const CampaignNoise& all, std::size_t limit, std::size_t most_setups);
 
 /// Whole readings, evenly chosen over the campaign, of `limit` observations together: ascending numbers among
 /// `places`; all when there are no more. What a reading depends on that another one came before it, as a
@@ -52,6 +52,9 @@ std::vector<NoiseParameters> fitted_noise(const FitResult& result, const std::ve
 /// observations at `places`.
 void linearise(const MeasurementModel& model, const DatumSpace& datum, const Eigen::VectorXd& parameters,
                const std::vector<ObservationPlace>& places, NoiseProblem& problem);
+/// The same without stations, offsets and the like on which none of its observations depends.
+NoiseProblem without_unseen_nuisance(NoiseProblem problem, const ParameterLayout& layout,
+                                     const DatumSpace& datum);
 /// The columns of the error functions among those of linearise(), by what each observation depends on.
 LocalRows local_rows(const MeasurementModel& model, const DatumSpace& datum,
                      const Eigen::VectorXd& parameters, const std::vector<ObservationPlace>& places);

@@ -11,8 +11,9 @@ namespace volcal {
 namespace {
 
 constexpr std::size_t kNoiseSample = 30000;
-constexpr double kNegligibleStep = 1e-6;  // step^T (M + P) step: a thousandth of a standard deviation
-constexpr int kRenewals = 4;              // of what the model holds fixed; then it stays, and steps contract
+constexpr std::size_t kNoiseSetups = 300;  // each with parameters of its own
+constexpr double kNegligibleStep = 1e-6;   // step^T (M + P) step: a thousandth of a standard deviation
+constexpr int kRenewals = 4;               // of what the model holds fixed; then it stays, and steps contract
 constexpr int kMostIterations = 50;  // the centre across its circle, held by a prior alone, settles slowly
 
 NoiseGroupEquations sum_of(const std::vector<NoiseGroupEquations>& equations) {
@@ -31,12 +32,14 @@ NoiseGroupEquations sum_of(const std::vector<NoiseGroupEquations>& equations) {
 NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& datum,
                              const CampaignNoise& noise, const Eigen::VectorXd& z, const GaussianPrior& prior,
                              const NoiseOptions& options, const NoiseEstimate* previous) {
-  CampaignNoise sample = sampled(noise, kNoiseSample);
+  CampaignNoise sample = sampled(noise, kNoiseSample, kNoiseSetups);
+  const bool is_all = sample.places.size() == noise.places.size();
   NoiseProblem problem;
   linearise(model, datum, datum.raw(z), sample.places, problem);
   problem.data = std::move(sample.data);
   problem.prior_precision = prior.precision;
   problem.prior_mean = prior.mean - z;
+  if (!is_all) problem = without_unseen_nuisance(std::move(problem), model.layout(), datum);
   return estimate_noise(problem, options, previous);
 }
 

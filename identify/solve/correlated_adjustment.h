@@ -20,8 +20,9 @@
 
 namespace volcal {
 
-/// Restricted maximum likelihood about an adjustment. Of more than 30,000 observations an even sample of
-/// whole sequences speaks for all. `previous`: the estimate for nearly the same problem, or null.
+/// Restricted maximum likelihood about an adjustment. Of more than 30,000 observations, or 300 setups, an
+/// even sample of whole sequences speaks for all. `previous`: the estimate for nearly the same problem, or
+/// null.
 NoiseEstimate estimate_noise(const MeasurementModel& model, const DatumSpace& datum,
                              const CampaignNoise& noise, const Eigen::VectorXd& z, const GaussianPrior& prior,
                              const NoiseOptions& options, const NoiseEstimate* previous = nullptr);

@@ -137,7 +137,8 @@ ComparedModel evaluated(const GivenModel& model, const Campaign& campaign, const
   const Campaign& readings = model.readings(campaign);
   Evaluation evaluation = evaluate_model(readings, model.spec, nullptr, threads);
   std::optional<Screening> screening;
-  if (model.result != nullptr) screening = screen(readings, as_fitted(evaluation, *model.result), threads);
+  if (model.result != nullptr)
+    screening = screen_evaluated(readings, as_fitted(evaluation, *model.result), *model.result, threads);
   ComparedModel compared = compared_model(model.name, readings, std::move(evaluation.residuals), options);
   compared.screening = screening;
   compared.circle_causes =

@@ -146,6 +146,83 @@ TEST_F(CompensatedPrograms, AreNotCompensatedTwiceAndKeepTheOldFileWhenRefused) 
   EXPECT_EQ(content(path("once.ngc")), once);
 }
 
+/// The scale of X expands by 10 um/m/K from home at 0: at 25 degC the tool is 20 um too far at X400.
+class ConditionsOfPrograms : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  void write_machine(const std::string& structure, const std::string& axes) const {
+    std::ofstream machine(path("machine.toml"));
+    machine << "format = \"volcal-machine-1\"\nname = \"by hand\"\nstructure = \"" << structure
+            << "\"\n[datum]\nprimary = \"X\"\nsecondary = \"Y\"\n";
+    for (const char axis : axes) {
+      const bool rotary = axis == 'A' || axis == 'C';
+      machine << "[axes." << axis << "]\n"
+              << (rotary ? "travel_deg = [-180.0, 180.0]\nhome_deg = 0.0\ncentre_mm = [0.0, 0.0, 0.0]\n"
+                         : "travel_mm = [-500.0, 500.0]\nhome_mm = 0.0\n"
+                           "reference_point_mm = [0.0, 0.0, 0.0]\n");
+    }
+    machine << "[tools.t]\noffset_mm = [0.0, 0.0, -200.0]\n";
+    std::ofstream(path("model.toml"))
+        << "format = \"volcal-model-1\"\nmachine = \"machine.toml\"\n[functions]\n"
+           "default = { basis = \"zero\" }\n[[effects]]\nkind = \"scale-expansion\"\naxis = \"X\"\n"
+           "temperature = \"air\"\namplitude_um_per_m_K = 10.0\n";
+  }
+
+  std::string rewritten(const std::string& program, const std::string& conditions = "") const {
+    std::ofstream(path("part.nc")) << program;
+    const auto run = run_program("compensate " + path("model.toml") + " " + path("part.nc") + " -o " +
+                                 path("out.nc") + " --work-offset G54=X0,Y0,Z0 --tool-length H1=200" +
+                                 (conditions.empty() ? "" : " --conditions " + conditions));
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    return content(path("out.nc"));
+  }
+
+  /// At 20 degC by default, and at 25; what stands in the header, given back, makes the same file.
+  void expect_header_of_coordinates(const std::string& program, const std::string& begin,
+                                    const std::string& end) const {
+    const std::string usual = rewritten(program), warm = rewritten(program, "T_air=25");
+    EXPECT_THAT(usual,
+                HasSubstr("\n" + begin + "conditions: T_air_degC=20 reference temperature" + end + "\n"));
+    EXPECT_THAT(usual, ::testing::ContainsRegex("\nG1 X400(\\.0000)? F800\n"));
+    EXPECT_THAT(warm, HasSubstr("\n" + begin + "conditions: T_air_degC=25 as stated" + end + "\n"));
+    EXPECT_THAT(warm, HasSubstr("G1 X399.9800 F800\n"));
+    EXPECT_EQ(rewritten(program, "T_air_degC=25"), warm);
+    EXPECT_EQ(rewritten(program, "T_air_degC=20"), usual);
+  }
+
+ private:
+  testing::ScratchFolder folder_;
+};
+
+TEST_F(ConditionsOfPrograms, InTheHeaderAreThoseOfTheCoordinates) {
+  write_machine("w X' Y' b Z t", "XYZ");
+  const std::string program = "G21 G90 G54\nG0 X0 Y0 Z0\nG1 X400 F800\nM2\n";
+  expect_header_of_coordinates(program, "(", ")");
+  EXPECT_THAT(rewritten(program, "T_air=25,time_s=60"),
+              HasSubstr("(conditions: T_air_degC=25 as stated, time_s=60 as stated)\n"));
+}
+
+TEST_F(ConditionsOfPrograms, StandAboveToolCentrePointMotion) {
+  write_machine("w C' A' b X Y Z t", "XYZAC");
+  expect_header_of_coordinates("G21 G90 G54\nG0 A0 C0\nG43.4 H1\nG0 X0 Y0 Z0\nG1 X400 F800\nG49\nM30\n", "(",
+                               ")");
+}
+
+/// SINUMERIK takes brackets for parameters.
+TEST_F(ConditionsOfPrograms, StandBehindASemicolonWhereBracketsAreNoComment) {
+  write_machine("w C' A' b X Y Z t", "XYZAC");
+  const std::string program = "G21 G90 G54\nG0 A0 C0\nTRAORI\nG0 X0 Y0 Z0\nG1 X400 F800\nTRAFOOF\nM30\n";
+  expect_header_of_coordinates(program, "; ", "");
+  const std::string text = rewritten(program);
+  EXPECT_THAT(text, ::testing::StartsWith("; volcal compensate: result "));
+  std::ofstream(path("once.nc")) << text;
+  const auto twice = run_program("compensate " + path("model.toml") + " " + path("once.nc") + " --check" +
+                                 " --work-offset G54=X0,Y0,Z0");
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.errors, HasSubstr("has been compensated already"));
+}
+
 /// docs/guides/compensate-a-program.md shows a command and what it prints, line by line.
 TEST(CompensateGuide, QuotesWhatTheProgramPrints) {
   const std::filesystem::path source = VOLCAL_SOURCE_DIR;

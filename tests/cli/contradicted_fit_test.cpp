@@ -56,5 +56,21 @@ TEST_F(ContradictedFit, IsSaidInTheAnswersForOtherPrograms) {
   EXPECT_FALSE(Json::parse(run.output).at("contradicted").empty());
 }
 
+/// Draws are of the fitted model: where readings contradict it they show less than the whole error.
+TEST_F(ContradictedFit, IsSaidBesideDrawsOfIt) {
+  const std::string campaign = std::string(VOLCAL_SOURCE_DIR) + "/datasets/hidden/21";
+  const std::string drawn = "montecarlo " + campaign + "/campaign.toml -m " + campaign +
+                            "/model.toml --path linear -n 1000 --refits 0 -o " + path("drawn");
+  const auto text = run_program(drawn);
+  ASSERT_EQ(text.exit_code, 0) << text.errors;
+  EXPECT_THAT(text.output, HasSubstr("`volcal diagnose` tells"));
+  EXPECT_THAT(testing::content(path("drawn/montecarlo.txt")), HasSubstr("`volcal diagnose` tells"));
+  const auto json = run_program(drawn + " --json");
+  ASSERT_EQ(json.exit_code, 0) << json.errors;
+  const Json findings = Json::parse(json.output).at("contradicted_findings");
+  ASSERT_FALSE(findings.empty());
+  EXPECT_EQ(findings.back().at("code"), "model.contradicted");
+}
+
 }  // namespace
 }  // namespace volcal

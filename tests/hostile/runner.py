@@ -43,6 +43,7 @@ class Row:
     output: str = "o"
     needs_root: bool = False
     kept: tuple = ()  # files that must be as they were
+    patience: int = 1  # times TIMEOUT
 
 
 class Failure(Exception):
@@ -138,11 +139,11 @@ class Runner:
                     process.wait(row.stop[1])
                 if process.poll() is None:
                     process.send_signal(row.stop[0])
-            out, err = process.communicate(timeout=TIMEOUT)
+            out, err = process.communicate(timeout=TIMEOUT * row.patience)
         except subprocess.TimeoutExpired:
             process.kill()
             process.communicate()
-            raise Failure(f"hangs: no end after {TIMEOUT:.0f} s") from None
+            raise Failure(f"hangs: no end after {TIMEOUT * row.patience:.0f} s") from None
         return (out or b"").decode(errors="replace"), (err or b"").decode(errors="replace")
 
     def judge(self, row, folder, before, code, out, err):

@@ -1,9 +1,10 @@
 """Limits, signals, folders and streams."""
 import os
+import shutil
 import signal
 import subprocess
 
-from runner import FIT, Row, Skip
+from runner import COARSE, FIT, Row, Skip
 
 DRAW = ["montecarlo", "d/campaign.toml", "-m", "d/model.toml", "-n", "100000000", "-o", "o"]
 MEBIBYTE = 1 << 20
@@ -253,12 +254,37 @@ def many_setups(count, same_file):
     return prepare
 
 
-def sizes():
-    return [
+def further_setups(source, count):
+    """The demo campaign, which sees every error, and so many lines of three positions, each with an offset."""
+    def prepare(folder):
+        shutil.rmtree(f"{folder}/c")
+        shutil.copytree(os.path.join(source, "datasets/demo/campaign"), f"{folder}/c")
+        with open(f"{folder}/c/coarse.toml", "w", encoding="ascii") as file:
+            file.write(COARSE)
+        with open(f"{folder}/c/campaign.toml", "a", encoding="ascii") as campaign:
+            for i in range(count):
+                with open(f"{folder}/c/line{i}.csv", "w", encoding="ascii") as file:
+                    file.write("x_mm,y_mm,z_mm,displacement_mm\n")
+                    for k, x in enumerate((-200, 0, 200)):
+                        noise = ((7 * i + 3 * k) % 11 - 5) * 1e-4
+                        file.write(f"{x},{i % 199 - 99},{-100 - i % 97},{x + 2 + noise:.4f}\n")
+                campaign.write(f'[[setups]]\nname = "line{i}"\ninstrument = "displacement"\ndata = "line{i}.csv"\n'
+                               'tool = "short"\ndirection = [1, 0, 0]\nnoise = { constant_um = 0.3 }\n')
+    return prepare
+
+
+def sizes(source):
+    rows = [
         Row("a hundred setups", [*FIT, "--noise", "white"], (0, 1), ".", prepare=many_setups(100, False)),
         Row("10^5 setups", FIT, (1, 2), ".", prepare=many_setups(100_000, True)),
+        Row("600 setups", [*FIT, "--threads", "2"], 0, "written", prepare=further_setups(source, 600),
+            limits={"RLIMIT_AS": 1000 * MEBIBYTE}),
     ]
+    if os.environ.get("VOLCAL_LONG_TESTS"):
+        rows.append(Row("3,000 setups", [*FIT, "--threads", "2"], 0, "written", prepare=further_setups(source, 3000),
+                        limits={"RLIMIT_AS": 4000 * MEBIBYTE}, patience=20))
+    return rows
 
 
 def rows(source):
-    return [*limits(), *ends_of_time(source), *files(), *places(source), *streams(), *environments(), *sizes()]
+    return [*limits(), *ends_of_time(source), *files(), *places(source), *streams(), *environments(), *sizes(source)]

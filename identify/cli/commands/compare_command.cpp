@@ -172,7 +172,9 @@ int run_compare(const CompareArguments& arguments) {
     const Campaign& readings = model.readings(campaign);
     Evaluation evaluation = evaluate_model(readings, model.spec, nullptr, arguments.threads);
     std::optional<Screening> screening;
-    if (model.result) screening = screen(readings, as_fitted(evaluation, *model.result), arguments.threads);
+    if (model.result)
+      screening =
+          screen_evaluated(readings, as_fitted(evaluation, *model.result), *model.result, arguments.threads);
     models.push_back(compared_model(model.name, readings, std::move(evaluation.residuals), comparison));
     models.back().screening = screening;
     if (arguments.output.empty() || !report_available()) continue;

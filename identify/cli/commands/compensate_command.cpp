@@ -5,16 +5,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "volcal/identify/cli/command.h"
 #include "volcal/identify/cli/options/conditions_options.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/cli/options/program_setup.h"
+#include "volcal/identify/errors/acting_conditions.h"
 #include "volcal/identify/errors/error_tables.h"
 #include "volcal/identify/errors/rotary/rotary_axes.h"
 #include "volcal/identify/io/program_file.h"
 #include "volcal/identify/io/results/known_errors.h"
 #include "volcal/identify/program/nc_check.h"
+#include "volcal/identify/program/program_header.h"
 #include "volcal/identify/program/tcp_rewriter.h"
 #include "volcal/identify/report/text/field_text.h"
 #include "volcal/identify/report/text/findings_text.h"
@@ -59,38 +62,33 @@ void require_output(const CompensateArguments& arguments) {
                      "name another file; a program that is compensated twice is wrong twice");
 }
 
-/// A comment holds no brackets.
-std::string in_comment(std::string text) {
-  for (char& c : text) {
-    if (c == '(' || c == ')' || static_cast<unsigned char>(c) < 0x20) c = '_';
-  }
-  return text;
-}
-
 /// What the rewritten program is valid for.
-std::string header(const CompensateArguments& arguments) {
-  std::string text = fmt::format("{} result {}", kCompensatedMark, in_comment(arguments.result));
-  for (const std::string& offset : arguments.setup.work_offsets) text += " " + in_comment(offset);
-  for (const std::string& length : arguments.setup.tool_lengths) text += " " + in_comment(length);
-  return text + ")";
+std::vector<std::string> header(const FitResult& result, const CompensateArguments& arguments,
+                                const Conditions& conditions, CommentStyle style) {
+  std::string made_of = "result " + arguments.result;
+  for (const std::string& offset : arguments.setup.work_offsets) made_of += " " + offset;
+  for (const std::string& length : arguments.setup.tool_lengths) made_of += " " + length;
+  return program_header(made_of, acting_conditions(result, conditions), style);
 }
 
-NcRewriteOptions rewrite_options(const CompensateArguments& arguments) {
+NcRewriteOptions rewrite_options(const FitResult& result, const CompensateArguments& arguments,
+                                 const Conditions& conditions) {
   NcRewriteOptions options;
   options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
   options.arc_tolerance = arguments.arc_tolerance_um * kMetrePerMicrometre;
   options.decimals_mm = arguments.decimals;
   options.within_readings = arguments.conditions.no_extrapolation;
-  options.header = header(arguments);
+  options.header = header(result, arguments, conditions, CommentStyle::Brackets);
   return options;
 }
 
-RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arguments) {
+RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arguments,
+                         const Conditions& conditions) {
   const NcSetup setup = program_setup(arguments.setup, result.machine);
   const FunctionalPoint point = functional_point(result.machine, arguments.tool, arguments.lengths_from);
-  const ProgramErrors errors =
-      program_errors(result, arguments.tool, conditions_of(result, arguments.conditions));
-  NcRewriter rewriter(errors, setup, point, rewrite_options(arguments), arguments.program);
+  const ProgramErrors errors = program_errors(result, arguments.tool, conditions);
+  NcRewriter rewriter(errors, setup, point, rewrite_options(result, arguments, conditions),
+                      arguments.program);
   std::optional<NcCheck> check;
   if (arguments.check) check.emplace(errors, setup, point);
   LineFile program(arguments.program);
@@ -109,25 +107,27 @@ RewrittenProgram rewrite(const FitResult& result, const CompensateArguments& arg
   return done;
 }
 
-void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments) {
+void print_text(const RewrittenProgram& done, const FitResult& result, const CompensateArguments& arguments,
+                const Conditions& conditions) {
   fmt::print("{}", program_summary_text(done.summary));
   if (done.check) fmt::print("{}", program_check_text(*done.check));
-  fmt::print("{}", conditions_text(result, conditions_of(result, arguments.conditions)));
+  fmt::print("{}", conditions_text(result, conditions));
   fmt::print("{}", findings_text(errors_in_no_table(result)));
   fmt::print("{}{}", findings_text(result.rank.invisible), findings_text(contradictions(result)));
   if (!arguments.output.empty()) fmt::print("{}\n", arguments.output);
 }
 
-/// Whether some line begins tool centre point motion.
-bool has_tcp(const std::string& program) {
+/// How the first line that begins tool centre point motion does.
+std::optional<TcpBegin> first_tcp(const std::string& program) {
   LineFile lines(program);
   for (std::string_view line; lines.next(line);) {
-    if (begins_tcp(line)) return true;
+    if (const auto begin = tcp_begin(line)) return begin;
   }
-  return false;
+  return std::nullopt;
 }
 
-TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments& arguments) {
+TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments& arguments,
+                              const Conditions& conditions, TcpBegin begin) {
   TcpRewriteOptions options;
   options.tolerance = arguments.tolerance_um * kMetrePerMicrometre;
   options.decimals_mm = arguments.decimals;
@@ -136,21 +136,22 @@ TcpRewriteOptions tcp_options(const FitResult& result, const CompensateArguments
   options.check = arguments.check;
   options.measured = MeasuredTravel(result);
   options.within_readings = arguments.conditions.no_extrapolation;
-  options.header = header(arguments);
+  options.header = header(result, arguments, conditions,
+                          begin == TcpBegin::ByName ? CommentStyle::Semicolon : CommentStyle::Brackets);
   options.identified.fill(false);
   for (const AxisName axis : identified_rotary_axes(result))
     options.identified[static_cast<std::size_t>(direction_of(axis))] = true;
   return options;
 }
 
-TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& arguments) {
+TcpSummary rewrite_tcp(const FitResult& result, const CompensateArguments& arguments,
+                       const Conditions& conditions, TcpBegin begin) {
   Tool tool;
   if (const auto index = result.machine.tool_index(arguments.tool)) tool = result.machine.tools[*index];
-  TcpRewriter rewriter(result.machine,
-                       joint_errors(result, tool, conditions_of(result, arguments.conditions)),
+  TcpRewriter rewriter(result.machine, joint_errors(result, tool, conditions),
                        program_setup(arguments.setup, result.machine),
                        functional_point(result.machine, arguments.tool, arguments.lengths_from),
-                       tcp_options(result, arguments), arguments.program);
+                       tcp_options(result, arguments, conditions, begin), arguments.program);
   LineFile program(arguments.program);
   std::optional<AtomicFile> output;
   if (!arguments.output.empty()) output.emplace(arguments.output);
@@ -172,9 +173,9 @@ std::vector<Finding> left_by_tcp(const FitResult& result) {
   return findings;
 }
 
-int run_tcp(const FitResult& result, const CompensateArguments& arguments) {
-  const TcpSummary summary = rewrite_tcp(result, arguments);
-  const Conditions conditions = conditions_of(result, arguments.conditions);
+int run_tcp(const FitResult& result, const CompensateArguments& arguments, const Conditions& conditions,
+            TcpBegin begin) {
+  const TcpSummary summary = rewrite_tcp(result, arguments, conditions, begin);
   if (arguments.json) {
     nlohmann::ordered_json json = tcp_summary_json(summary, arguments.check);
     add_findings("effects_not_compensated", left_by_tcp(result), json);
@@ -195,22 +196,23 @@ int run_tcp(const FitResult& result, const CompensateArguments& arguments) {
 int run_compensate(const CompensateArguments& arguments) {
   require_output(arguments);
   const FitResult result = read_known_errors(arguments.result);
-  if (has_tcp(arguments.program)) return run_tcp(result, arguments);
+  const Conditions conditions = conditions_of(result, arguments.conditions);
+  if (const auto begin = first_tcp(arguments.program)) return run_tcp(result, arguments, conditions, *begin);
   if (arguments.orientation)
     throw InputError({arguments.program, 0},
                      "--orientation turns rotary axes, and the program has no tool centre point motion",
                      "leave the option out, or write G43.4 H or TRAORI in the program");
-  const RewrittenProgram done = rewrite(result, arguments);
+  const RewrittenProgram done = rewrite(result, arguments, conditions);
   if (arguments.json) {
     nlohmann::ordered_json json = program_json(done.summary, done.check);
     add_findings("effects_not_compensated", errors_in_no_table(result), json);
-    json["conditions"] = conditions_json(result, conditions_of(result, arguments.conditions));
+    json["conditions"] = conditions_json(result, conditions);
     add_findings("invisible", result.rank.invisible, json);
     add_findings("contradicted", contradictions(result), json);
     if (!arguments.output.empty()) json["file"] = arguments.output;
     fmt::print("{}\n", json_text(json, 2));
   } else {
-    print_text(done, result, arguments);
+    print_text(done, result, arguments, conditions);
   }
   return result.status == FitStatus::RankDeficient ? kIncomplete : kDone;
 }

@@ -16,6 +16,7 @@
 #include "volcal/identify/cli/progress.h"
 #include "volcal/identify/cli/provenance.h"
 #include "volcal/identify/criticism/catalogue/named_effect.h"
+#include "volcal/identify/criticism/screening.h"
 #include "volcal/identify/io/campaign/campaign_reader.h"
 #include "volcal/identify/io/campaign/model_reader.h"
 #include "volcal/identify/io/checkpoint_file.h"
@@ -64,7 +65,9 @@ FitResult fitted(const MonteCarloArguments& arguments, const Campaign& campaign,
   options.outliers = outlier_policy(arguments.outliers);
   options.noise = noise_policy(arguments.noise);
   options.progress = [&bar](const std::string& stage, double done) { bar.update("fit: " + stage, done); };
-  return fit(campaign, model, options);
+  FitResult result = fit(campaign, model, options);
+  if (is_first(arguments)) screen_fit(campaign, options, result);
+  return result;
 }
 
 /// KIND:TARGET=U, a normal distribution with standard uncertainty U, or KIND:TARGET=+-A, a rectangular one of

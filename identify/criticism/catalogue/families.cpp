@@ -25,7 +25,7 @@ constexpr int kHighestExtraDegree = 11;
 void resolution_columns(const LinearModel& model, ErrorSymbol symbol, std::size_t setup,
                         Eigen::Ref<Eigen::MatrixXd> columns) {
   const Campaign& campaign = model.campaign();
-  const MeasuredRange range = measured_range(campaign, symbol.axis);
+  const MeasuredRange& range = model.measured(symbol.axis);
   const int target =
       disturbance_of({.kind = TargetKind::Motion, .symbol = symbol, .component = 0}, campaign.machine);
   const auto& position = campaign.setups[setup].readings.position[index_of(symbol.axis)];

@@ -34,6 +34,9 @@ struct Thresholds {
   /// Observations. More: an even choice of as many is screened. A shift of a twentieth of sigma between two
   /// halves of them still stands 5.6 standard deviations out.
   std::size_t screening_most_observations = 50000;
+  /// Setups. More: an even choice of as many is screened. Each has parameters, and suspects, of its own: the
+  /// work grows with the cube of their number.
+  std::size_t screening_most_setups = 300;
 
   // Names against each other.
 

@@ -18,6 +18,8 @@ LinearModel::Fixed::Fixed(const Campaign& of, const FitResult& result)
   model.expand_effects(result.parameters);
   model.set_second_order_remainder(result.parameters);
   views = setup_views(campaign, model.binding(), model.chain());
+  for (const Axis& axis : campaign.machine.axes)
+    measured[index_of(axis.name)] = measured_range(campaign, axis.name);
 }
 
 namespace {

@@ -4,6 +4,7 @@
 /// change.
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "volcal/identify/noise/restricted_likelihood.h"
 #include "volcal/identify/result/result.h"
 #include "volcal/identify/solve/campaign_noise.h"
+#include "volcal/identify/solve/priors/resolution.h"
 #include "volcal/identify/solve/priors/smoothing.h"
 #include "volcal/model/observation/measurement_model.h"
 
@@ -32,6 +34,8 @@ class LinearModel {
   const MeasurementModel& model() const { return fixed_->model; }
   std::size_t size() const { return observations().size(); }
   const std::vector<Observation>& observations() const { return fixed_->observations; }
+  /// Of the campaign's commanded positions.
+  const MeasuredRange& measured(AxisName axis) const { return fixed_->measured[index_of(axis)]; }
   const std::vector<SetupView>& views() const { return fixed_->views; }
   const std::vector<std::string>& noise_groups() const { return fixed_->noise_groups; }
   /// Derivatives to the parameters in datum coordinates, residuals (reading minus prediction), priors and
@@ -97,6 +101,7 @@ class LinearModel {
 
     const Campaign& campaign;
     MeasurementModel model;
+    std::array<MeasuredRange, kAxisCount> measured;
     std::vector<Observation> observations;
     std::vector<Eigen::Index> parts;
     std::vector<std::string> noise_groups;

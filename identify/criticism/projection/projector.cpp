@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/projection/projector.h"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +9,17 @@
 #include "volcal/identify/numeric/parallel.h"
 
 namespace volcal {
+namespace {
+
+constexpr Eigen::Index kMostNumbersAtOnce = Eigen::Index{1} << 25;  // 256 MiB of products of several parts
+
+/// Parts whose products, so many numbers each, wait to be added up.
+std::size_t parts_at_once(Eigen::Index numbers) {
+  return static_cast<std::size_t>(
+      std::max<Eigen::Index>(kMostNumbersAtOnce / std::max<Eigen::Index>(numbers, 1), 1));
+}
+
+}  // namespace
 
 Eigen::MatrixXd ProjectedColumns::gram(Eigen::Index begin, Eigen::Index columns) const {
   const auto after = std::ranges::upper_bound(first, begin);
@@ -46,26 +58,78 @@ void Projector::set_local(const NoiseProblem& problem) {
   local_product_ = std::make_shared<const LocalProduct>(problem.local, order);
 }
 
-/// Their products, and what of them is kept.
+/// The residual last. Of the model all columns, unless most of them vanish.
+Projector::PartRows Projector::whitened_with(const Eigen::MatrixXd& residual, std::size_t part) const {
+  const auto rows = jacobian_.middleRows(parts_[part], part_rows(part));
+  PartRows model;
+  for (Eigen::Index column = 0; column < base_parameters_; ++column) {
+    if (!rows.col(column).isZero(0.0)) model.column.push_back(column);
+  }
+  if (2 * static_cast<Eigen::Index>(model.column.size()) >= base_parameters_) {
+    model.column.resize(static_cast<std::size_t>(base_parameters_));
+    std::iota(model.column.begin(), model.column.end(), Eigen::Index{0});
+  }
+  const auto count = static_cast<Eigen::Index>(model.column.size());
+  model.rows.resize(residual.rows(), count + 1);
+  const auto first = static_cast<std::size_t>(parts_[part]);
+  if (count == base_parameters_) {
+    whitener_->whiten_part(first, rows, model.rows.leftCols(count));
+  } else {
+    whitener_->whiten_part(first, rows(Eigen::all, model.column).eval(), model.rows.leftCols(count));
+  }
+  model.rows.rightCols(1) = residual;
+  return model;
+}
+
+/// Upper triangle; the residual stands behind the model's columns.
+void Projector::add_to_gram(const PartRows& part, const Eigen::MatrixXd& gram) {
+  const auto count = static_cast<Eigen::Index>(part.column.size());
+  if (count == base_parameters_) {
+    gram_ += gram;
+    return;
+  }
+  const auto place = [&](Eigen::Index k) {
+    return k < count ? part.column[static_cast<std::size_t>(k)] : base_parameters_;
+  };
+  for (Eigen::Index k = 0; k <= count; ++k) {
+    for (Eigen::Index i = 0; i <= k; ++i) gram_(place(i), place(k)) += gram(i, k);
+  }
+}
+
+/// Without local columns and the residual, numbered among the others.
+Projector::PartRows Projector::others_of(const PartRows& part) const {
+  PartRows others;
+  const auto local = std::ranges::lower_bound(part.column, local_columns());
+  for (auto column = local; column != part.column.end(); ++column)
+    others.column.push_back(*column - local_columns());
+  others.rows = part.rows.middleCols(local - part.column.begin(), part.column.end() - local);
+  return others;
+}
+
+/// Their products, and what of them is kept. Products are added up in the order of the parts.
 void Projector::whiten_model(const Eigen::VectorXd& residual) {
-  std::vector<Eigen::MatrixXd> others(part_count()), residuals(part_count()), products(part_count());
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    const auto first = static_cast<std::size_t>(parts_[part]);
-    residuals[part] = whitened_part(part, residual);
-    Eigen::MatrixXd rows(residuals[part].rows(), base_parameters_ + 1);
-    whitener_->whiten_part(first, jacobian_.middleRows(parts_[part], part_rows(part)),
-                           rows.leftCols(base_parameters_));
-    rows.rightCols(1) = residuals[part];
-    products[part] = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
-    add_gram_upper(rows, 1.0, products[part]);
-    others[part] = rows.middleCols(local_columns(), other_columns());
-    accepted_[part].resize(rows.rows(), 0);
-  });
-  gram_ = std::move(products[0]);
-  for (std::size_t part = 1; part < part_count(); ++part) gram_ += products[part];
+  const Eigen::Index width = base_parameters_ + 1;
+  std::vector<PartRows> others(part_count());
+  std::vector<Eigen::MatrixXd> residuals(part_count()), products(parts_at_once(width * width));
+  gram_.setZero(width, width);
+  for (std::size_t begin = 0; begin < part_count(); begin += products.size()) {
+    const std::size_t count = std::min(products.size(), part_count() - begin);
+    std::vector<PartRows> whitened(count);
+    run_parallel(count, threads_, [&](std::size_t i) {
+      const std::size_t part = begin + i;
+      residuals[part] = whitened_part(part, residual);
+      whitened[i] = whitened_with(residuals[part], part);
+      const Eigen::MatrixXd& rows = whitened[i].rows;
+      products[i].setZero(rows.cols(), rows.cols());
+      add_gram_upper(rows, 1.0, products[i]);
+      others[part] = others_of(whitened[i]);
+      accepted_[part].resize(rows.rows(), 0);
+    });
+    for (std::size_t i = 0; i < count; ++i) add_to_gram(whitened[i], products[i]);
+  }
   symmetrise_from_upper(gram_);
   residual_squares_ = gram_(base_parameters_, base_parameters_);
-  others_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(others));
+  others_ = std::make_shared<const std::vector<PartRows>>(std::move(others));
   residual_ = std::make_shared<const std::vector<Eigen::MatrixXd>>(std::move(residuals));
 }
 
@@ -154,15 +218,26 @@ Projector::PartialProducts Projector::zero_products(Eigen::Index columns) const 
   return products;
 }
 
+void Projector::add_products_with(const PartRows& others, const Eigen::MatrixXd& whitened,
+                                  Eigen::MatrixXd& products) const {
+  if (static_cast<Eigen::Index>(others.column.size()) == other_columns()) {
+    add_transposed_product(others.rows, whitened, products);
+    return;
+  }
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(others.rows.cols(), whitened.cols());
+  add_transposed_product(others.rows, whitened, own);
+  products(others.column, Eigen::all) += own;
+}
+
 Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd& rows,
                                         PartialProducts& products) const {
   const auto first = static_cast<std::size_t>(parts_[part]);
-  const Eigen::MatrixXd& others = (*others_)[part];
+  const PartRows& others = (*others_)[part];
   Eigen::MatrixXd whitened;
   if (!local_product_) {
     whitened = whitener_->whiten_part(first, rows);
   } else {
-    whitened.resize(others.rows(), rows.cols());
+    whitened.resize(others.rows.rows(), rows.cols());
     Eigen::MatrixXd weighed;
     for (Eigen::Index column = 0; column < rows.cols(); column += kColumnBlock) {
       const Eigen::Index count = std::min(kColumnBlock, rows.cols() - column);
@@ -172,7 +247,7 @@ Eigen::MatrixXd Projector::add_products(std::size_t part, const Eigen::MatrixXd&
                           products.with_local[static_cast<std::size_t>(column / kColumnBlock)]);
     }
   }
-  if (others.cols() > 0) add_transposed_product(others, whitened, products.with_others);
+  if (!others.column.empty()) add_products_with(others, whitened, products.with_others);
   add_transposed_product((*residual_)[part], whitened, products.with_residual);
   if (accepted() > 0) add_transposed_product(accepted_[part], whitened, products.with_accepted);
   return whitened;
@@ -202,6 +277,7 @@ ProjectedColumns Projector::project(const CandidateColumns& candidates) const {
   PartialProducts partial = zero_products(candidates.count);
   Eigen::MatrixXd rows;
   for (std::size_t part = 0; part < part_count(); ++part) {
+    if (part_rows(part) == 0) continue;
     rows.resize(part_rows(part), candidates.count);
     candidates.fill(part, rows);
     const Eigen::MatrixXd whitened = add_products(part, rows, partial);
@@ -231,14 +307,19 @@ ProjectedColumns Projector::project(const Eigen::MatrixXd& columns) const {
 
 Eigen::MatrixXd Projector::products_of(const Eigen::MatrixXd& columns,
                                        const std::function<void(std::size_t, Eigen::MatrixXd)>& visit) const {
-  std::vector<Eigen::MatrixXd> products(part_count());
-  run_parallel(part_count(), threads_, [&](std::size_t part) {
-    PartialProducts partial = zero_products(columns.cols());
-    visit(part, add_products(part, columns.middleRows(parts_[part], part_rows(part)), partial));
-    products[part] = combined(partial, columns.cols());
-  });
-  Eigen::MatrixXd sum = std::move(products[0]);
-  for (std::size_t part = 1; part < part_count(); ++part) sum += products[part];
+  const Eigen::Index height = parameters() + 1;
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(height, columns.cols());
+  std::vector<Eigen::MatrixXd> products(parts_at_once(height * columns.cols()));
+  for (std::size_t begin = 0; begin < part_count(); begin += products.size()) {
+    const std::size_t count = std::min(products.size(), part_count() - begin);
+    run_parallel(count, threads_, [&](std::size_t i) {
+      const std::size_t part = begin + i;
+      PartialProducts partial = zero_products(columns.cols());
+      visit(part, add_products(part, columns.middleRows(parts_[part], part_rows(part)), partial));
+      products[i] = combined(partial, columns.cols());
+    });
+    for (std::size_t i = 0; i < count; ++i) sum += products[i];
+  }
   return sum;
 }
 

@@ -106,7 +106,19 @@ class Projector {
     std::vector<Eigen::MatrixXd> with_local;  ///< of kColumnBlock columns each
   };
 
+  /// Whitened rows of a part, in columns that do not vanish there, as those of other setups' own parameters
+  /// do.
+  struct PartRows {
+    std::vector<Eigen::Index> column;  ///< among the model's, ascending
+    Eigen::MatrixXd rows;
+  };
+
   void set_local(const NoiseProblem& problem);
+  PartRows whitened_with(const Eigen::MatrixXd& residual, std::size_t part) const;
+  PartRows others_of(const PartRows& part) const;
+  void add_to_gram(const PartRows& part, const Eigen::MatrixXd& gram);
+  void add_products_with(const PartRows& others, const Eigen::MatrixXd& whitened,
+                         Eigen::MatrixXd& products) const;
   void whiten_model(const Eigen::VectorXd& residual);
   void replace_residual(const Eigen::VectorXd& residual);
   void factorise();
@@ -140,8 +152,7 @@ class Projector {
   Eigen::Index base_parameters_;
   std::vector<Eigen::Index> parts_;
   SharedMatrix jacobian_;
-  /// Per part, (observations in use) x columns: whitened, those of the model that are not local.
-  std::shared_ptr<const std::vector<Eigen::MatrixXd>> others_;
+  std::shared_ptr<const std::vector<PartRows>> others_;           ///< per part, columns that are not local
   std::shared_ptr<const std::vector<Eigen::MatrixXd>> residual_;  ///< per part, one column
   std::vector<Eigen::MatrixXd> accepted_;                         ///< per part, the same of accepted columns
   Eigen::MatrixXd precision_;                                     ///< of the base parameters, not scaled

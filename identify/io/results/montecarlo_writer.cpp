@@ -92,6 +92,7 @@ std::string montecarlo_json(const MonteCarloResult& result) {
     for (const double u : result.budget.u.row(static_cast<Eigen::Index>(i)))
       of_quantity.push_back(finite(u / result.quantities[i].quantity.si_per_unit));
   }
+  add_findings("contradicted", result.contradicted, json);
   add_notes(result.notes, json);
   return json_text(json, 1) + "\n";
 }

@@ -162,7 +162,7 @@ std::string montecarlo_text(const MonteCarloResult& result) {
   std::string text = study_head(result);
   if (result.check.linear.draws > 0) text += "\n" + refit_table(result.check);
   return text + "\n" + quantity_table(result) + "\n" + verdict_text(result) + "\n" + budget_text(result) +
-         findings_text(result.notes);
+         findings_text(result.contradicted) + findings_text(result.notes);
 }
 
 std::string undetermined_text(const FitResult& fit) {

@@ -72,6 +72,18 @@ TEST(Screening, SeesASampleOfManyReadings) {
   EXPECT_FALSE(finding_of(screening_of_backlash())->has("sampled"));
 }
 
+TEST(Screening, SeesASampleOfManySetups) {
+  const FittedStudy& study = study_with_backlash();
+  constexpr std::size_t kFew = 5;
+  ASSERT_GT(study.simulated.campaign.setups.size(), kFew);
+  const std::size_t all = study.result.residuals.size();
+  const Screening sampled = screen(study.simulated.campaign, study.result, 1, all, kFew);
+  EXPECT_LT(sampled.observations, all);
+  EXPECT_GT(sampled.observations, all / 3);
+  EXPECT_TRUE(sampled.of_a_sample);
+  expect_contradiction(sampled, study.result);
+}
+
 TEST(Screening, DoesNotDependOnThreads) {
   const Screening& one = screening_of_backlash();
   const Screening three = screen(study_with_backlash().simulated.campaign, study_with_backlash().result, 3);

@@ -136,11 +136,11 @@ TEST(NcRewriter, SharesTheTimeOfABlockUnderG93) {
 
 TEST(NcRewriter, WritesItsHeaderBelowThePercentSign) {
   NcRewriteOptions options;
-  options.header = "(volcal compensate: test)";
+  options.header = {"(volcal compensate: test)", "(conditions: none)"};
   EXPECT_EQ(rewritten("%\nG0 X1\n%\n", shift(0, 0, 0), simple_setup(), options).text,
-            "%\n(volcal compensate: test)\nG0 X1\n%\n");
-  EXPECT_EQ(rewritten("G0 X1\n", shift(0, 0, 0), simple_setup(), options).text,
-            "(volcal compensate: test)\nG0 X1\n");
+            "%\n(volcal compensate: test)\n(conditions: none)\nG0 X1\n%\n");
+  EXPECT_EQ(rewritten("G0 X1\r\n", shift(0, 0, 0), simple_setup(), options).text,
+            "(volcal compensate: test)\r\n(conditions: none)\r\nG0 X1\r\n");
 }
 
 /// An axis is not commanded before the program commands it.
@@ -173,30 +173,6 @@ TEST(NcRewriter, TakesTheFunctionalPointFromTheLengthThatIsActive) {
 TEST(NcRewriter, ReadsLinesThatEndInTwoCarriageReturns) {
   EXPECT_EQ(rewritten("G21 G90\r\r\nG0 X1 Y1 Z1\r\r\nM2\r\r\n", shift(0, 0, 0)).text,
             "G21 G90\r\r\nG0 X1 Y1 Z1\r\r\nM2\r\r\n");
-}
-
-/// Controls read 255 characters: a header with many offsets is as many comments.
-TEST(NcRewriter, SplitsALongHeader) {
-  NcRewriteOptions options;
-  options.header = std::string(kCompensatedMark) + " result out/result";
-  for (int tool = 1; tool <= 60; ++tool) options.header += " H" + std::to_string(tool) + "=150.125";
-  options.header += ")";
-  const std::string text = rewritten("%\nG21 G90\nG0 X1\n", shift(0, 0, 0), simple_setup(), options).text;
-  const std::vector<std::string> lines = testing::program_lines(text);
-  ASSERT_EQ(lines.front(), "%\n");
-  std::string joined;
-  std::size_t comments = 0;
-  for (const std::string& line : lines) {
-    EXPECT_LE(line.size(), 256U);  // with its line end
-    if (line[0] != '(') continue;
-    ASSERT_TRUE(line.ends_with(")\n"));
-    const std::size_t begin = comments == 0 ? 0 : 1;
-    joined += (comments == 0 ? "" : " ") + line.substr(begin, line.size() - begin - 2);
-    ++comments;
-  }
-  EXPECT_GE(comments, 3U);
-  EXPECT_EQ(joined + ")", options.header);
-  EXPECT_EQ(motions_of(text).size(), 1U) << "the comments are read back";
 }
 
 /// A comment that fits its own block and no longer the block with corrected words.

@@ -333,10 +333,10 @@ TEST(TcpRewriter, FollowsTraoriAndInverseTime) {
       time += 1.0 / std::stod(line.substr(at + 1));
   }
   EXPECT_NEAR(time, 0.5, 1e-4);
-  EXPECT_TRUE(begins_tcp("N10 G43.4 H1"));
-  EXPECT_TRUE(begins_tcp("traori ; five axes"));
-  EXPECT_FALSE(begins_tcp("G43.1 (no G43.4)"));
-  EXPECT_FALSE(begins_tcp("; TRAORI"));
+  EXPECT_EQ(tcp_begin("N10 G43.4 H1"), TcpBegin::ByCode);
+  EXPECT_EQ(tcp_begin("traori ; five axes"), TcpBegin::ByName);
+  EXPECT_EQ(tcp_begin("G43.1 (no G43.4)"), std::nullopt);
+  EXPECT_EQ(tcp_begin("; TRAORI"), std::nullopt);
 }
 
 }  // namespace

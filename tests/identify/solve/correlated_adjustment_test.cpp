@@ -205,7 +205,7 @@ TEST(CorrelatedAdjustment, TotalSigmaIsTheDiagonalOfTheCovariance) {
 TEST(CampaignNoise, SampleHoldsWholeSequencesOfEveryInstrument) {
   const Linearised problem;
   const CampaignNoise all = problem.noise();
-  const CampaignNoise sample = sampled(all, 100);
+  const CampaignNoise sample = sampled(all, 100, all.places.size());
   EXPECT_LT(sample.places.size(), all.places.size());
   EXPECT_GE(sample.places.size(), 100U);
   std::set<std::size_t> groups;
@@ -227,7 +227,39 @@ TEST(CampaignNoise, SampleHoldsWholeSequencesOfEveryInstrument) {
   }
   EXPECT_EQ(groups.size(), 2U);
   EXPECT_EQ(counted, sample.places.size());
-  EXPECT_EQ(sampled(all, all.places.size()).places.size(), all.places.size());
+  EXPECT_EQ(sampled(all, all.places.size(), all.places.size()).places.size(), all.places.size());
+}
+
+TEST(CampaignNoise, SampleHoldsFewSetupsWhereThereAreMany) {
+  const Linearised problem;
+  const CampaignNoise all = problem.noise();
+  constexpr std::size_t kFew = 3;
+  const CampaignNoise sample = sampled(all, all.places.size(), kFew);
+  std::set<std::size_t> setups, groups;
+  for (const ObservationPlace& place : sample.places) setups.insert(place.setup);
+  for (const NoiseSequence& sequence : sample.data.sequences) groups.insert(sequence.group);
+  EXPECT_EQ(setups.size(), kFew);
+  EXPECT_EQ(groups.size(), 2U);
+  for (const std::size_t setup : setups) {
+    const auto of_setup = [&](const ObservationPlace& place) { return place.setup == setup; };
+    EXPECT_EQ(std::ranges::count_if(sample.places, of_setup), std::ranges::count_if(all.places, of_setup))
+        << "all sequences of setup " << setup;
+  }
+}
+
+/// A likelihood does not depend on parameters that only readings outside it have.
+TEST(CampaignNoise, IsThatOfAllParametersWithoutThoseOfOtherSetups) {
+  const Linearised of;
+  const CampaignNoise sample = sampled(of.noise(), of.noise().places.size(), 3);
+  NoiseProblem problem;
+  linearise(of.model(), of.datum(), of.datum().raw(of.z), sample.places, problem);
+  problem.data = sample.data;
+  problem.prior_precision = of.prior.precision;
+  problem.prior_mean = of.prior.mean - of.z;
+  const NoiseProblem fewer = without_unseen_nuisance(problem, of.model().layout(), of.datum());
+  EXPECT_LT(fewer.jacobian.cols(), problem.jacobian.cols());
+  const double whole = RestrictedLikelihood(problem, 1).log_likelihood(kTwoNoises);
+  EXPECT_NEAR(RestrictedLikelihood(fewer, 1).log_likelihood(kTwoNoises), whole, 1e-6 * std::abs(whole));
 }
 
 /// Noise in proportion to length belongs to the distances of a tracker, not to its angles.

@@ -227,36 +227,6 @@ TEST(Projector, PartsAndGroupsChangeNothing) {
   EXPECT_LT((found.gram(3, 2) - expected.gram(3, 2)).norm(), 1e-11);
 }
 
-/// Products with it are scores, also where observations are left out and columns were accepted.
-TEST(Projector, WeighedResidualGivesEveryScore) {
-  std::mt19937_64 random(7);
-  const NoiseProblem problem = problem_in_two_parts(random);
-  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 4);
-  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1, {0, kHalf, kObservations});
-  for (const bool accepted : {false, true}) {
-    if (accepted) projector.accept(random_matrix(random, kObservations, 2));
-    const Eigen::VectorXd weighed = projector.weighed_residual();
-    EXPECT_EQ(weighed[7], 0.0);
-    EXPECT_LT((columns.transpose() * weighed - projector.project(columns).score).norm(), 1e-10);
-  }
-}
-
-/// Taken into the model, columns get the amplitudes that the test had estimated, and nothing of them is left.
-TEST(Projector, AcceptedColumnsAreExplained) {
-  std::mt19937_64 random(5);
-  const NoiseProblem problem = random_problem(random);
-  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
-  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
-  const ScoreTest before = score_test(projector.project(columns), 0, 2);
-  const double squares = projector.residual_squares();
-  projector.accept(columns);
-  EXPECT_LT((projector.solution().tail(2) - before.amplitude).norm(), 1e-10);
-  EXPECT_LT((projector.accepted_covariance() - before.covariance).norm(), 1e-10 * before.covariance.norm());
-  EXPECT_NEAR(projector.residual_squares(), squares - before.lm, 1e-9);
-  const ScoreTest after = score_test(projector.project(columns), 0, 2);
-  EXPECT_EQ(after.dof, 0) << "nothing of them is visible beside themselves";
-}
-
 /// The model of a problem with further columns, without prior.
 NoiseProblem with_columns(const NoiseProblem& problem, const Eigen::MatrixXd& columns) {
   NoiseProblem larger = problem;
@@ -285,6 +255,75 @@ void expect_same_model(const Projector& found, const Projector& expected, std::m
     EXPECT_LT(((rows * found.last_directions(last)).transpose() - rotated.bottomRows(last)).norm(),
               kAlike * rotated.norm());
   }
+}
+
+/// One offset for each setup of a few readings, beside parameters that all of them share.
+NoiseProblem problem_of_many_setups(std::mt19937_64& random, Eigen::Index readings) {
+  NoiseProblem problem = random_problem(random);
+  const NoiseSequence whole = problem.data.sequences.front();
+  problem.data.sequences.clear();
+  Eigen::MatrixXd offsets = Eigen::MatrixXd::Zero(kObservations, kObservations / readings);
+  for (Eigen::Index first = 0; first < kObservations; first += readings) {
+    offsets.col(first / readings).segment(first, readings).setOnes();
+    NoiseSequence& own = problem.data.sequences.emplace_back();
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(first + readings); ++i) {
+      own.observation.push_back(whole.observation[i]);
+      own.time.push_back(whole.time[i]);
+      own.line.push_back(whole.line[i]);
+    }
+  }
+  return with_columns(problem, offsets);
+}
+
+/// Rows of a setup are kept without the parameters of others.
+TEST(Projector, ParametersOfOtherSetupsChangeNothing) {
+  constexpr Eigen::Index kOfASetup = 5;
+  std::mt19937_64 random(9);
+  const NoiseProblem problem = problem_of_many_setups(random, kOfASetup);
+  std::vector<Eigen::Index> parts;
+  for (Eigen::Index first = 0; first <= kObservations; first += kOfASetup) parts.push_back(first);
+  Projector whole(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  Projector parted(problem, problem.data, {&kProjectedNoise, 1}, 2, parts);
+  expect_same_model(parted, whole, random);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 3);
+  const ProjectedColumns expected = whole.project(columns), found = parted.project(columns);
+  EXPECT_LT((found.score - expected.score).norm(), 1e-11);
+  EXPECT_LT((found.grams.front() - expected.grams.front()).norm(), 1e-11);
+  const Eigen::VectorXd weighed = whole.weighed_residual();
+  EXPECT_LT((parted.weighed_residual() - weighed).norm(), 1e-11 * weighed.norm());
+  whole.accept(columns);
+  parted.accept(columns);
+  expect_same_model(parted, whole, random);
+}
+
+/// Products with it are scores, also where observations are left out and columns were accepted.
+TEST(Projector, WeighedResidualGivesEveryScore) {
+  std::mt19937_64 random(7);
+  const NoiseProblem problem = problem_in_two_parts(random);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 4);
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1, {0, kHalf, kObservations});
+  for (const bool accepted : {false, true}) {
+    if (accepted) projector.accept(random_matrix(random, kObservations, 2));
+    const Eigen::VectorXd weighed = projector.weighed_residual();
+    EXPECT_EQ(weighed[7], 0.0);
+    EXPECT_LT((columns.transpose() * weighed - projector.project(columns).score).norm(), 1e-10);
+  }
+}
+
+/// Taken into the model, columns get the amplitudes that the test had estimated, and nothing of them is left.
+TEST(Projector, AcceptedColumnsAreExplained) {
+  std::mt19937_64 random(5);
+  const NoiseProblem problem = random_problem(random);
+  const Eigen::MatrixXd columns = random_matrix(random, kObservations, 2);
+  Projector projector(problem, problem.data, {&kProjectedNoise, 1}, 1);
+  const ScoreTest before = score_test(projector.project(columns), 0, 2);
+  const double squares = projector.residual_squares();
+  projector.accept(columns);
+  EXPECT_LT((projector.solution().tail(2) - before.amplitude).norm(), 1e-10);
+  EXPECT_LT((projector.accepted_covariance() - before.covariance).norm(), 1e-10 * before.covariance.norm());
+  EXPECT_NEAR(projector.residual_squares(), squares - before.lm, 1e-9);
+  const ScoreTest after = score_test(projector.project(columns), 0, 2);
+  EXPECT_EQ(after.dof, 0) << "nothing of them is visible beside themselves";
 }
 
 /// Accepted one after another, columns give the factor of all, made anew.

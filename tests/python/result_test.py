@@ -281,6 +281,9 @@ class Programs(Fitted):
         differing = [pair for pair in zip(done.text.splitlines(), told, strict=True) if pair[0] != pair[1]]
         self.assertEqual([own for own, _ in differing], ["(volcal compensate: in Python)"])
         self.assertLess(done.rms_after, 0.1 * done.rms_before)
+        stated = volcal.compensate(self.result, program, work_offsets={"G54": (10.0, -20.0, -250.0)},
+                                   tool_lengths={1: 150.0}, conditions={"T_column": 23.3})
+        self.assertIn("(conditions: T_column_degC=23.3 as stated)", stated.text.splitlines())
         self.refused(lambda: volcal.compensate(self.result, program, work_offsets={"G7": (0.0, 0.0, 0.0)}), "G7")
 
     def test_a_plan_is_the_same(self) -> None:

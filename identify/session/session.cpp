@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "volcal/identify/criticism/data/effect_words.h"
+#include "volcal/identify/criticism/data/thresholds.h"
 #include "volcal/identify/criticism/diagnosis.h"
 #include "volcal/identify/criticism/effect_findings.h"
 #include "volcal/identify/criticism/model_extension.h"

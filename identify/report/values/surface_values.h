@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "volcal/identify/result/result.h"
+#include "volcal/model/description/variable.h"
 
 namespace volcal::report {
 

@@ -157,7 +157,7 @@ void Session::go(std::size_t number) {
   std::size_t models = 0;
   for (const std::size_t each : recent_) {
     Node& of = *nodes_[each];
-    if (each != number) of.prepared.reset();
+    if (each != number) of.forget_prepared();
     const Fitted* base = of.recipe.base.get();
     const bool known = std::ranges::find(kept, base) != kept.end();
     if (++models <= kKeptModels && (known || kept.size() < kKeptFits)) {
@@ -497,10 +497,8 @@ SelectionSummary Session::summary(const std::vector<bool>& selected) const {
 std::shared_ptr<const Session::Node> Session::node_with(const FamilyTest& test) {
   const Node& here = node();
   const SearchSetting& setting = *here.recipe.setting;
-  if (here.prepared) {
-    const auto known = here.prepared->find(setting.families[test.family].name());
-    if (known != here.prepared->end()) return known->second;
-  }
+  const auto known = here.prepared.find(setting.families[test.family].name());
+  if (known != here.prepared.end()) return known->second;
   return std::make_shared<const Node>(here.with(test, finding(setting, test)));
 }
 
@@ -518,19 +516,24 @@ SessionWork Session::preparation() {
     ahead.emplace(family.name(), std::move(next));
   }
   node().prepared = ahead;
-  return interruptible(
-      [ahead = std::move(ahead), least = least_](const SessionProgress& progress) -> SessionChange {
-        double done = 0.0;
-        for (const auto& [effect, next] : ahead) {
-          report(progress, next->effects.back().label, done);
-          next->shared_refit(least)->get(progress).tests->get_unless_stopped();
-          done += 1.0 / static_cast<double>(ahead.size());
-        }
-        return [](Session&) {};
-      });
+  return interruptible([ahead = std::move(ahead), least = least_, base = node().recipe.base,
+                        setting = node().recipe.setting,
+                        number = current_](const SessionProgress& progress) -> SessionChange {
+    double done = 0.0;
+    for (const auto& [effect, next] : ahead) {
+      report(progress, next->effects.back().label, done);
+      next->shared_refit(least)->get(progress).tests->get_unless_stopped();
+      done += 1.0 / static_cast<double>(ahead.size());
+    }
+    return [base, setting, number](Session& session) {
+      Node& of = *session.nodes_[number];
+      if (session.current_ == number && of.recipe.base == base && of.recipe.setting == setting)
+        of.is_prepared = true;
+    };
+  });
 }
 
-bool Session::is_prepared() const { return node().prepared.has_value(); }
+bool Session::is_prepared() const { return node().is_prepared; }
 
 const SessionModel& Session::add(const EffectName& effect) {
   const FamilyTest& test = test_of(effect);

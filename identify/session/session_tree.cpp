@@ -264,7 +264,7 @@ void Session::Node::with_setting(std::shared_ptr<const SearchSetting> setting) {
   recipe.setting = std::move(setting);
   tests = std::make_shared<SharedTests>(tests->get().with_more(*state_));
   ranking.reset();
-  prepared.reset();
+  forget_prepared();
   refit_.reset();
 }
 
@@ -291,6 +291,11 @@ Session::Node Session::Node::with(const FamilyTest& test, EffectFinding finding)
   return next;
 }
 
+void Session::Node::forget_prepared() {
+  prepared.clear();
+  is_prepared = false;
+}
+
 const std::shared_ptr<Session::SharedRefit>& Session::Node::shared_refit(
     const std::shared_ptr<const Fitted>& least_noise) const {
   if (!refit_) refit_ = std::make_shared<SharedRefit>(recipe, state(), least_noise);
@@ -311,7 +316,7 @@ void Session::Node::let_go() {
   state_.reset();
   scanned.reset();
   previewed.clear();
-  prepared.reset();
+  forget_prepared();
   refit_.reset();
   at_least.reset();
   least.reset();

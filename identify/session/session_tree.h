@@ -157,8 +157,9 @@ struct Session::Node {
   std::vector<MeasurementProposal> proposals;
   std::vector<SurfaceFinding> drawn;                ///< for some of these
   std::map<EffectName, Eigen::VectorXd> previewed;  ///< residuals with an effect in the model
-  /// Models with a further effect that are ready to be added; once prepared, if none.
-  std::optional<std::map<EffectName, std::shared_ptr<const Node>>> prepared;
+  /// Models with a further effect that are ready to be added.
+  std::map<EffectName, std::shared_ptr<const Node>> prepared;
+  bool is_prepared = false;  ///< their refits and the tests behind these are made
   std::optional<Eigen::VectorXd> residual;
   /// At the least noise of a full fit, from readings that are not held out; and that fit.
   std::shared_ptr<const Projector> at_least;
@@ -173,6 +174,7 @@ struct Session::Node {
   Node with(const FamilyTest& test, EffectFinding finding) const;
   /// With more effects of the user's own in the catalogue.
   void with_setting(std::shared_ptr<const SearchSetting> setting);
+  void forget_prepared();
   const ModelState& state() const;
   const std::shared_ptr<SharedRefit>& shared_refit(const std::shared_ptr<const Fitted>& least_noise) const;
   std::shared_ptr<const Projector> of_all_readings() const;

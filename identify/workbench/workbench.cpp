@@ -372,9 +372,8 @@ void Workbench::look_for_unknown() {
 void Workbench::prepare_refits() {
   if (!options_.confirm_behind || session().is_prepared()) return;
   start({kPrepare, "", true,
-         [work = session_->preparation()](const SessionProgress& progress) -> std::function<void()> {
-           work(progress);
-           return [] {};
+         [this, work = session_->preparation()](const SessionProgress& progress) -> std::function<void()> {
+           return [this, change = work(progress)] { change(*session_); };
          }});
 }
 

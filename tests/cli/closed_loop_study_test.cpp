@@ -9,6 +9,7 @@
 
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
+#include "tests/support/study_campaigns.h"
 
 namespace volcal {
 namespace {
@@ -37,9 +38,7 @@ TEST(ClosedLoopStudy, AutomaticResolutionIsAsGoodAsHindsightAndItsIntervalsHold)
 // The laser's scale and the tools are wrong in every campaign by what it states.
 TEST(ClosedLoopStudy, IntervalsHoldWithSharedSources) {
   const auto campaigns = [](const std::string& options) {
-    const auto run = run_program("study closed-loop --seed 401 --small --json " + options);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
-    return nlohmann::json::parse(run.output).at("campaigns");
+    return testing::campaigns_of_study("closed-loop", "--seed 401 --small " + options);
   };
   const auto shared = campaigns("-n 4 --shared");
   double sum = 0.0;

@@ -11,6 +11,7 @@
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/study_campaigns.h"
 
 namespace volcal {
 namespace {
@@ -19,9 +20,7 @@ using ::testing::HasSubstr;
 using testing::run_program;
 
 nlohmann::json five_axis_campaigns(const std::string& options) {
-  const auto run = run_program("study five-axis --json " + options);
-  EXPECT_EQ(run.exit_code, 0) << run.errors;
-  return nlohmann::json::parse(run.output).at("campaigns");
+  return testing::campaigns_of_study("five-axis", options);
 }
 
 /// One machine of every structure on 12 x 9 poses in every run; at night two on 24 x 13.

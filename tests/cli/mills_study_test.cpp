@@ -11,6 +11,7 @@
 #include "tests/support/long_tests.h"
 #include "tests/support/program.h"
 #include "tests/support/scratch_folder.h"
+#include "tests/support/study_campaigns.h"
 
 namespace volcal {
 namespace {
@@ -18,11 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::run_program;
 
-nlohmann::json mills(const std::string& options) {
-  const auto run = run_program("study mills --json " + options);
-  EXPECT_EQ(run.exit_code, 0) << run.errors;
-  return nlohmann::json::parse(run.output).at("campaigns");
-}
+nlohmann::json mills(const std::string& options) { return testing::campaigns_of_study("mills", options); }
 
 /// One mill in every run, at night eight: most of what is hidden comes back, and other poses are predicted.
 TEST(MillsStudy, ErrorFunctionsComeBack) {

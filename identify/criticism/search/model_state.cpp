@@ -252,42 +252,34 @@ NoiseEstimate ModelState::noise_with_uncertainty() const {
 }
 
 std::unique_ptr<Projector> ModelState::projector_of_all_readings() const {
-  return make_projector(model_.problem().data, noise_);
+  return make_projector(model_, model_.problem().data, noise_);
 }
 
 std::unique_ptr<Projector> ModelState::projector_without(const std::set<std::size_t>& left_out) const {
-  return make_projector(without(model_.problem().data, setting_->heldout), noise_, left_out);
+  return make_projector(model_, without(model_.problem().data, setting_->heldout), noise_, left_out);
 }
 
 std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParameters>& noise) const {
-  return make_projector(without(model_.problem().data, setting_->heldout), noise);
+  return make_projector(model_, without(model_.problem().data, setting_->heldout), noise);
 }
 
 std::unique_ptr<Projector> ModelState::projector_at(const std::vector<NoiseParameters>& noise,
                                                     const std::vector<SmoothingTerm>& smoothing) const {
-  const LinearModel model = model_.with_smoothing(smoothing);
-  auto projector =
-      std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise,
-                                  setting_->threads, model.parts());
-  accept_added({}, *projector);
-  return projector;
+  return make_projector(model_.with_smoothing(smoothing), without(model_.problem().data, setting_->heldout),
+                        noise);
 }
 
 std::unique_ptr<Projector> ModelState::projector_without_surface(
     const AddedSurface& surface, const std::set<std::size_t>& left_out) const {
   const LinearModel model = model_.without_surface(surface.term);
-  auto projector =
-      std::make_unique<Projector>(model.problem(), without(model.problem().data, setting_->heldout), noise_,
-                                  setting_->threads, model.parts());
-  accept_added(left_out, *projector);
-  return projector;
+  return make_projector(model, without(model.problem().data, setting_->heldout), noise_, left_out);
 }
 
-std::unique_ptr<Projector> ModelState::make_projector(const NoiseData& data,
+std::unique_ptr<Projector> ModelState::make_projector(const LinearModel& model, const NoiseData& data,
                                                       const std::vector<NoiseParameters>& noise,
                                                       const std::set<std::size_t>& left_out) const {
   auto projector =
-      std::make_unique<Projector>(model_.problem(), data, noise, setting_->threads, model_.parts());
+      std::make_unique<Projector>(model.problem(), data, noise, setting_->threads, model.parts());
   accept_added(left_out, *projector);
   return projector;
 }

@@ -108,6 +108,7 @@ class ModelState {
   std::unique_ptr<Projector> projector_without_surface(const AddedSurface& surface,
                                                        const std::set<std::size_t>& left_out = {}) const;
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise) const;
+  /// With another smoothing.
   std::unique_ptr<Projector> projector_at(const std::vector<NoiseParameters>& noise,
                                           const std::vector<SmoothingTerm>& smoothing) const;
   /// From all readings, those that are held out as well.
@@ -116,7 +117,8 @@ class ModelState {
   Eigen::Index first_column(std::size_t added) const;
 
  private:
-  std::unique_ptr<Projector> make_projector(const NoiseData& data, const std::vector<NoiseParameters>& noise,
+  std::unique_ptr<Projector> make_projector(const LinearModel& model, const NoiseData& data,
+                                            const std::vector<NoiseParameters>& noise,
                                             const std::set<std::size_t>& left_out = {}) const;
   bool move_shapes();
   void accept_added(const std::set<std::size_t>& left_out, Projector& projector) const;

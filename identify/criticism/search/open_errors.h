@@ -9,10 +9,9 @@
 ///   y = J x + sum_k G_k b_k + e,    b_k ~ N(0, v_k I),    e ~ N(0, Sigma)
 ///
 /// v_k by restricted likelihood (Zhou, Hu, Zhou and Lange 2019, J. Comput. Graph. Stat. 28, 350: each step
-/// raises it), in turn with Sigma (noise_estimate.h), which is held no smaller than stated, and effects by
-/// score tests at that covariance. Valid
-/// where the columns of functions can follow the errors of the machine; what a function that came back may
-/// have beyond its few terms belongs to the field as well.
+/// raises it), in turn with Sigma (noise_estimate.h), whose white part is held no smaller than stated, and
+/// effects by score tests at that covariance. Valid where the columns of functions can follow the errors of
+/// the machine; what a function that came back may have beyond its few terms belongs to the field as well.
 
 #include <optional>
 #include <set>

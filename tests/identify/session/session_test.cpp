@@ -428,6 +428,7 @@ TEST_F(SessionOfTwo, APreparationThatIsStoppedLosesNothing) {
   const auto asked = open(), stopped = open();
   const auto stop = [](const std::string& stage, double /*done*/) { return stage != "the exact model"; };
   EXPECT_THROW(stopped->take(stopped->preparation(), stop), SessionStopped);
+  EXPECT_FALSE(stopped->is_prepared());
   for (Session* each : {asked.get(), stopped.get()}) {
     each->add(kReversal);
     each->take(each->refit());

@@ -4,6 +4,7 @@
 
 #include <CLI/Validators.hpp>
 
+#include "volcal/identify/cli/commands/studies/study_run.h"
 #include "volcal/identify/cli/options/number_checks.h"
 #include "volcal/identify/criticism/data/search_rules.h"
 #include "volcal/studies/criticism/criticism_plan.h"
@@ -35,9 +36,7 @@ void add_campaign_options(CLI::App& app, CriticisedCampaigns& campaigns, const s
   app.add_option("--readings", campaigns.readings, "of a campaign, about")
       ->check(CLI::Range(400, 100'000))
       ->capture_default_str();
-  app.add_option("-o,--output", campaigns.output,
-                 fmt::format("folder that keeps every finished campaign ({})", file));
-  app.add_flag("--resume", campaigns.resume, "do not run again what the output folder holds");
+  add_archive_options(app, campaigns.output, campaigns.resume, file);
 }
 
 void complete_rows(CriticisedCampaigns& campaigns) {

@@ -101,8 +101,7 @@ std::function<int()> define_mill_study(CLI::App& app) {
   app.add_option("--seed", options.seed, "of the first campaign, the others follow")
       ->check(not_negative())
       ->capture_default_str();
-  app.add_option("-o,--output", options.output, "folder that keeps every finished campaign (mills.jsonl)");
-  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  add_archive_options(app, options.output, options.resume, "mills.jsonl");
   app.add_option("--without", arguments->without, "rules that are left out, names of volcal study rules")
       ->delimiter(',')
       ->check(CLI::IsMember(names_of_rules()));

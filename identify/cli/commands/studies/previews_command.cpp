@@ -102,8 +102,7 @@ std::function<int()> define_previews_study(CLI::App& app) {
   app.add_option("--most", options.most, "effects that are added to a campaign, one after another")
       ->check(positive())
       ->capture_default_str();
-  app.add_option("-o,--output", options.output, "folder that keeps every finished campaign (previews.jsonl)");
-  app.add_flag("--resume", options.resume, "do not run again what the output folder holds");
+  add_archive_options(app, options.output, options.resume, "previews.jsonl");
   add_run_options(app, options.threads, arguments->json);
   return [arguments] { return run_previews_study(*arguments); };
 }

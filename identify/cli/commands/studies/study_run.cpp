@@ -13,6 +13,11 @@ void add_run_options(CLI::App& app, int& threads, bool& json) {
   app.add_flag("--json", json, "print one JSON document and nothing else");
 }
 
+void add_archive_options(CLI::App& app, std::string& output, bool& resume, const std::string& file) {
+  app.add_option("-o,--output", output, fmt::format("folder that keeps every finished campaign ({})", file));
+  app.add_flag("--resume", resume, "do not run again what the output folder holds");
+}
+
 std::function<void(int done, int all)> counted_on(ProgressBar& bar, const std::string& what) {
   return [&bar, what](int done, int all) {
     bar.update(fmt::format("{} of {} {}", done, all, what), static_cast<double>(done) / all);

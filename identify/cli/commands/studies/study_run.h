@@ -13,6 +13,9 @@ namespace volcal::cli {
 /// Options --threads and --json.
 void add_run_options(CLI::App& app, int& threads, bool& json);
 
+/// Option --output, a folder that keeps what is finished in `file`, and --resume.
+void add_archive_options(CLI::App& app, std::string& output, bool& resume, const std::string& file);
+
 /// "3 of 8 campaigns" on the bar, which must outlive the study.
 std::function<void(int done, int all)> counted_on(ProgressBar& bar, const std::string& what);
 

@@ -4,7 +4,7 @@ import test from 'node:test';
 import { eventParser } from '../src/api/events_text.js';
 import { readFrame, writeFrame } from '../src/api/frames.js';
 import { indices, mark, meanOf, sharedValue, standOut } from '../src/data/selection.js';
-import { binIndex, histogram, magnitudeQuantile, meansInBins, numberLines, rangeOf, standardisedDifference } from '../src/data/statistics.js';
+import { binIndex, countPixels, histogram, magnitudeQuantile, meansInBins, numberLines, rangeOf, standardisedDifference } from '../src/data/statistics.js';
 import { sketchOf } from '../src/data/sketch.js';
 import { outlineOf, surfaceData } from '../src/data/surface.js';
 import { treeOf } from '../src/data/tree.js';
@@ -64,6 +64,15 @@ test('ranges, quantiles and histograms pass over what is not recorded', () => {
   assert.equal(rangeOf(Float32Array.of(NaN)), null);
   near(magnitudeQuantile(Float32Array.from({ length: 101 }, (_, k) => k - 50), 0.5), 25, 1);
   assert.deepEqual([...histogram(Float32Array.of(-1, 0, 0.5, 7, NaN), -1, 1, 2)], [1, 2]);
+});
+
+test('dots cover squares of pixels, those at the edge of a box beyond it, and add up', () => {
+  const where = { column: Int16Array.of(0, 1, -1, 1), row: Int16Array.of(0, 1, 0, 1), w: 2, h: 2 };
+  const { counts, largest, width, height } = countPixels(where, 3, 1);
+  assert.deepEqual([width, height, largest], [4, 4, 3]);
+  assert.deepEqual([...counts], [1, 1, 1, 0, 1, 3, 3, 2, 1, 3, 3, 2, 0, 2, 2, 2]);
+  const marked = countPixels(where, 1, 0, Uint8Array.of(0, 1, 1, 0));
+  assert.deepEqual([...marked.counts], [0, 0, 0, 1]);
 });
 
 test('marking adds to what is marked or replaces it, among the readings that are shown', () => {

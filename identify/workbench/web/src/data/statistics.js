@@ -164,3 +164,22 @@ export function histogram(values, low, high, bins, mask = null) {
   }
   return counts;
 }
+
+/** How many readings cover every pixel of a box with `edge` pixels around it, each a square of `size` pixels. */
+export function countPixels({ column, row, w, h }, size, edge, mask = null) {
+  const width = w + 2 * edge;
+  const counts = new Uint16Array(width * (h + 2 * edge));
+  const off = edge - Math.floor(size / 2);
+  let largest = 0;
+  for (let i = 0; i < column.length; i += 1) {
+    if (column[i] < 0 || (mask && !mask[i])) continue;
+    let at = (row[i] + off) * width + column[i] + off;
+    for (let j = 0; j < size; j += 1, at += width) {
+      for (let k = at; k < at + size; k += 1) {
+        const count = (counts[k] += 1);
+        if (count > largest) largest = count;
+      }
+    }
+  }
+  return { counts, largest, width, height: h + 2 * edge };
+}

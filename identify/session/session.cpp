@@ -339,8 +339,9 @@ const std::vector<EffectFinding>& Session::rank() {
   const std::vector<const FamilyTest*> order = ranked();
   Node& here = node();
   if (!here.ranking) {
-    here.ranking.emplace();
-    for (const FamilyTest* test : order) here.ranking->push_back(finding(here.state().setting(), *test));
+    std::vector<EffectFinding> ranking;
+    for (const FamilyTest* test : order) ranking.push_back(finding(here.state().setting(), *test));
+    here.ranking = std::move(ranking);
   }
   return *here.ranking;
 }

@@ -213,19 +213,18 @@ const CatalogueTests& Session::SharedTests::get_unless_stopped() {
 
 const Session::RefittedModel& Session::SharedRefit::get(const SessionProgress& progress) {
   const std::lock_guard lock(mutex_);
-  if (!made_) {
-    made_ = refitted(preview_, state_, progress);
-    double change = log_change(preview_.variance(), made_->recipe.variance());
-    for (int step = 1; step < kRefitSteps && std::abs(change) > kMovedNoise; ++step) {
-      const std::vector<double> before = made_->recipe.variance();
-      made_ = refitted(made_->recipe, made_->state, progress);
-      change = log_change(before, made_->recipe.variance());
-    }
-    made_->at_least = made_->recipe.projector_at(*least_, made_->state);
-    made_->least = least_;
-    made_->tests =
-        std::make_shared<SharedTests>([own = made_->recipe] { return CatalogueTests(own.make()); });
+  if (made_) return *made_;
+  RefittedModel model = refitted(preview_, state_, progress);
+  double change = log_change(preview_.variance(), model.recipe.variance());
+  for (int step = 1; step < kRefitSteps && std::abs(change) > kMovedNoise; ++step) {
+    const std::vector<double> before = model.recipe.variance();
+    model = refitted(model.recipe, model.state, progress);
+    change = log_change(before, model.recipe.variance());
   }
+  model.at_least = model.recipe.projector_at(*least_, model.state);
+  model.least = least_;
+  model.tests = std::make_shared<SharedTests>([own = model.recipe] { return CatalogueTests(own.make()); });
+  made_ = std::move(model);  // once it is whole: who makes it may be stopped
   return *made_;
 }
 

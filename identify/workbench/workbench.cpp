@@ -139,6 +139,19 @@ bool is_command(const std::string& request) {
   return std::ranges::find(kCommands, request) != kCommands.end();
 }
 
+/// What went wrong, in the words of the page; nothing where the work was stopped.
+Json failure_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const SessionStopped&) {
+  } catch (const InputError& error) {
+    return error_json(error.problem(), error.remedy());
+  } catch (const std::exception& error) {
+    return error_json(error.what(), "the model before stands");
+  }
+  return nullptr;
+}
+
 /// What `work` gives, made in a thread that the system prefers others to, with those that it begins: hovering
 /// and ranking are answered meanwhile.
 template <class Work>
@@ -474,36 +487,41 @@ void Workbench::run(Job& job, Lock& lock) {
   busy_->behind = job.behind;
   publish_state();
   lock.unlock();
-  Json failed;
   std::function<void()> take;
-  try {
+  Json failed = failure_of([&] {
     if (job.first) job.first();
     const bool patient = job.behind && job.what != kRefit;
     take = patient ? behind([&] { return job.run(progress()); }) : job.run(progress());
-  } catch (const SessionStopped&) {
-  } catch (const InputError& error) {
-    failed = error_json(error.problem(), error.remedy());
-  } catch (const std::exception& error) {
-    failed = error_json(error.what(), "the model before stands");
-  }
+  });
   lock.lock();
-  const bool stopped = cancelled_;
+  bool taken = take && !cancelled_;
   busy_.reset();
   cancelled_ = false;
-  if (take && !stopped) {
-    take();
-    if (!job.command.empty()) commands_.push_back(job.command);
-    if (job.what == "draw" && !session_->drawn().empty())
-      hub_.publish("surface", json_text(surface_json(session_->drawn().back()), -1));
+  if (taken) {
+    failed = failure_of([&] { take_found(job, take); });
+    taken = failed.is_null();
   }
+  const Json failed_after = failure_of([&] { begin_after(job, taken); });
+  if (failed.is_null()) failed = failed_after;
   if (!failed.is_null()) {
     failed["what"] = job.what;
     hub_.publish("failed", json_text(failed, -1));
   }
-  const bool further = !job.behind || (job.what == kRefit && take && !stopped);
-  if (further && !waiting_) confirm_what_is_linear();
-  if (job.what == kScan ? take && !stopped : job.what != kPrepare) look_for_unknown();
   publish_state();
+}
+
+void Workbench::take_found(const Job& job, const std::function<void()>& take) {
+  take();
+  if (!job.command.empty()) commands_.push_back(job.command);
+  if (job.what == "draw" && !session_->drawn().empty())
+    hub_.publish("surface", json_text(surface_json(session_->drawn().back()), -1));
+}
+
+/// What goes on behind.
+void Workbench::begin_after(const Job& job, bool taken) {
+  const bool further = !job.behind || (job.what == kRefit && taken);
+  if (further && !waiting_) confirm_what_is_linear();
+  if (job.what == kScan ? taken : job.what != kPrepare) look_for_unknown();
 }
 
 /// A session, or what is wrong with the files.
@@ -525,6 +543,8 @@ void Workbench::load(Lock& lock) {
     error = InputError({options_.campaign, 0}, "loading was stopped", "save the file again to load it anew");
   } catch (const InputError& wrong) {
     error = wrong;
+  } catch (const std::exception& other) {
+    error = InputError({options_.campaign, 0}, other.what(), "run volcal fit on it, which says more");
   }
   lock.lock();
   busy_.reset();

@@ -80,6 +80,8 @@ class Workbench {
 
   void work();
   void run(Job& job, Lock& lock);
+  void take_found(const Job& job, const std::function<void()>& take);
+  void begin_after(const Job& job, bool taken);
   void load(Lock& lock);
   void wait_for_mended_files(Lock& lock);
   void start(Job job);

@@ -423,18 +423,27 @@ TEST_F(SessionOfTwo, PreparedRefitsAreThoseThatAreMadeWhenAsked) {
   EXPECT_FALSE(prepared->is_prepared()) << "kept for the current model alone";
 }
 
-/// What is stopped is made when it is asked for.
+/// What is stopped is made when it is asked for, also where a step of the refit was made before.
 TEST_F(SessionOfTwo, APreparationThatIsStoppedLosesNothing) {
   const auto asked = open(), stopped = open();
-  const auto stop = [](const std::string& stage, double /*done*/) { return stage != "the exact model"; };
-  EXPECT_THROW(stopped->take(stopped->preparation(), stop), SessionStopped);
-  EXPECT_FALSE(stopped->is_prepared());
+  for (const int steps : {0, 1}) {
+    int begun = 0;
+    const auto stop = [&](const std::string& stage, double /*done*/) {
+      const bool is_step = stage == "the exact model";
+      return !is_step || begun++ < steps;
+    };
+    ASSERT_THROW(stopped->take(stopped->preparation(), stop), SessionStopped) << "after " << steps;
+    EXPECT_FALSE(stopped->is_prepared());
+  }
+  stopped->take(stopped->preparation());
+  EXPECT_TRUE(stopped->is_prepared());
   for (Session* each : {asked.get(), stopped.get()}) {
     each->add(kReversal);
     each->take(each->refit());
     EXPECT_EQ(each->current().standing, ModelStanding::Refitted);
   }
   EXPECT_EQ(stopped->residual(), asked->residual());
+  EXPECT_EQ(stopped->rank().size(), asked->rank().size());
 }
 
 /// Asked far more often than there are stages; stopped within one, the session is as it was.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <unsupported/Eigen/SpecialFunctions>
 
+#include "volcal/identify/statistics/log_gamma.h"
+
 namespace volcal {
 namespace {
 
@@ -34,7 +36,7 @@ double log_upper_gamma(double a, double x) {
     h *= factor;
     if (std::abs(factor - 1.0) < 1e-15) break;
   }
-  return a * std::log(x) - x - std::lgamma(a) + std::log(h);
+  return a * std::log(x) - x - log_gamma(a) + std::log(h);
 }
 
 /// Poisson mixture of central distributions (Johnson, Kotz and Balakrishnan 1995, Continuous Univariate
@@ -45,7 +47,7 @@ double noncentral_exceedance(double chi2, double dof, double noncentrality) {
   double sum = 0.0;
   for (int j = 0; j <= last; ++j) {
     const double log_weight =
-        (j > 0 ? j * std::log(std::max(mean, 1e-300)) : 0.0) - mean - std::lgamma(j + 1.0);
+        (j > 0 ? j * std::log(std::max(mean, 1e-300)) : 0.0) - mean - log_gamma(j + 1.0);
     sum += std::exp(log_weight) * chi_squared_exceedance(chi2, dof + 2.0 * j);
   }
   return sum;
@@ -85,7 +87,7 @@ double log10_exceedance_of_estimated(double chi2, double dof, double freedom) {
   const double p = exceedance_of_estimated(chi2, dof, freedom);
   if (p > kSmallest) return std::log10(p);
   const double a = freedom / 2.0, b = dof / 2.0, x = freedom / (freedom + chi2);
-  const double log_beta = std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b);
+  const double log_beta = log_gamma(a) + log_gamma(b) - log_gamma(a + b);
   return (a * std::log(x) + b * std::log1p(-x) - std::log(a) - log_beta) / std::log(10.0);
 }
 

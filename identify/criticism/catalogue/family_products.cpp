@@ -9,6 +9,7 @@
 #include "volcal/identify/numeric/dense.h"
 #include "volcal/identify/numeric/parallel.h"
 #include "volcal/identify/statistics/chi_squared.h"
+#include "volcal/identify/statistics/log_gamma.h"
 
 namespace volcal {
 namespace {
@@ -26,7 +27,7 @@ double scan_multiplicity(const std::vector<double>& lm_of_shapes, double lm, int
   }
   const double half = 0.5 * dof;
   const double log10_crossings =
-      (0.5 * (dof - 1) * std::log(lm) - 0.5 * lm - half * std::numbers::ln2 - std::lgamma(half)) /
+      (0.5 * (dof - 1) * std::log(lm) - 0.5 * lm - half * std::numbers::ln2 - log_gamma(half)) /
           std::numbers::ln10 +
       std::log10(std::max(variation, 1e-300));
   const double multiplicity = 1.0 + std::pow(10.0, log10_crossings - log10_chi_squared_exceedance(lm, dof));

@@ -89,6 +89,15 @@ TEST(MonteCarloReport, CurvesAreByDirectionAndVerdictsAreCounted) {
   EXPECT_EQ(data.at("others")[1].at("name"), "station <P1>");
 }
 
+TEST(MonteCarloReport, SaysWhatTheReadingsContradict) {
+  MonteCarloResult study = hand_made_study();
+  EXPECT_TRUE(page_data_of_study(report_of(study), "uncertainties").at("messages").empty());
+  study.contradicted.push_back({FindingCode::FitNotConverged});
+  const auto messages = page_data_of_study(report_of(study), "uncertainties").at("messages");
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_THAT(messages[0].get<std::string>(), HasSubstr("converge"));
+}
+
 // Variances 0.09 and 0.16 of 0.25; with half of the second source 0.09 + 0.04 = 0.13.
 TEST(MonteCarloReport, BudgetHasSharesAndWhatHalvingBrings) {
   const auto data = page_data_of_study(report_of(hand_made_study()), "budget");

@@ -3,6 +3,7 @@
 #include "volcal/identify/report/numbers.h"
 #include "volcal/identify/report/page.h"
 #include "volcal/identify/report/values/quantity_groups.h"
+#include "volcal/identify/words/sentences.h"
 
 namespace volcal::report {
 namespace {
@@ -76,6 +77,13 @@ Json others(const MonteCarloResult& study) {
   return rows;
 }
 
+/// What the fit said first.
+Json messages(const MonteCarloResult& study) {
+  std::vector<Finding> all = study.contradicted;
+  all.insert(all.end(), study.notes.begin(), study.notes.end());
+  return sentences(all);
+}
+
 }  // namespace
 
 Json uncertainties_page(const MonteCarloPageInput& input) {
@@ -90,6 +98,7 @@ Json uncertainties_page(const MonteCarloPageInput& input) {
           {"refits", study.check.linear.draws},
           {"linear_share", rounded(study.check.linear.largest_share, 2)},
           {"chord_share", rounded(study.check.chord.largest_share, 2)},
+          {"messages", messages(study)},
           {"functions", functions(study)},
           {"others", others(study)}};
 }

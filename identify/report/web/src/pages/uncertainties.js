@@ -1,6 +1,7 @@
 import { choice, count, el, fixed, longTable, note, significant } from '../dom.js';
 import { addPlot, layout2d, legendAbove } from '../plot.js';
 import { color, series, transparent } from '../theme.js';
+import { printed } from '../words.js';
 
 const approach = { '0': '', '1': ', towards +', '-1': ', towards −' };
 
@@ -33,6 +34,7 @@ function summaryText(data) {
 
 export function renderUncertainties(body, data) {
   body.append(note(summaryText(data)));
+  if (data.messages.length > 0) body.append(el('ul', { class: 'messages' }, data.messages.map((text) => el('li', {}, printed(text)))));
   for (const words of data.disturbances) body.append(note(`Disturbed by ${words}, which the fit knows nothing of.`));
   if (data.functions.length > 0) {
     let shown = data.functions[0];

@@ -36,6 +36,10 @@ Outcome outcome_of(const CampaignRecord& record);
 inline constexpr double kUndetectable = 4.0;
 double remainder_of(const CampaignRecord& record);
 
+/// The right one is in a set of more than three, and more than three of its members leave less than
+/// kUndetectable of the one effect that is hidden: no judge of these readings chooses fewer.
+bool readings_leave_many(const CampaignRecord& record);
+
 /// A share with its 95 % interval (Wilson 1927, JASA 22, 209).
 struct Share {
   int count = 0;

@@ -82,7 +82,7 @@ class Drawer {
 
   void draw_target() {
     const bool any_motion = is({"reversal", "reversal-position", "cross-product", "backlash-kink",
-                                "local-bump", "reversal-spike", "direction-memory", "direction-temperature"});
+                                "local-bump", "direction-memory", "direction-temperature"});
     const bool rotation_only =
         is({"cross-axis", "thermal-tilt", "tool-load", "triangle-wave", "cross-wave", "position-step",
             "cross-kink", "lagged-temperature", "root-time", "gradient-bending", "temperature-squared"});
@@ -95,7 +95,7 @@ class Drawer {
                   1, kMotions[static_cast<std::size_t>(random_.uniform() * (rotation_only ? 3.0 : 6.0))]) +
               own_);
     }
-    if (is({"screw-lead", "encoder-subdivision"})) {
+    if (is({"screw-lead", "encoder-subdivision", "reversal-spike"})) {
       own_ = one_of(kAxes);
       set("symbol", "E" + own_ + own_);
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "volcal/sim/machine/random.h"
@@ -197,14 +198,21 @@ ReadFunction find_instrument(const std::string& name) {
   throw std::invalid_argument("instrument " + name + " is not simulated");
 }
 
-/// How far each axis has gone since it last turned round. Turning on the spot, it overruns the point.
+/// How far each axis has gone since it last turned round. It comes to its first point from far. Where it
+/// moves against the direction in which it reaches a point, or turns on the spot, it overruns the point and
+/// comes back.
 class Turns {
  public:
   const std::array<double, kAxisCount>& advance(const CommandedPoint& point) {
     for (std::size_t k = 0; k < kAxisCount; ++k) {
-      const double move = previous_ != nullptr ? std::abs(point.position[k] - previous_->position[k]) : 0.0;
-      const bool turned = previous_ == nullptr || point.direction[k] != previous_->direction[k];
-      travelled_[k] = !turned ? travelled_[k] + move : move > 0.0 ? move : kOverrun;
+      if (previous_ == nullptr) {
+        travelled_[k] = std::numeric_limits<double>::infinity();
+        continue;
+      }
+      const double move = point.position[k] - previous_->position[k];
+      const double forward = point.direction[k] == 0 ? std::abs(move) : point.direction[k] * move;
+      const bool turned = forward < 0.0 || point.direction[k] != previous_->direction[k];
+      travelled_[k] = !turned ? travelled_[k] + forward : forward > 0.0 ? forward : kOverrun;
     }
     previous_ = &point;
     return travelled_;

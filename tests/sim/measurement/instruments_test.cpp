@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <stdexcept>
+#include <vector>
 
 #include "volcal/sim/machine/reference_machines.h"
 
@@ -100,6 +103,35 @@ TEST_F(InstrumentTest, DisplacementFollowsItsBeam) {
 TEST_F(InstrumentTest, DisplacementOfAReturningPassPointsToTheFarthestPoint) {
   SetupPlan line = plan("displacement", {at(0, 0.25, 0), at(1, 0.25, 0, 0), at(0, 0.25, 0, 1)});
   EXPECT_NEAR(reading_of(line).readings.value[0][1], 1.0 + 5e-6, kSecondOrder);
+}
+
+/// From far, back on the spot, from below again, and once more after it went back unrecorded.
+TEST_F(InstrumentTest, AxesOverrunThePointsWhereTheyTurn) {
+  const double position[] = {0.0, 0.2, 0.2, 0.1, 0.05, 0.18, 0.15, 0.25};
+  const int direction[] = {1, 1, -1, -1, 1, 1, 1, 1};
+  const double far = std::numeric_limits<double>::infinity(), overrun = 1e-3;
+  const double travelled[] = {far,     far,          overrun, overrun + 0.1, overrun, overrun + 0.13,
+                              overrun, overrun + 0.1};
+  std::vector<CommandedPoint> points;
+  for (std::size_t i = 0; i < std::size(position); ++i) {
+    points.push_back(at(position[i], 0.25, 0.0));
+    points.back().direction[0] = static_cast<std::int8_t>(direction[i]);
+  }
+  std::vector<double> seen(points.size(), -1.0);
+  const SetupPlan line = plan("displacement", points);
+  truth_.add_state_error(*ErrorSymbol::parse("EXX"), [&](const MachineState& state) {
+    const auto row = static_cast<std::size_t>(std::lround((state.time - 100.0) / line.seconds_per_reading));
+    seen.at(row) = state.since_reversal[0];
+    return 0.0;
+  });
+  reading_of(line);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (std::isinf(travelled[i])) {
+      EXPECT_TRUE(std::isinf(seen[i])) << i;
+    } else {
+      EXPECT_NEAR(seen[i], travelled[i], 1e-12) << i;
+    }
+  }
 }
 
 TEST_F(InstrumentTest, StraightnessReadsAgainstATurnedArtefact) {

@@ -45,8 +45,9 @@ std::vector<std::string> free_parts(const TensorBasis& basis, const Eigen::Matri
   for (std::size_t i = 0; i < drivers.size(); ++i) {
     if (is_imitated(coefficients_of_power(basis, i, 1), imitated) &&
         is_imitated(coefficients_of_power(basis, i, 2), imitated)) {
-      words.push_back(
-          fmt::format("any function of {} alone: the error functions hold it", drivers[i].written()));
+      const bool is_position = drivers[i].kind == Variable::Kind::Position;
+      words.push_back(fmt::format("any function of {} alone: the {} it", drivers[i].written(),
+                                  is_position ? "error functions hold" : "rest of the model holds"));
     } else if (is_imitated(coefficients_of_power(basis, i, 1), imitated)) {
       words.push_back(
           fmt::format("what is straight in {}: the rest of the model holds it", drivers[i].written()));

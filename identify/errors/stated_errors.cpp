@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "volcal/model/description/units.h"
+#include "volcal/model/description/variable.h"
 #include "volcal/model/effects/registry.h"
 #include "volcal/model/functions/registry.h"
 #include "volcal/model/observation/campaign_binding.h"
@@ -78,6 +81,17 @@ class StatedLayout {
   std::vector<double> values_;
 };
 
+/// Temperatures that drive an effect.
+std::set<std::string> channels_of(const EffectSpec& spec) {
+  std::set<std::string> channels;
+  if (const auto channel = spec.options.text("temperature")) channels.insert(*channel);
+  for (const std::string& word : words_in(find_effect(spec.kind)->make(spec, {})->name().driver)) {
+    const auto variable = Variable::parse_written(word);
+    if (variable && variable->kind == Variable::Kind::Temperature) channels.insert(variable->subject);
+  }
+  return channels;
+}
+
 }  // namespace
 
 FitResult stated_result(const Machine& machine, const ModelSpec& model) {
@@ -98,8 +112,8 @@ FitResult stated_result(const Machine& machine, const ModelSpec& model) {
     if (axis.expansion) result.conditions.temperature_degC[axis.expansion->channel] = kReference;
   }
   for (const EffectSpec& effect : model.effects) {
-    if (const auto channel = effect.options.text("temperature"))
-      result.conditions.temperature_degC[*channel] = kReference;
+    for (const std::string& channel : channels_of(effect))
+      result.conditions.temperature_degC[channel] = kReference;
   }
   result.conditions.time = RecordedRange{};
   result.conditions.feed = RecordedRange{};

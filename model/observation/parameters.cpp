@@ -24,9 +24,10 @@ const ParameterBlock* ParameterLayout::find_block(const std::string& name) const
 std::optional<int> ParameterLayout::find_parameter(const std::string& name) const {
   for (const ParameterBlock& block : blocks) {
     if (!name.starts_with(block.name)) continue;
-    if (name == block.name && block.size() == 1) return block.offset;
-    const std::string label = name.size() > block.name.size() ? name.substr(block.name.size() + 1) : "";
-    if (!label.empty() && name[block.name.size()] != ' ') continue;
+    const bool is_whole = name.size() == block.name.size();
+    if (!is_whole && name[block.name.size()] != ' ') continue;  // of "T10" no block "T1"
+    if (is_whole && block.size() == 1) return block.offset;
+    const std::string label = is_whole ? "" : name.substr(block.name.size() + 1);
     const auto found = std::ranges::find(block.labels, label);
     if (found != block.labels.end()) return block.offset + static_cast<int>(found - block.labels.begin());
   }

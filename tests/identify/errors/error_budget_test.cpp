@@ -98,5 +98,38 @@ TEST(StatedErrors, AreThoseOfTheModelFile) {
   EXPECT_NEAR(ex({{"T_bed", "24"}}), 5e-6 - 5e-6 + 4.0 * 11e-6 * 0.5, 1e-12);
 }
 
+/// 1 um a piece: cubic B-splines reproduce a straight line by its values at means of three knots.
+TEST(StatedErrors, HoldEveryCoefficientOfACurve) {
+  constexpr int kPieces = 12;
+  std::vector<double> coefficients;
+  const auto knot = [kPieces](int k) { return std::clamp(k, 0, kPieces); };
+  for (int k = -2; k <= kPieces; ++k)
+    coefficients.push_back(1e-6 * (knot(k) + knot(k + 1) + knot(k + 2)) / 3.0);
+  ModelSpec model;
+  model.effects = {effect_spec("empirical", {{"target", std::string("EYX")},
+                                             {"drivers", std::string("x")},
+                                             {"from", std::vector<double>{0.0}},
+                                             {"to", std::vector<double>{1000.0}},
+                                             {"pieces", std::vector<double>{kPieces}},
+                                             {"coefficients", coefficients}})};
+  const FitResult result = stated_result(machine_with_a_tool(), model);
+  const ErrorField field(result, result.machine.tools[0]);
+  for (const double x : {0.0, 0.5, 0.75, 1.0}) {
+    AxisPosition position{};
+    position[0] = x;
+    EXPECT_NEAR(field.at(position)[1], 1e-6 * kPieces * x, 1e-12) << x;
+  }
+}
+
+TEST(StatedErrors, KnowTheTemperaturesOfLaws) {
+  ModelSpec model;
+  model.effects = {effect_spec("custom", {{"target", std::string("EYY")},
+                                          {"expression", std::string("(T_bed - 20) * T_air")},
+                                          {"amplitude", 1e-6}})};
+  const FitResult result = stated_result(machine_with_a_tool(), model);
+  const Conditions warm = stated_conditions(result, {{"T_bed", "23"}, {"T_air", "2"}});
+  EXPECT_NEAR(ErrorField(result, result.machine.tools[0], warm).at(AxisPosition{})[1], 6e-6, 1e-12);
+}
+
 }  // namespace
 }  // namespace volcal

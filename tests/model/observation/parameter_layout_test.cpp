@@ -65,5 +65,22 @@ TEST(ParameterLayout, FindsBlocksByNameAndLocation) {
   EXPECT_EQ(layout.find_location({Component::A, AxisName::Z}), nullptr);
 }
 
+/// A block's name may begin another's.
+TEST(ParameterLayout, FindsParametersByTheirWholeNames) {
+  ParameterLayout layout;
+  for (const char* name : {"tool T1", "tool T10", "station P1"}) {
+    ParameterBlock& block = layout.blocks.emplace_back();
+    block.name = name;
+    block.labels = {""};
+    block.offset = static_cast<int>(layout.blocks.size());
+  }
+  layout.blocks.back().labels = {"x", "y"};
+  EXPECT_EQ(layout.find_parameter("tool T1"), 1);
+  EXPECT_EQ(layout.find_parameter("tool T10"), 2);
+  EXPECT_EQ(layout.find_parameter("station P1 y"), 4);
+  EXPECT_EQ(layout.find_parameter("tool T2"), std::nullopt);
+  EXPECT_EQ(layout.find_parameter("station P1y"), std::nullopt);
+}
+
 }  // namespace
 }  // namespace volcal

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
@@ -255,8 +256,10 @@ std::string alternatives_text(const Diagnosis& diagnosis, const std::vector<Effe
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
   std::vector<EffectFinding> all;
+  const std::vector<EffectFinding> accepted = accepted_effects(diagnosis);  // with what was drawn
   std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis);
   lists.insert(lists.begin(), &diagnosis.effects);
+  lists.push_back(&accepted);
   lists.push_back(&diagnosis.ranking);
   for (const auto* list : lists) {
     for (const EffectFinding& effect : *list) {

@@ -14,7 +14,8 @@ std::string diagnosis_summary_text(const Diagnosis& diagnosis);
 /// All of it.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
-/// Effects by rank, most likely first, each once: what was added, what could not be separated, the ranking.
+/// Effects by rank, most likely first, each once: what was added, what could not be separated, surfaces and
+/// laws that were drawn, the ranking.
 /// More of an error function is no effect and has none.
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis);
 

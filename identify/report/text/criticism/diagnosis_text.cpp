@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "volcal/identify/criticism/model_extension.h"
 #include "volcal/identify/report/text/findings_text.h"
 #include "volcal/identify/report/text/text_tables.h"
 #include "volcal/identify/report/values/detectable_groups.h"
@@ -252,14 +251,26 @@ std::string alternatives_text(const Diagnosis& diagnosis, const std::vector<Effe
   return text;
 }
 
+/// The law or the surface that enters a model for each.
+std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis) {
+  std::vector<EffectFinding> drawn;
+  for (const SurfaceFinding& surface : diagnosis.surfaces) {
+    EffectFinding& effect = drawn.emplace_back();
+    effect.name = surface.name;
+    effect.label = surface.accepted_label();
+    effect.spec = surface.accepted_spec();
+  }
+  return drawn;
+}
+
 }  // namespace
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
   std::vector<EffectFinding> all;
-  const std::vector<EffectFinding> accepted = accepted_effects(diagnosis);  // with what was drawn
+  const std::vector<EffectFinding> drawn = drawn_effects(diagnosis);
   std::vector<const std::vector<EffectFinding>*> lists = sets_of_alternatives(diagnosis);
   lists.insert(lists.begin(), &diagnosis.effects);
-  lists.push_back(&accepted);
+  lists.push_back(&drawn);
   lists.push_back(&diagnosis.ranking);
   for (const auto* list : lists) {
     for (const EffectFinding& effect : *list) {

@@ -1,6 +1,7 @@
 #include "volcal/identify/criticism/model_extension.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -92,12 +93,7 @@ std::vector<EffectFinding> accepted_with(const Diagnosis& diagnosis,
       add_new((*sets[i])[*chosen], accepted);
     }
   }
-  for (const SurfaceFinding& surface : diagnosis.surfaces) {
-    EffectFinding& found = accepted.emplace_back();
-    found.name = surface.name;
-    found.label = surface.accepted_label();
-    found.spec = surface.accepted_spec();
-  }
+  std::ranges::move(drawn_effects(diagnosis), std::back_inserter(accepted));
   return accepted;
 }
 

@@ -81,10 +81,10 @@ class StatedLayout {
   std::vector<double> values_;
 };
 
-/// Temperatures that drive an effect.
+/// Temperatures that drive an effect: of its key, or among what its law or surface is written of.
 std::set<std::string> channels_of(const EffectSpec& spec) {
+  if (const auto channel = spec.options.text("temperature")) return {*channel};
   std::set<std::string> channels;
-  if (const auto channel = spec.options.text("temperature")) channels.insert(*channel);
   for (const std::string& word : words_in(find_effect(spec.kind)->make(spec, {})->name().driver)) {
     const auto variable = Variable::parse_written(word);
     if (variable && variable->kind == Variable::Kind::Temperature) channels.insert(variable->subject);

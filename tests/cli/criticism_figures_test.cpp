@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "volcal/sim/study.h"
+#include "volcal/studies/criticism/criticism_hidden.h"
 #include "volcal/studies/criticism/criticism_names.h"
 #include "volcal/studies/criticism/criticism_plan.h"
 
@@ -39,8 +40,8 @@ TEST(CriticismFigures, ReadingsLeaveManyWhereOverThreeAreAsGoodAsTheTruth) {
 }
 
 TEST(CriticismPlan, WhatRowListedHidesIsInTheCatalogue) {
-  constexpr int kTwiceEveryKind = 52;
-  for (int i = 0; i < kTwiceEveryKind; ++i) {
+  const int twice_every_kind = 2 * static_cast<int>(cli::listed_kinds().size());
+  for (int i = 0; i < twice_every_kind; ++i) {
     const cli::PlannedCampaign plan = cli::plan_campaign("listed", i, 1, 400, 0);
     const sim::SimulatedCampaign simulated = sim::simulate(plan.study);
     for (const cli::PlannedEffect& hidden : plan.hidden)

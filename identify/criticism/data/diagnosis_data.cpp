@@ -54,6 +54,17 @@ std::size_t AskedLaws::sufficient() const {
       laws, [this](const FormulaFinding& law) { return law.log_evidence >= surface_evidence; }));
 }
 
+std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis) {
+  std::vector<EffectFinding> drawn;
+  for (const SurfaceFinding& surface : diagnosis.surfaces) {
+    EffectFinding& effect = drawn.emplace_back();
+    effect.name = surface.name;
+    effect.label = surface.accepted_label();
+    effect.spec = surface.accepted_spec();
+  }
+  return drawn;
+}
+
 std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis) {
   const std::size_t drawn = std::min(diagnosis.surfaces.size(), diagnosis.unknown.size());
   return std::span(diagnosis.unknown).subspan(drawn);

@@ -247,6 +247,9 @@ struct Diagnosis {
 /// Of `unknown`, what no surface was drawn for.
 std::span<const UnknownFinding> remaining_unknown(const Diagnosis& diagnosis);
 
+/// For every surface what enters a model: the leading law, or the surface itself.
+std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis);
+
 /// The sets of alternatives: one_of and those beside it; none when it is empty.
 std::vector<const std::vector<EffectFinding>*> sets_of_alternatives(const Diagnosis& diagnosis);
 

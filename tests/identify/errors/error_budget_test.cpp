@@ -121,6 +121,16 @@ TEST(StatedErrors, HoldEveryCoefficientOfACurve) {
   }
 }
 
+TEST(StatedErrors, KnowChannelsWithBlanksInTheirNames) {
+  ModelSpec model;
+  model.effects = {effect_spec(
+      "thermal-drift",
+      {{"symbol", std::string("EAY")}, {"temperature", std::string("front bearing")}, {"amplitude", 1e-6}})};
+  const auto& channels = stated_result(machine_with_a_tool(), model).conditions.temperature_degC;
+  ASSERT_EQ(channels.size(), 1U);
+  EXPECT_EQ(channels.begin()->first, "front bearing");
+}
+
 TEST(StatedErrors, KnowTheTemperaturesOfLaws) {
   ModelSpec model;
   model.effects = {effect_spec("custom", {{"target", std::string("EYY")},

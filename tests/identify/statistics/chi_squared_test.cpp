@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "volcal/identify/statistics/log_gamma.h"
+
 namespace volcal {
 namespace {
 
@@ -72,6 +74,11 @@ TEST(ChiSquared, LogarithmOfTheTailOfF) {
   EXPECT_NEAR(log10_exceedance_of_estimated(5000.0, 2.0, 4000.0), tail(5000.0, 4000.0), 0.5);
   EXPECT_DOUBLE_EQ(log10_exceedance_of_estimated(30.0, 3.0, HUGE_VAL),
                    log10_chi_squared_exceedance(30.0, 3.0));
+}
+
+TEST(LogGamma, IsThatOfTheStandardLibrary) {
+  for (const double x : {0.5, 1.0, 3.0, 17.25, 1e3, -0.5}) EXPECT_EQ(log_gamma(x), std::lgamma(x)) << x;
+  EXPECT_NEAR(log_gamma(6.0), std::log(120.0), 1e-14);
 }
 
 }  // namespace

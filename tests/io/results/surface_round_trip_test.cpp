@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -117,6 +118,26 @@ TEST(SurfaceJson, TheRestAloneIsStillSeen) {
   EXPECT_EQ(remaining_unknown(diagnosis).size(), diagnosis.unknown.size() - 1);
   EXPECT_EQ(names_of(remaining_unknown(diagnosis).front().variables),
             (std::vector<std::string>{"x", "time"}));
+}
+
+/// After what was named or could not be separated, before what was not added.
+TEST(SurfaceJson, WhatWasDrawnHasARank) {
+  Diagnosis diagnosis = with_a_drawn_surface();
+  diagnosis.ranking.push_back(diagnosis.effects.front());
+  diagnosis.ranking.back().name = {"dead-path", "readings", "time", "linear"};
+  const std::vector<EffectFinding> ranked = ranked_effects(diagnosis);
+  const auto drawn = std::ranges::find(ranked, "EAY by y * z^2", &EffectFinding::label);
+  ASSERT_NE(drawn, ranked.end());
+  EXPECT_EQ(drawn->spec.kind, "custom");
+  const auto place = [&](const EffectName& name) {
+    return std::ranges::find(ranked, name, &EffectFinding::name);
+  };
+  for (const EffectFinding& added : diagnosis.effects) EXPECT_LT(place(added.name), drawn) << added.label;
+  for (const auto* set : sets_of_alternatives(diagnosis)) {
+    for (const EffectFinding& member : *set) EXPECT_LT(place(member.name), drawn) << member.label;
+  }
+  EXPECT_LT(drawn, place(diagnosis.ranking.back().name));
+  EXPECT_NE(place(diagnosis.ranking.back().name), ranked.end());
 }
 
 }  // namespace

@@ -251,18 +251,6 @@ std::string alternatives_text(const Diagnosis& diagnosis, const std::vector<Effe
   return text;
 }
 
-/// The law or the surface that enters a model for each.
-std::vector<EffectFinding> drawn_effects(const Diagnosis& diagnosis) {
-  std::vector<EffectFinding> drawn;
-  for (const SurfaceFinding& surface : diagnosis.surfaces) {
-    EffectFinding& effect = drawn.emplace_back();
-    effect.name = surface.name;
-    effect.label = surface.accepted_label();
-    effect.spec = surface.accepted_spec();
-  }
-  return drawn;
-}
-
 }  // namespace
 
 std::vector<EffectFinding> ranked_effects(const Diagnosis& diagnosis) {
